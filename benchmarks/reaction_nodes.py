@@ -95,7 +95,7 @@ class Probe:
         self.thesis = self.publisher(f"thesis/{EVENTS}")
         self.subscribe("floor/out", lambda text: "floor")
         self.subscribe(EVENTS, lambda text: "command" if "answer@" in text else "")
-        self.subscribe(f"bot/{ACTIONS}", lambda text: "order")
+        self.subscribe(f"bot/{ACTIONS}", self.take_order)
         self.subscribe(f"thesis/{ACTIONS}", lambda text: "thesis")
         # Only until the mission runs: the nodes of the mission are what is measured, not this one.
         self.states = rospy.Subscriber(STATE, String, self.state)
@@ -117,6 +117,11 @@ class Probe:
                     self.received.notify_all()
 
         rospy.Subscriber(topic, String, receive, queue_size=1000, tcp_nodelay=True)
+
+    def take_order(self, text: str) -> str:
+        """Acknowledge an order, as the robot's side does; the name under which its time is recorded."""
+        self.events.publish(f"bot:_order_@{text.partition('@')[2]}")
+        return "order"
 
     def state(self, message: Any) -> None:
         """The state of the mission."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bounded import whole
 from pursue_runtime.data import DataError
@@ -37,6 +37,8 @@ class Automaton(NamedTuple):
     invariants: Dict[str, Zone]
     edges: Tuple[Edge, ...]
     by_source: Dict[str, Tuple[Edge, ...]]
+    reacts_to: FrozenSet[str] = frozenset()
+    """The collaborative events of others in which a robot takes part."""
 
     def edges_from(self, location: str) -> Tuple[Edge, ...]:
         """Its edges there, in order."""
@@ -198,7 +200,8 @@ def _automaton(data: Mapping[str, Any]) -> Automaton:
     if unknown or data["initial"] not in invariants:
         raise ValueError(f"{data['name']}: unknown location among {sorted(unknown) or data['initial']}")
     by_source = {location: tuple(edge for edge in edges if edge.source == location) for location in invariants}
-    return Automaton(str(data["name"]), str(data["kind"]), str(data["initial"]), invariants, edges, by_source)
+    named = str(data["name"]), str(data["kind"]), str(data["initial"])
+    return Automaton(*named, invariants, edges, by_source, frozenset(map(str, data.get("reacts_to", ()))))
 
 
 def _edge(data: Mapping[str, Any]) -> Edge:

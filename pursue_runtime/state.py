@@ -14,8 +14,8 @@ WAITING, RUNNING, HOLDING, WON, LOST, STOPPED = "waiting", "running", "holding",
 LIVE, ENDED = (RUNNING, HOLDING), (WON, LOST, STOPPED)
 STATUSES = (WAITING, *LIVE, *ENDED)
 
-AGENT_LISTS = ("late", "lost", "held", "displaced", "returning", "finished")
-"""The fields of a state that are lists of agents."""
+LISTS = ("late", "lost", "held", "displaced", "returning", "finished", "orders")
+"""The fields of a state that are lists: of agents, and of orders."""
 
 LATE = 60.0
 """Seconds of real time for which a state with an earlier number and stamp counts as older than the last one received;
@@ -34,7 +34,7 @@ class SystemState(NamedTuple):
     should have finished by now, `lost` those that nothing is expected of any more, `held` those that wait for a person.
     `displaced` names the robots that are not known to be where the state has them, `returning` those of them that are
     to go back there. `finished` names those that have reported the end of what they do with others who have not.
-    `commanded` is True if the event was a command, not a report.
+    `commanded` is True if the event was a command, not a report. `orders` are what the robots are to do (orders.py).
     """
 
     seq: int
@@ -56,6 +56,7 @@ class SystemState(NamedTuple):
     returning: Tuple[str, ...] = ()
     commanded: bool = False
     finished: Tuple[str, ...] = ()
+    orders: Tuple[str, ...] = ()
 
     def clocks_at(self, stamp: float) -> Dict[str, float]:
         """The clocks at a later moment, if nothing has happened since (never earlier than this state)."""
@@ -99,7 +100,7 @@ def rewinds(state: SystemState, known: SystemState) -> bool:
 def format_state(state: SystemState) -> str:
     """The text on pursue/system_state: the thesis's, with a first line for us."""
     head = [f"seq={state.seq} stamp={state.stamp:.6f} unit={state.unit!r}"]
-    agents = tuple((key, ",".join(getattr(state, key))) for key in AGENT_LISTS)
+    agents = tuple((key, ",".join(getattr(state, key))) for key in LISTS)
     led_by = ("event", state.event), ("agent", state.agent), *agents
     facts = (("mission", state.mission), ("plan", state.plan), *led_by, ("commanded", int(state.commanded)))
     head += [f"{key}={value}" for key, value in facts if value]
@@ -147,7 +148,7 @@ def parse_state(text: str) -> Optional[SystemState]:
             locations[name] = value
     clocks = {name: float(value) for name, value in _pairs(continuous) if _DECIMAL.fullmatch(value)}
     event, agent, status = facts.get("event", ""), facts.get("agent", ""), facts.get("status", RUNNING)
-    lists: Dict[str, Any] = {key: tuple(filter(None, facts.get(key, "").split(","))) for key in AGENT_LISTS}
+    lists: Dict[str, Any] = {key: tuple(filter(None, facts.get(key, "").split(","))) for key in LISTS}
     led_by = event, agent, status, reason, unit, plan
     state = SystemState(seq, stamp, locations, values, clocks, *led_by, mission=facts.get("mission", ""))
     return state._replace(commanded=facts.get("commanded") == "1", **lists)

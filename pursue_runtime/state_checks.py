@@ -10,7 +10,7 @@ from typing import Any, Collection, Mapping, Sequence
 
 from pursue_runtime.data import DataError
 from pursue_runtime.model import Model
-from pursue_runtime.state import AGENT_LISTS, LIVE, STATUSES, SystemState
+from pursue_runtime.state import LISTS, LIVE, STATUSES, SystemState
 from pursue_runtime.strategy import Strategy
 
 MAX_NAMES = 10000
@@ -61,7 +61,7 @@ def adoptable(fields: Mapping[str, Any], model: Model, unit: float, plan: int) -
     `unit` (seconds) and `plan` are those of the mission. Raises DataError.
     """
     try:
-        state = SystemState(**{**fields, **{key: tuple(fields[key]) for key in AGENT_LISTS}})
+        state = SystemState(**{**fields, **{key: tuple(fields[key]) for key in LISTS}})
         problem = model_problem(model, state)
     except (KeyError, TypeError, AttributeError) as cause:
         raise DataError(f"not a state: {cause!r}") from cause

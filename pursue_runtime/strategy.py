@@ -23,7 +23,7 @@ from typing import (
 
 from pursue_runtime.bounded import BadText, exact, read_json
 from pursue_runtime.data import DataError, check_format
-from pursue_runtime.locations import automaton_clock, is_action
+from pursue_runtime.locations import automaton_clock
 from pursue_runtime.state import RUNNING, SystemState
 from pursue_runtime.zones import EPSILON, INFINITY, Zone, due, parse_zone
 
@@ -196,10 +196,6 @@ class Strategy:
             self.agents: List[str] = list(data["commands_agents"])
             self.objectives = frozenset(map(str, data.get("objectives", OBJECTIVES)))
             """Those of its agents that are no agents: the automata of objectives."""
-            self.reacts_to = {
-                str(robot): {str(event): tuple(map(str, doers)) for event, doers in events.items()}
-                for robot, events in dict(data.get("reacts_to") or {}).items()
-            }
             self.reaction = float(exact(data["reaction"]))
             entries = [(entry["state"], tuple(map(_command, entry["commands"]))) for entry in data["strategy"]]
             self._table = StateTable(entries, _left_out_clocks(data))
@@ -208,13 +204,6 @@ class Strategy:
             commands = [command for _, part in entries for command in part]
             zones = (zone for command in commands for zone in command.when)
             self.clocks = {clock for zone in zones for bound in zone for clock in (bound.left, bound.right) if clock}
-            self.actions = {each.target: each.event for each in commands if is_action(each.target)}
-            """The event that begins each action of its agents, by the location."""
-            self._instant = {
-                (command.agent, command.event, command.target)
-                for command in commands
-                if command.origin == command.target
-            }
         except (KeyError, TypeError, ValueError, AttributeError) as problem:
             raise DataError(f"strategy.yaml lacks or misspells something: {problem!r}") from problem
 
@@ -231,10 +220,6 @@ class Strategy:
         there, and their commands."""
         for name, value, payloads in self._table.beside(entry):
             yield name, value, _joined(payloads)
-
-    def instant(self, agent: str, event: str, location: str) -> bool:
-        """True for a command that is done at once: it leaves the agent at this location, where it was."""
-        return (agent, event, location) in self._instant
 
     def next_command(self, state: SystemState, now: float) -> Optional[Tuple[float, Command]]:
         """The first command that is due from `now` (seconds) on, and its moment; None: nothing until the next state."""

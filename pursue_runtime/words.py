@@ -14,6 +14,7 @@ PLAIN_WORDS = "pursue/plain_words"
 
 START, PING, STOP, FINISH = "_start_", "_ping_", "_stop_", "Finish!"
 PLANNED = "_plan_"
+ORDERED = "_order_"
 REPORTED = "_reported_"
 FAILED, BLOCKED, FREE = "_failed_", "_blocked_", "_free_"
 HELD, RESUME, DISPLACED, BACK = "_held_", "_resume_", "_displaced_", "_back_"

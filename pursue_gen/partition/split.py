@@ -31,15 +31,13 @@ class SubStrategy:
     """What one controller does: in each discrete state, in the strategy's order, its commands and no others.
 
     `agents` are the automata that it commands; a state in which it has nothing to do is absent. The controller `UI` is
-    no program: its commands are instructions to people. `reacts_to` has, for its robots that take part in collaborative
-    events of others, these events and the controllable agents that do them. `objectives` are those of `agents` that
-    are no agents: the automata of objectives. `left_out_clocks`: as the strategy has them. `in_stages`: it has stages.
+    no program: its commands are instructions to people. `objectives` are those of `agents` that are no agents: the
+    automata of objectives. `left_out_clocks`: as the strategy has them. `in_stages`: it has stages.
     """
 
     controller: str
     agents: Tuple[str, ...]
     blocks: Tuple[Tuple[DiscreteState, Tuple[Command, ...]], ...]
-    reacts_to: Tuple[Tuple[str, str, Tuple[str, ...]], ...] = ()
     objectives: Tuple[str, ...] = ()
     left_out_clocks: Tuple[str, ...] = ()
     in_stages: bool = False
@@ -88,28 +86,12 @@ def partition(
             name,
             commanded,
             _select(strategy, commanded, controllers == GENERAL),
-            _reactions(agents, commanded),
             tuple(automaton for automaton in commanded if automaton in objectives),
             strategy.left_out_clocks,
             bool(strategy.stages),
         )
         for name, commanded in owners.items()
     )
-
-
-def _reactions(agents: Sequence[Agent], commanded: Tuple[str, ...]) -> Tuple[Tuple[str, str, Tuple[str, ...]], ...]:
-    """For the robots among these: the events of others in which they take part, and the controllable agents that do
-    them."""
-    robots = [agent for agent in agents if agent.is_robot and agent.name in commanded]
-    return tuple(
-        (robot.name, event, tuple(a.name for a in agents if a.controllable and event in _names(a) and a is not robot))
-        for robot in robots
-        for event in dict.fromkeys(ref.name for ref in robot.reacts_to)
-    )
-
-
-def _names(agent: Agent) -> List[str]:
-    return [ref.name for ref in agent.can_do]
 
 
 def _owners(

@@ -21,16 +21,12 @@ def strategy_data(sub: SubStrategy, reaction: Fraction) -> Dict[str, Any]:
 
     Bounds of zones are in time units: decimals where that is exact, else fractions.
     """
-    reacts_to: Dict[str, Dict[str, List[str]]] = {}
-    for robot, event, doers in sub.reacts_to:
-        reacts_to.setdefault(robot, {})[event] = list(doers)
     named = not {REACH, OBJECTIVE}.issuperset(sub.objectives)
     return {
         "format": 2 if named or sub.left_out_clocks else 1,
         "controller": sub.controller,
         "commands_agents": list(sub.agents),
         **({"objectives": list(sub.objectives)} if named else {}),
-        **({"reacts_to": reacts_to} if reacts_to else {}),
         "reaction": number(reaction),
         **_left_out(sub.left_out_clocks),
         "strategy": [

@@ -290,6 +290,11 @@ class _Checker:
                     text = f"{agent} was {late:.2f} time units late in {last.locations[agent]} when the recording ended"
                     self._report(WORLD, "late", last, text)
 
+    def _is_at_goal(self, state: SystemState) -> bool:
+        """True where the goal is reached: nothing is left but acknowledgements of orders."""
+        goal = self._game.objective.goal
+        return bool(goal) and all(state.locations[name] == location for name, location in goal)
+
     def _is_deadline(self, agent: str, edge: Edge) -> bool:
         """True for a step by which an objective itself becomes broken."""
         return edge.sync is None and (agent, edge.target) in self._game.objective.bad
@@ -309,7 +314,7 @@ class _Checker:
                 text = f"{state.event} by {state.agent} comes {by:.2f} time units {how} for the model"
                 found.append(Finding(FAULT if step.is_command else WORLD, how, state.seq, text))
             orders = self.orders.get(state.plan)
-            if orders is None or state.status != RUNNING:
+            if orders is None or state.status != RUNNING or self._is_at_goal(state):
                 continue
             cover = [orders.cover.entered(block) for block in orders.cover.holding(place_of(state))]
             parts = ([zone for zones in part for zone in zones] for part in cover)

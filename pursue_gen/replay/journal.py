@@ -15,7 +15,7 @@ from pursue_gen.tga.network import Objective
 from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.observer.records import parse_record
 from pursue_runtime.state import LOST, RUNNING, STOPPED, WAITING, WON, SystemState
-from pursue_runtime.words import FAILED, FINISH, PLANNED, START, STOP
+from pursue_runtime.words import FAILED, FINISH, ORDERED, PLANNED, START, STOP
 
 FORMATS = (1, 2)
 CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "searching", "stop", "restarted", "adopted")
@@ -153,7 +153,8 @@ class _Walk:
         status = entry.status or self._ending(entry, word)
         if status and self.states and self.states[-1].status != status:
             self._status = status
-            self._event = self._agent = ""
+            if word is None or word.event != ORDERED:  # what won it was done before that was acknowledged
+                self._event = self._agent = ""
             self._show(entry.at)
 
     def _adopt(self, entry: Entry) -> None:

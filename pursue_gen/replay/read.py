@@ -17,6 +17,7 @@ from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.drives.report import DRIVES, Drive, parse_drive
 from pursue_runtime.named_files import open_regular, read_all
 from pursue_runtime.state import SystemState, parse_state
+from pursue_runtime.words import parse_word
 
 EXPECTED = "name a bag of ROS 1 (launch the mission with record:=true), or an observer's journal (journal-….jsonl)"
 
@@ -149,7 +150,10 @@ def _order(message: Message, topic: str) -> RobotOrder:
     kind = next(kind for kind in _ORDERS if topic.endswith(kind))
     robot = topic[: -len(kind)].rpartition("/")[2]
     if kind == "/pursue/actions":
-        return RobotOrder(message.at, robot, message.node, action=_text(message.data).strip() or "?")
+        text = _text(message.data).strip() or "?"
+        word = parse_word(text)
+        action, seq = (text, None) if word is None else (word.event, word.seq)
+        return RobotOrder(message.at, robot, message.node, action=action, seq=seq)
     goal = _position(message.data) if kind == _SIMPLE else None
     return RobotOrder(message.at, robot, message.node, goal)
 

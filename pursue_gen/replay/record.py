@@ -35,13 +35,15 @@ class RecordedWord:
 
 @dataclass(frozen=True)
 class RobotOrder:
-    """An order to a robot: a goal (x, y, z; None where it was not read) or an action."""
+    """An order to a robot: a goal (x, y, z; None where it was not read) or an action, with the number of the state by
+    which it was given (None: it has none)."""
 
     at: float
     robot: str
     node: str
     goal: Optional[Tuple[float, float, float]] = None
     action: str = ""
+    seq: Optional[int] = None
 
     @property
     def is_goal(self) -> bool:

@@ -42,6 +42,7 @@ def check_robots(
     where = {robot: _places(game.scenario, robot) for robot in robots}
     ways = {going(x.name, y.name): y.name for x in game.scenario.pois for y in game.scenario.pois}
     diary = _ActivityIndex(activities)
+    uncommanded = _uncommanded(game.scenario, steps, record)
     found: List[Finding] = []
     ordered: Set[int] = set()
     controllers = {node for plan in orders.values() for nodes in plan.owners.values() for node in nodes}
@@ -62,6 +63,9 @@ def check_robots(
             continue
         ordered.add(place)
         state, _, robot, location = activities[place]
+        if state.seq in uncommanded:
+            text = f"{robot} was ordered to begin {state.event}, which the strategy did not command"
+            found.append(Finding(FAULT, "order", state.seq, text))
         owners = orders[state.plan].owners.get(robot) if state.plan in orders else None
         if owners and order.node and order.node not in owners:
             text = f"{order.node} commands {robot}, which is for {' or '.join(sorted(owners))}"
@@ -77,6 +81,18 @@ def check_robots(
                 level = UNRECORDED if state.stamp <= record.whole_from else FAULT
                 found.append(Finding(level, "untold", state.seq, text))
     return found
+
+
+def _uncommanded(scenario: Scenario, steps: Sequence[Done], record: MissionRecord) -> Set[int]:
+    """The numbers of the states to which a word without a number led, of a controllable agent: nobody is ordered to do
+    that."""
+    controllable = {agent.name for agent in scenario.agents if agent.controllable}
+    reported = {word.event for word in record.words if word.seq is None}
+    return {
+        state.seq
+        for _, state, mover, is_command in steps
+        if mover in controllable and not is_command and not state.commanded and state.event in reported
+    }
 
 
 def _activities(steps: Sequence[Done], robots: Sequence[str], first: Optional[SystemState]) -> List[Activity]:
@@ -123,6 +139,8 @@ class _ActivityIndex:
     def activity(self, order: RobotOrder) -> Optional[int]:
         """Which activity the order is for: of those of its kind that go on, the one that begins nearest to it."""
         places = self._places.get((order.robot, order.is_goal), [])
+        if order.seq is not None:
+            return next((place for _, place in places if self._activities[place][0].seq == order.seq), None)
         number = bisect.bisect(places, (order.at + EARLY, len(self._activities)))
         fitting = [
             (abs(order.at - begins), place)
@@ -170,7 +188,8 @@ def _joins(record: MissionRecord, scenario: Scenario, order: RobotOrder) -> bool
     """True if another agent had begun the event, as a collaborative one to which the robot reacts."""
     reacts = any(a.name == order.robot and order.action in {ref.name for ref in a.reacts_to} for a in scenario.agents)
     return reacts and any(
-        state.event == order.action and state.agent != order.robot and state.stamp - EARLY <= order.at
+        order.seq in (None, state.seq) and state.event == order.action and state.agent != order.robot
+        and state.stamp - EARLY <= order.at
         for state in record.states
     )
 

@@ -18,6 +18,7 @@ from pursue_runtime.words import (
     FINISH,
     FREE,
     HELD,
+    ORDERED,
     PING,
     PLANNED,
     RESUME,
@@ -110,7 +111,7 @@ def match_words(
 
 
 def _control(word: RecordedWord) -> bool:
-    return word.text in CONTROL or word.event in (PLANNED, FAILED, *REPORTS)
+    return word.text in CONTROL or word.event in (PLANNED, ORDERED, FAILED, *REPORTS)
 
 
 def unmatched_words(record: MissionRecord, said: WordMatches, moves: Moves) -> List[Finding]:

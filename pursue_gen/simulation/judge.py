@@ -18,6 +18,7 @@ from pursue_gen.tga.network import ClockBound
 from pursue_gen.tga.part import clocks_of
 from pursue_gen.tga.words import event_word
 from pursue_gen.zones.dbm import INF, Dbm, constant
+from pursue_runtime.orders import Order
 from pursue_runtime.state import LIVE, SystemState
 
 
@@ -219,11 +220,15 @@ class Judge:
 
     # Orders -----------------------------------------------------------------------------------------------------------
 
-    def on_order(self, agent: str, trigger: str, target: str, seq: int, newest: int, again: bool) -> None:
+    def on_order(self, order: Order, seq: int, newest: int, again: bool) -> None:
         """A controller sends its robot an order, because of state `seq`, when `newest` is the newest that it knows.
 
         `again`: it was restarted, and may send it once more, while the state that follows is on its way.
         """
+        agent, trigger, target = order.agent, order.event, order.location
+        partners = {(step.seq, step.event) for step in self.steps if step.agent != agent}
+        if order.at_once and (order.seq, trigger) in partners:
+            return  # it takes part in what another agent has done
         steps = (step for step in (*self.steps, *self._joined) if step.seq <= seq and step.agent == agent)
         last = max(steps, key=lambda step: step.seq, default=None)
         what = f"{agent} gets the order {trigger} ({target})"
@@ -236,7 +241,7 @@ class Judge:
             lost = self._before is not None and agent in self._before.lost  # what it did together does not wait for it
             if here != target and not again and not lost:
                 self._problem(f"wrong order: {what}, which is over already")
-        elif (agent, last.seq) in self._ordered:
+        elif (agent, last.seq) in self._ordered and not again:
             self._problem(f"wrong order: {what}, for the second time")
         if last is not None:
             self._ordered.add((agent, last.seq))

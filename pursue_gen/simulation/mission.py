@@ -20,10 +20,10 @@ from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage
 from pursue_gen.simulation.world import SimulatedAgent
 from pursue_gen.tga.network import Kind
-from pursue_runtime.controller.scheduler import StartedActivity
 from pursue_runtime.observer.assumptions import without
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planning import PlanRequest
+from pursue_runtime.orders import Order
 from pursue_runtime.state import (
     ENDED,
     HOLDING,
@@ -127,7 +127,7 @@ class SimulatedMission:
         cause = self._cause(mission) if end in (STOPPED, HELD, LOST) else ""
         if end == LOST and not cause:
             end, reason = FAILED, f"it was lost, but no fault was longer than the margin: {reason}"
-        time = self.events.now - START
+        time = (self.events.now if mission.goal_at is None else mission.goal_at) - START
         bound = self._settings.bound
         if not self.fault_plan.voids_guarantees and end == GOAL and bound is not None and time > bound + 1e-3:
             end, reason = FAILED, f"it took {time:.3f} time units, more than the guaranteed {bound:.3f}"
@@ -177,6 +177,8 @@ class SimulatedMission:
         self._promises.on_state(state, self.events.now)
         for node in self._controllers.values():
             self._send_state(node, state, self._stage.reaction)
+        for mover in self._agents.values():
+            mover.on_orders(state)
         if news:
             for mover in self._agents.values():
                 mover.on_state(state)
@@ -222,10 +224,10 @@ class SimulatedMission:
         self._published.append(text)
         self._send_word(f"word:{node}", text, max(0.0, latest - self.events.now), node)
 
-    def command_robot(self, node: str, order: StartedActivity, seq: int, newest: int, again: bool) -> None:
+    def command_robot(self, node: str, order: Order, seq: int, newest: int, again: bool) -> None:
         """A controller sends its robot an order."""
-        self._note(f"{node} orders {order.agent}: {order.trigger} ({order.origin or '?'} -> {order.target})")
-        self._judge.on_order(order.agent, order.trigger, order.target, seq, newest, again)
+        self._note(f"{node} orders {order.agent}: {order.event} ({order.location})")
+        self._judge.on_order(order, seq, newest, again)
         mover = self._agents.get(order.agent)
         if mover is not None:
             self._connections.send_order(lambda: mover.on_order(order, seq))

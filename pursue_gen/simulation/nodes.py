@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence
 
-from pursue_gen.language.network_names import is_doing, is_going
 from pursue_gen.simulation.event_queue import EventQueue, Timer
 from pursue_gen.simulation.stage import Stage
-from pursue_runtime.controller.scheduler import CommandScheduler, StartedActivity
+from pursue_runtime.controller.scheduler import CommandScheduler
 from pursue_runtime.observer.journal import CALLS, replay
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planning import PlanRequest
+from pursue_runtime.orders import Order
 from pursue_runtime.resend import StateRepeats
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy
@@ -44,7 +44,7 @@ class MissionLinks(Protocol):
     def publish_word(self, node: str, word: Word, latest: float) -> None:
         """A controller or the UI publishes a word, which without faults arrives by the time `latest`."""
 
-    def command_robot(self, node: str, order: StartedActivity, seq: int, newest: int, again: bool) -> None:
+    def command_robot(self, node: str, order: Order, seq: int, newest: int, again: bool) -> None:
         """A controller sends its robot an order, because of state `seq`; `newest` is the newest one that it knows,
         `again`: it was restarted since its last order."""
 
@@ -149,7 +149,7 @@ class ControllerNode:
             return
         self._newest = max(self._newest, state.seq)
         for order in self._scheduler.on_state(state, self._now):
-            if order.agent in self._stage.robots and _is_for_robots(order):
+            if order.agent in self._stage.robots:
                 self._links.command_robot(self.name, order, state.seq, self._newest, self._restarted)
         self._restarted = False
         receipt = self._scheduler.repeated_receipt()
@@ -220,10 +220,3 @@ class PeopleNode:
             assert word is not None, f"the user interface published {text!r}"
             self._links.publish_word("UI", word, now + stage.reaction)
         self._timer.set(*self._ui.next_moments(now))
-
-
-def _is_for_robots(order: StartedActivity) -> bool:
-    """What the exeggutor sends: goals and actions, not ends."""
-    if is_going(order.target):
-        return order.target != order.origin
-    return order.target == order.origin or is_doing(order.target)

@@ -6,18 +6,19 @@ The run time's simulator reports the ends, one simulator for each agent; here is
 from __future__ import annotations
 
 import random
-from typing import Callable, Optional
+from typing import Callable, Dict, Optional
 
 from pursue_gen.language.network_names import is_under_way
 from pursue_gen.simulation.connections import drawn_share
 from pursue_gen.simulation.event_queue import EventQueue, Timer
 from pursue_gen.simulation.faults import Breakdown, FaultPlan
 from pursue_gen.simulation.stage import Stage
-from pursue_runtime.controller.scheduler import StartedActivity
-from pursue_runtime.locations import action_of, is_action
+from pursue_runtime.locations import action_of, is_action, is_movement
+from pursue_runtime.orders import Order, parse_orders
+from pursue_runtime.resend import resend_timeout
 from pursue_runtime.simulator.simulator import EndWindow, Simulator, end_window, report_word
 from pursue_runtime.state import SystemState
-from pursue_runtime.words import FAILED, RobotReport, format_report
+from pursue_runtime.words import FAILED, ORDERED, RobotReport, Word, format_report, format_word
 
 INSIDE = 1e-3
 """Time units by which the earliest end is inside its window, which opens with a strict bound."""
@@ -60,6 +61,8 @@ class SimulatedAgent:
         self._activities = 0
         self._broken = False
         self._stamp = 0.0
+        self._receipts: Dict[int, int] = {}  # the orders that no state shows as acknowledged: how often each was said
+        self._receipt_timer = Timer(events, self._acknowledge)
 
     def on_state(self, state: SystemState) -> None:
         """A state of the mission: it is what the world is like, for robots move by orders only."""
@@ -69,10 +72,29 @@ class SimulatedAgent:
         self._simulator.on_state(state, self._events.now)
         self._set_timer()
 
-    def on_order(self, order: StartedActivity, seq: int) -> None:
+    def on_orders(self, state: SystemState) -> None:
+        """A state, also one that was published again: which orders are acknowledged."""
+        if self._receipts:
+            waiting = {order.seq for order in parse_orders(state.orders) if order.agent == self.agent}
+            waiting -= {order.seq for order in parse_orders(state.orders) if order.acknowledged}
+            self._receipts = {seq: sends for seq, sends in self._receipts.items() if seq in waiting}
+
+    def _acknowledge(self) -> None:
+        """Say which orders have come; again until a state shows it: on robots the order is sent again, and answered."""
+        for seq, sends in list(self._receipts.items()):
+            self._receipts[seq] = sends + 1
+            self._publish(self.agent, format_word(Word(self.agent, ORDERED, seq)))
+        if self._receipts and self._fault_plan.kinds:
+            sends = max(self._receipts.values())
+            self._receipt_timer.set(self._events.now + resend_timeout(sends, self._promised))
+
+    def on_order(self, order: Order, seq: int) -> None:
         """A goal or an action for a robot, as of state `seq`. One that comes as promised lets it end anywhere in the
         model's window; one for something that is over, or is done at once, begins nothing."""
-        if order.target != self._place or seq < self._since or not is_under_way(self._place):
+        if order.at_once or not is_movement(order.location):
+            self._receipts[order.seq] = 0
+            self._acknowledge()
+        if order.at_once or order.location != self._place or seq < self._since or not is_under_way(self._place):
             return
         now = self._events.now
         in_time = now <= self._stamp + self._promised + 1e-6

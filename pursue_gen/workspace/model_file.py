@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.network_names import STATES
@@ -29,16 +29,16 @@ def render(network: Network, objective: Objective, scenario: Scenario, reaction:
 
 def model_data(network: Network, objective: Objective, scenario: Scenario, reaction: Fraction) -> Dict[str, Any]:
     """The data of model.yaml, see `render`."""
-    kinds = _kinds(scenario, objective)
+    kinds, partners = _kinds(scenario, objective), _partners(scenario)
     goal, bad = places_data(objective.goal), places_data(objective.bad)
     says = {**_says(scenario, objective), **_given_up(scenario)}
     data: Dict[str, Any] = {
-        "format": 2 if scenario.assumptions or _has_several(objective) else 1,
+        "format": 3 if partners else 2 if scenario.assumptions or _has_several(objective) else 1,
         "scenario": scenario.name,
         "reaction": number(reaction),
         "clocks": inline(network.clocks),
         "variables": inline(dict(network.variables)),
-        "automata": [_automaton(automaton, kinds.get(automaton.name, "safety")) for automaton in network.automata],
+        "automata": [_automaton(each, kinds.get(each.name, "safety"), partners) for each in network.automata],
         "objective": inline({"kind": objective.kind.value, "goal": goal, "bad": bad, **says}),
     }
     if scenario.labels:
@@ -84,10 +84,17 @@ def _kinds(scenario: Scenario, objective: Objective) -> Dict[str, str]:
     return kinds
 
 
-def _automaton(automaton: Automaton, kind: str) -> Dict[str, Any]:
+def _partners(scenario: Scenario) -> Dict[str, List[str]]:
+    """robot → the collaborative events of others in which it takes part, for those that take part in any."""
+    robots = (agent for agent in scenario.agents if agent.is_robot and agent.reacts_to)
+    return {robot.name: list(dict.fromkeys(ref.name for ref in robot.reacts_to)) for robot in robots}
+
+
+def _automaton(automaton: Automaton, kind: str, partners: Mapping[str, List[str]]) -> Dict[str, Any]:
     return {
         "name": automaton.name,
         "kind": kind,
+        **({"reacts_to": inline(partners[automaton.name])} if automaton.name in partners else {}),
         "initial": automaton.initial,
         "locations": inline({location.name: _bounds(location.invariant) for location in automaton.locations}),
         "edges": [inline(_edge(automaton.name, edge)) for edge in automaton.edges],

@@ -5,7 +5,7 @@ Times are seconds of ROS time, `real` of the monotonic clock; distances are metr
 
 from __future__ import annotations
 
-from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Callable, FrozenSet, List, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.controller.goal import (
     ABORTED,
@@ -23,6 +23,7 @@ from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.trip import Trip
 from pursue_runtime.controller.whereabouts import Place, Position, Whereabouts
 from pursue_runtime.locations import is_action
+from pursue_runtime.orders import Order
 from pursue_runtime.words import (
     BACK,
     BLOCKED,
@@ -41,7 +42,7 @@ GRACE = 2.0
 class View(NamedTuple):
     """What a state says about one robot: its location ("": the mission does not run), and the movement (`way`) or the
     place (`post`) that it stands for; `lost` to `returning` are the lists of the state that name the robot. `seq` is
-    the number of the state."""
+    the number of the state, `unanswered` has those of the orders to the robot that were not acknowledged."""
 
     location: str = ""
     way: Optional[Movement] = None
@@ -52,20 +53,14 @@ class View(NamedTuple):
     displaced: bool = False
     returning: bool = False
     seq: int = 0
-
-
-class Action(NamedTuple):
-    """An action for a robot: it goes on at `location`, or is done at once ("")."""
-
-    trigger: str
-    location: str
+    unanswered: FrozenSet[int] = frozenset()
 
 
 class Due(NamedTuple):
     """What is to be sent to a robot now, and the word to publish."""
 
     goal: Optional[Goal] = None
-    action: Optional[Action] = None
+    actions: Tuple[Order, ...] = ()
     word: Optional[str] = None
 
 
@@ -91,7 +86,8 @@ class Navigation:
         self._trip: Optional[Trip] = None
         self._goal = GoalTracker(settings)
         self._at = Whereabouts(settings)
-        self._action: Optional[Action] = None
+        self._actions: List[Order] = []  # they wait until the robot is known to be at its place
+        self._given: List[Tuple[Order, Report]] = []  # they are sent again until they are acknowledged
         self.reaction = 0.0
         """The seconds that the strategy allows a command: reports are sent again by it; 0: not known."""
         self._report: Optional[Report] = None
@@ -131,6 +127,7 @@ class Navigation:
             self._enter(view, now)
         if self._report is not None and self._is_shown(self._report.word, view):
             self._report.confirmed = True
+        self._given = [(order, sent) for order, sent in self._given if order.seq in view.unanswered]
         trip = self._trip
         if trip is not None and trip.waits and before.held and not view.held:
             trip.resume(now)
@@ -146,9 +143,9 @@ class Navigation:
         """Start a movement: its goal is due now."""
         self._trip = Trip(way, now, goal_at=now)
 
-    def act(self, trigger: str, location: str = "") -> None:
+    def act(self, order: Order) -> None:
         """Start an action: it is due as soon as the robot is known to be at its place."""
-        self._action = Action(trigger, location)
+        self._actions.append(order)
 
     def on_result(self, answer: Answer, now: float) -> None:
         """Take a result of move_base."""
@@ -185,23 +182,30 @@ class Navigation:
         if self._report is not None:
             self._report.say_again()
 
+    def give_again(self) -> None:
+        """Have orders that were not acknowledged sent again at once: the robot has connected."""
+        for _, sent in self._given:
+            sent.say_again()
+
     # What is to be done -----------------------------------------------------------------------------------------------
 
     def due(self, now: float, real: float) -> Due:
         """Return what is to be sent and published now, if anything."""
         self._check_post(now)
         trip = self._trip
-        goal, action = None, None
+        goal = None
         if trip is not None:
             if not trip.is_return and now >= self._arrives_at(trip):
                 self._arrive(trip)
             if trip.cancelled is not None and now >= trip.decided_at:
                 self._hold(trip, trip.cancelled)
             goal = self._due_goal(trip, now, real)
-        if self._action is not None and self._may_act(self._action, now):
-            action, self._action = self._action, None
+        for order in [order for order in self._actions if self._may_act(order, now)]:
+            self._actions.remove(order)
+            self._given.append((order, Report(Word("", order.event, order.seq), self.reaction)))
+        actions = [order for order, sent in self._given if sent.due(now, real) and self._may_act(order, now)]
         word = self._report.due(now, real) if self._report is not None else None
-        return Due(goal, action, word)
+        return Due(goal, tuple(actions), word)
 
     def next_moments(self) -> Tuple[Optional[float], Optional[float]]:
         """Return when to call `due` again, in ROS time and on the real clock; None: not before the next input."""
@@ -215,7 +219,9 @@ class Navigation:
             moments += [self._at.stands_at()] if self._at.is_near(post) and not self._goal.is_active else []
             moments += [] if self._reports(DISPLACED) or self._view.displaced else [self._doubt + self._grace]
         finite = [moment for moment in moments if moment < float("inf")]
-        return min(finite, default=None), (self._report.next_moment() if self._report else None)
+        repeated = [*([self._report] if self._report is not None else []), *(sent for _, sent in self._given)]
+        repeats = [each.next_moment() for each in repeated]
+        return min(finite, default=None), min((each for each in repeats if each is not None), default=None)
 
     # Where it is ------------------------------------------------------------------------------------------------------
 
@@ -254,7 +260,7 @@ class Navigation:
     @property
     def _is_acting(self) -> bool:
         """Return True while the robot does an action: it may move, as that demands."""
-        return is_action(self._view.location) and self._action is None
+        return is_action(self._view.location) and not self._actions
 
     @property
     def _believes_words(self) -> bool:
@@ -278,7 +284,8 @@ class Navigation:
     def _enter(self, view: View, now: float) -> None:
         """Begin with another location: whatever belonged to the one before is over."""
         self._trip = Trip(view.way, now) if view.way else None  # also one that was begun by hand: its end counts
-        self._action = self._report = self._doubt = None
+        self._actions, self._given = [], []
+        self._report = self._doubt = None
         self._was_sent_away = False
         self._as_of = view.seq
         self.trouble = ""
@@ -310,9 +317,11 @@ class Navigation:
         self._goal.send(goal, now, real)
         return goal
 
-    def _may_act(self, action: Action, now: float) -> bool:
+    def _may_act(self, order: Order, now: float) -> bool:
         """Return True if the action may be sent: what is done at once has been decided, also if the mission holds."""
-        return self._is_known(now) and (not action.location or (self._view.running and not self._view.held))
+        if order.location != self._view.location:
+            return False
+        return self._is_known(now) and (order.at_once or (self._view.running and not self._view.held))
 
     def _on_success(self, trip: Trip) -> None:
         poi = trip.movement.place.poi

@@ -8,6 +8,7 @@ from typing import Any, Mapping, NamedTuple, Tuple
 from pursue_runtime.data import DataError
 
 GOALS, ENDS, ON_STOP = ("simple", "action"), ("words", "result", "pose", "tf"), ("finish", "cancel")
+ORDERS = ("numbered", "plain", "person")
 POSITIONS = {"pose": ("pose",), "tf": ("tf",), "none": ()}
 """The sources of positions by `~position`: amcl_pose, tf, or none."""
 
@@ -21,6 +22,7 @@ class Settings(NamedTuple):
     goals: str = "simple"
     ends: str = "words"
     on_stop: str = "finish"
+    orders: str = "numbered"
     retries: int = 2
     retry_delay: float = 1.0
     end_tolerance: float = 0.4
@@ -63,7 +65,9 @@ def read_settings(robot: str, given: Mapping[str, Any]) -> Settings:
     values = {**given, **own}
     defaults = Settings()._asdict()
     settings = Settings(**{name: _checked(name, values[name], defaults[name]) for name in defaults if name in values})
-    known_values = (("goals", GOALS), ("ends", ENDS), ("on_stop", ON_STOP), ("position", ("auto", *POSITIONS)))
+    known_values = (
+        ("goals", GOALS), ("ends", ENDS), ("on_stop", ON_STOP), ("orders", ORDERS), ("position", ("auto", *POSITIONS)),
+    )  # fmt: skip
     for name, known in known_values:
         if getattr(settings, name) not in known:
             raise DataError(f"~{name} of {robot} is {getattr(settings, name)!r}; expected one of {', '.join(known)}")

@@ -95,7 +95,7 @@ class Controller:
         if scheduler is not None:
             orders = scheduler.on_state(state, rospy.get_time())
             # Before any command: a robot that is not in its place is reported first.
-            self.exegg.follow(state, [*orders, *scheduler.joined])
+            self.exegg.follow(state, orders)
             if scheduler.is_new:  # else the alarm stays as it is
                 self.wake()
             self.learned()
@@ -147,7 +147,7 @@ class Controller:
             scheduler = self.follower.scheduler
             if scheduler is None:
                 return
-            word = scheduler.on_timer(rospy.get_time(), self.exegg.is_placed)
+            word = scheduler.on_timer(rospy.get_time(), self.exegg.may_begin)
             if word:
                 self.exegg.announce(format_word(word))
             self.alarm.set(*scheduler.next_wakeup())

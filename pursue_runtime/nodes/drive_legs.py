@@ -36,6 +36,7 @@ from pursue_runtime.missions import own_source
 from pursue_runtime.nodes.node import Alarm, Ending, Later, run_node, subscribe
 from pursue_runtime.nodes.recorder import CHUNK, stamp
 from pursue_runtime.nodes.robot_link import RobotLink
+from pursue_runtime.orders import Order
 from pursue_runtime.ui.recording import ACTIVE, GAME, keep_file, reserve_file
 from pursue_runtime.words import EVENTS, STATE
 
@@ -75,6 +76,7 @@ class DriveLegs:
         self._alarm = Alarm(self._act, self.ending)
         self._robot: Optional[Tuple[Driven, Settings, Session, RobotLink]] = None
         self._done: List[Session] = []
+        self._acts = 0  # so many actions were ordered
         self._next_look = self._patient_until = 0.0  # on the monotonic clock
         self._count = 0  # drives in the bag
         subscribe(EVENTS, String, lambda message: self._take("on_word", message.data), self.ending, queue_size=100)
@@ -123,10 +125,10 @@ class DriveLegs:
                 self.ending.end(0 if self._is_complete else 1)
                 return
             robot = self._waiting.pop(0)
-            settings = read_settings(robot.name, self._given)
+            settings = read_settings(robot.name, self._given)._replace(orders="plain")  # no observer counts them
             places = {poi: place_of(poi, pose) for poi, pose in robot.poses.items()}
             session = Session(robot.name, places, robot.start, robot.plan, settings, self._log, robot.rules)
-            take = self._on_result, self._on_statuses, self._on_position
+            take = self._on_result, self._on_statuses, self._on_position, lambda: None
             link = RobotLink(robot.name, settings, self.ending, self._log, *take)
             self._robot = robot, settings, session, link
             self._patient_until = time.monotonic() + PATIENCE
@@ -180,7 +182,8 @@ class DriveLegs:
         if due.goal is not None:
             link.go(due.goal, robot.poses[due.goal.movement.place.poi])
         if due.act is not None:
-            link.do(due.act.event, session.location)
+            self._acts += 1
+            link.do(Order(robot.name, due.act.event, self._acts, session.location))
         if due.drive is not None:
             self._publish(due.drive)
 

@@ -13,17 +13,18 @@ from std_msgs.msg import String
 
 from pursue_runtime.controller.goal import Answer, Movement
 from pursue_runtime.controller.navigation import Navigation, View
-from pursue_runtime.controller.scheduler import StartedActivity
 from pursue_runtime.controller.settings import read_settings
 from pursue_runtime.controller.whereabouts import Place, Position, place_of
-from pursue_runtime.locations import is_action, is_movement, movement
+from pursue_runtime.locations import is_end, is_movement, is_under_way, movement
 from pursue_runtime.locations import place_of as poi_of
 from pursue_runtime.nodes.node import Alarm, Ending, Later
 from pursue_runtime.nodes.publishing import Newcomers, ServedFirst, listeners
 from pursue_runtime.nodes.robot_link import RobotLink
+from pursue_runtime.orders import Order, parse_orders
 from pursue_runtime.poses import Table
 from pursue_runtime.state import ENDED, LIVE, RUNNING, WON, SystemState
-from pursue_runtime.words import EVENTS
+from pursue_runtime.strategy import Command
+from pursue_runtime.words import EVENTS, ORDERED, Word, format_word
 
 LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 
@@ -47,6 +48,7 @@ class Exeggutor:
         """Called when an observer has connected, once the reports of robots were published again."""
         Newcomers(self._events, lambda node: node == self._observer, self._say_again)
         self._robots: Dict[str, Navigation] = {}
+        self._unreachable: Dict[str, str] = {}  # robots that cannot get an order, and why; "": they can
         self._links: Dict[str, RobotLink] = {}
         self._ending = ending
         self._log_lines = Later("log", ending)
@@ -74,7 +76,8 @@ class Exeggutor:
                 self._links.pop(robot).close()
             for robot in settings:
                 if robot not in self._links:
-                    inputs = (partial(take, robot) for take in (self._result, self._statuses, self._place))
+                    callbacks = self._result, self._statuses, self._place, self._connected
+                    inputs = (partial(take, robot) for take in callbacks)
                     self._links[robot] = RobotLink(robot, settings[robot], self._ending, self._log, *inputs)
                 self._robots[robot] = Navigation(robot, settings[robot], self._log)
                 position = positions.get(robot)
@@ -109,8 +112,8 @@ class Exeggutor:
             self._act()
         self.on_observer()
 
-    def follow(self, state: SystemState, begun: Sequence[StartedActivity] = ()) -> None:
-        """Handle a state: drop orders that are over, and reports that the state shows; order what has `begun`."""
+    def follow(self, state: SystemState, orders: Sequence[Order] = ()) -> None:
+        """Handle a state: drop orders that are over, and reports that the state shows; give the new `orders`."""
         with self._lock:
             before, self._status = self._status, state.status
             for name, robot in self._robots.items():
@@ -120,10 +123,10 @@ class Exeggutor:
                 robot.reaction = self._reaction * state.unit
                 robot.on_state(view, rospy.get_time())
                 self._links[name].keep(view.location, robot.is_open, robot.goal)
-            for activity in begun:
-                self._exeggute(*activity)
+            for order in orders:
+                self._exeggute(order)
                 self._act()
-            if not begun:
+            if not orders:
                 self._act()
 
     def _view(self, name: str, state: SystemState) -> View:
@@ -132,31 +135,51 @@ class Exeggutor:
         lost, held, displaced = (name in names for names in (state.lost, state.held, state.displaced))
         way, post = self._ways[name].get(here), self._places[name].get(poi_of(here, self._places[name]))
         running, returning = state.status == RUNNING, name in state.returning
-        return View(here, way, post, running, lost, held, displaced, returning, state.seq)
+        unanswered = {o.seq for o in parse_orders(state.orders) if o.agent == name and not o.acknowledged}
+        return View(here, way, post, running, lost, held, displaced, returning, state.seq, frozenset(unanswered))
 
-    def is_placed(self, name: str) -> bool:
-        """Return True if the robot is known to be where the state has it, or the state says that it is not."""
+    def may_begin(self, command: Command) -> bool:
+        """Return True if the robot of this command can get the order that follows from it, and is known to be where
+        the state has it if it begins an action (or the state says that it is not)."""
         with self._lock:
-            robot = self._robots.get(name)
-            return robot is None or robot.is_placed(rospy.get_time())
+            robot, link = self._robots.get(command.agent), self._links.get(command.agent)
+            if robot is None or link is None or is_end(command.origin, command.target):
+                return True
+            moves = is_movement(command.target) and command.target != command.origin
+            self._unreachable[command.agent] = link.missing_subscriber(moves)
+            if self._unreachable[command.agent]:
+                return False
+            return moves or is_under_way(command.origin) or robot.is_placed(rospy.get_time())
 
     def troubles(self) -> Dict[str, str]:
         """Return what an operator should know about robots, by their names."""
         with self._lock:
-            return {name: robot.trouble for name, robot in self._robots.items() if robot.trouble}
+            found = {name: robot.trouble or self._unreachable.get(name, "") for name, robot in self._robots.items()}
+            return {name: trouble for name, trouble in found.items() if trouble}
 
-    def _exeggute(self, agent: str, trigger: str, origin: str, target: str) -> None:
-        """Take that the agent begins `trigger`, from `origin` to `target`, as an order for its robot."""
-        if agent not in self._robots:
+    def _exeggute(self, order: Order) -> None:
+        """Give the order to its robot."""
+        robot = self._robots.get(order.agent)
+        if robot is None:
             return  # an objective has no robot
-        if is_movement(target) and target != origin:
-            way = self._ways[agent].get(target)
-            if way is None:
-                rospy.logerr("%s should be %s, but poses.yaml does not know these places", agent, target)
-                return
-            self._robots[agent].start(way, rospy.get_time())
-        elif target == origin or is_action(target):
-            self._robots[agent].act(trigger, target if target != origin else "")
+        if order.at_once or not is_movement(order.location):
+            robot.act(order)
+            return
+        way = self._ways[order.agent].get(order.location)
+        if way is None:
+            rospy.logerr("%s should be %s, but poses.yaml does not know these places", order.agent, order.location)
+            return
+        robot.start(way, rospy.get_time())
+
+    def _connected(self, name: str) -> None:
+        """A robot has connected to its actions: what it has not acknowledged is sent at once."""
+        self._log_lines.do(partial(self._give_again, name))  # rospy holds a lock here
+
+    def _give_again(self, name: str) -> None:
+        with self._lock:
+            if name in self._robots:
+                self._robots[name].give_again()
+                self._act()
 
     # From the robots --------------------------------------------------------------------------------------------------
 
@@ -188,11 +211,12 @@ class Exeggutor:
         now, real = rospy.get_time(), time.monotonic()
         moments, patience = [], []
         for name, robot in self._robots.items():
-            goal, action, word = robot.due(now, real)
+            goal, actions, word = robot.due(now, real)
             if goal is not None:
                 self._links[name].go(goal, self._poses[name][goal.movement.place.poi])
-            if action is not None:
-                self._links[name].do(*action)
+            for order in actions:
+                if self._links[name].do(order):
+                    self.announce(format_word(Word(name, ORDERED, order.seq)))
             if word is not None:
                 self.announce(word)
                 self._log("info", f"reports {word}")

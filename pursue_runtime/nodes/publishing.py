@@ -20,6 +20,11 @@ def listeners(publisher: rospy.Publisher) -> List[str]:
     return sorted({connection[1] for connection in publisher.impl.get_stats_info()})
 
 
+def is_recorder(node: str) -> bool:
+    """Return True for the name of a node that only records messages: the mission's recorder, or rosbag."""
+    return node.strip("/").rsplit("/", 1)[-1].startswith(("recorder", "record_"))
+
+
 def is_connected(publisher: rospy.Publisher, node: str) -> bool:
     """Return True if the node of this name is connected to what we publish there."""
     return bool(publisher.impl.has_connection(node))

@@ -16,7 +16,9 @@ from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.whereabouts import Position, yaw_of
 from pursue_runtime.data import DataError
 from pursue_runtime.nodes.node import Ending, subscribe
-from pursue_runtime.nodes.publishing import ServedFirst, publish_to_one
+from pursue_runtime.nodes.publishing import ServedFirst, is_recorder, listeners, publish_to_one
+from pursue_runtime.orders import Order
+from pursue_runtime.words import Word, format_word
 
 STALE = 1.0
 """Seconds of ROS time after which a transform that was not renewed does not say any more where the robot is."""
@@ -28,8 +30,8 @@ PublishToOne = Callable[[Any], None]
 """Publishes to one subscriber alone."""
 
 
-class Order(NamedTuple):
-    """An order for a robot: it stands as long as the state shows it at `location`."""
+class Message(NamedTuple):
+    """What a robot is sent: it stands as long as the state shows it at `location` ("": it does not)."""
 
     location: str
     publisher: rospy.Publisher
@@ -71,14 +73,18 @@ class RobotLink(rospy.SubscribeListener):
         result: Callable[[Answer], None],
         statuses: Callable[[List[Answer]], None],
         place: Callable[[Position], None],
+        connected: Callable[[], None],
     ) -> None:
-        """`log` gets what is worth a line once it is sent; it does not wait."""
+        """`log` gets what is worth a line once it is sent; it does not wait. `connected` is called, in any thread, when
+        a node has subscribed to the actions."""
         super().__init__()
         self.watched = not settings.sources
         self._robot, self._settings, self._ending, self._log = robot, settings, ending, log
-        self._on_result, self._on_statuses, self._place = result, statuses, place
+        self._on_result, self._on_statuses, self._place, self._on_connected = result, statuses, place, connected
+        self._done = 0  # the number of the last order that was published without one
+        self._logged = 0  # the number of the last order that the log has
         self._lock = threading.Lock()
-        self._standing: Dict[str, Order] = {}
+        self._standing: Dict[str, Message] = {}
         self._open = True
         self._late: List[Tuple[str, Optional[PublishToOne]]] = []
         self._positions: List[Any] = []
@@ -133,15 +139,36 @@ class RobotLink(rospy.SubscribeListener):
             message = self._messages.MoveBaseActionGoal(header=stamped.header)
             message.goal_id.id = goal.name  # its stamp is left to the robot, whose clock orders the goals that it gets
             message.goal.target_pose = stamped
-        self._send(Order(goal.movement.location, self._move, message))
+        self._send(Message(goal.movement.location, self._move, message))
         self._log("info", f"{self._robot} goes to {goal.movement.place.poi} ({position.x:.2f}, {position.y:.2f})")
 
-    def do(self, trigger: str, location: str = "") -> None:
-        """Sends an action: one that goes on at this location, or one that is done at once ("") and never sent again."""
-        self._send(Order(location, self._act, String(trigger)))
-        self._log("info", f"{self._robot} does {trigger}")
+    def do(self, order: Order) -> bool:
+        """Send an action, with the number of the order, by which the robot's side knows one that comes again.
 
-    def _send(self, order: Order) -> None:
+        Return True if it takes the place of an acknowledgement that it was sent: where `orders` is not numbered, each
+        action is sent once, by its name alone, and nobody acknowledges it.
+        """
+        is_plain = self._settings.orders != "numbered"
+        if is_plain and self._done == order.seq:
+            return True
+        if is_plain and self.missing_subscriber(is_goal=False):
+            return False
+        text = order.event if is_plain else format_word(Word("", order.event, order.seq))
+        self._send(Message("" if order.at_once or is_plain else order.location, self._act, String(text)))
+        if self._logged != order.seq:
+            self._log("info", f"{self._robot} does {order.event}")
+        self._logged, self._done = order.seq, order.seq if is_plain else self._done
+        return is_plain
+
+    def missing_subscriber(self, is_goal: bool) -> str:
+        """Return why the robot cannot get a goal, or an action; "" if a node beside recorders is subscribed to them, or
+        a person does what it is ordered."""
+        topic = self._move if is_goal else self._act
+        if self._settings.orders == "person" or any(not is_recorder(node) for node in listeners(topic)):
+            return ""
+        return f"cannot get an order: no node is subscribed to {topic.resolved_name}"
+
+    def _send(self, order: Message) -> None:
         topic = order.publisher.resolved_name
         with self._lock:
             if order.location:
@@ -175,6 +202,8 @@ class RobotLink(rospy.SubscribeListener):
                 self._late.append((topic_name, peer_publish))
         if order:
             order.publish(peer_publish)
+        if topic_name == self._act.resolved_name:
+            self._on_connected()
 
     def cancel(self, goal: str) -> None:
         """Calls the robot back from where it goes; a simple goal has no id of ours: from wherever it goes."""

@@ -35,7 +35,7 @@ from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import choice, names, whole
 from pursue_runtime.simulator.simulator import ACTING, DELAYS, Delays, Simulator
 from pursue_runtime.state import LOST, STOPPED, WAITING, WON, SystemState
-from pursue_runtime.words import EVENTS
+from pursue_runtime.words import EVENTS, ORDERED, Word, format_word, parse_word
 
 
 class SimulatorNode:
@@ -82,9 +82,15 @@ class SimulatorNode:
             self.ending.end(0 if state.status == WON else 1)
 
     def on_order(self, message: Union[PoseStamped, String], robot: str) -> None:
-        """A goal or an action for the robot."""
+        """A goal or an action for the robot; an action with a number is acknowledged, each time."""
+        word = parse_word(message.data) if isinstance(message, String) else Word("", "")
+        if word is None:
+            rospy.logwarn("%s cannot do %r: not the name of an event", robot, message.data[:80])
+            return
         with self.lock:
-            self.simulator.on_order(robot, rospy.get_time(), message.data if isinstance(message, String) else "")
+            self.simulator.on_order(robot, rospy.get_time(), word.event, word.seq or 0)
+            if word.seq is not None:
+                self.events.publish(format_word(Word(robot, ORDERED, word.seq)))
             self.act()
 
     def say_again(self) -> None:

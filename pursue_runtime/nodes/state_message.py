@@ -9,7 +9,7 @@ from pursue_msgs.msg import AutomatonLocation, ClockValue, Variable
 from pursue_msgs.msg import SystemState as Message
 
 from pursue_runtime.nodes.node import Ending, subscribe
-from pursue_runtime.state import AGENT_LISTS, SystemState
+from pursue_runtime.state import LISTS, SystemState
 from pursue_runtime.state_checks import names_problem, state_problem
 from pursue_runtime.words import STATE
 
@@ -33,7 +33,7 @@ def message_of(state: SystemState) -> Message:
         automata=[AutomatonLocation(name, location) for name, location in state.locations.items()],
         variables=[Variable(name, value) for name, value in state.values.items()],
         clocks=[ClockValue(name, value) for name, value in state.clocks.items()],
-        **{key: list(getattr(state, key)) for key in AGENT_LISTS},
+        **{key: list(getattr(state, key)) for key in LISTS},
     )
 
 
@@ -41,10 +41,10 @@ def state_of(message: Message) -> SystemState:
     """Return the state that a message holds. Raises ValueError for one that no observer publishes."""
     for what, entries in (("automata", message.automata), ("variables", message.variables), ("clocks", message.clocks)):
         _check(what, [each.name for each in entries])
-    agents = {key: getattr(message, key) for key in AGENT_LISTS}
+    agents = {key: getattr(message, key) for key in LISTS}
     for key, names in agents.items():
         if names:
-            _check(f"{key} agents", names)
+            _check(key, names)
     state = SystemState(
         seq=message.seq,
         stamp=message.stamp.to_sec(),

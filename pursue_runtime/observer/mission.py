@@ -9,7 +9,9 @@ from pursue_runtime.model import Assumption, Move, Position
 from pursue_runtime.observer import life
 from pursue_runtime.observer.assumptions import Breach, breach, overstayed
 from pursue_runtime.observer.mission_status import MissionStatus
+from pursue_runtime.observer.orders import first_overdue
 from pursue_runtime.observer.planning import stays
+from pursue_runtime.orders import Order
 from pursue_runtime.state import ENDED, HOLDING, LIVE, RUNNING, SystemState
 from pursue_runtime.state_checks import adoptable
 from pursue_runtime.words import (
@@ -17,6 +19,7 @@ from pursue_runtime.words import (
     FAILED,
     FINISH,
     FREE,
+    ORDERED,
     PING,
     PLANNED,
     START,
@@ -28,6 +31,9 @@ from pursue_runtime.words import (
     parse_word,
 )
 from pursue_runtime.zones import EPSILON, INFINITY, due, was_reached
+
+UNACKNOWLEDGED = "has not acknowledged"
+"""How the reason begins why a robot counts as lost whose side has not acknowledged an order."""
 
 MAX_WORD_LENGTH = 1000
 """The most characters of a word; longer texts are dropped."""
@@ -44,7 +50,11 @@ class Mission(MissionStatus):
         if self.status not in LIVE:
             return None
         position = self.position(now)
+        overdue = first_overdue(self._unanswered(), self._lost_after * self._unit)
+        if self._automata.is_won():
+            return overdue
         delays = self._automata.internal_delays(position)
+        delays += [] if overdue is None else [(overdue - now) / self._unit]
         delays += [(moment - now) / self._unit for moment in self._early.values()]
         delays += [delay + self._tolerance for name, delay in self._bounds(position) if name not in self.late]
         delays += [delay + self._lost_after for name, delay in self._late_agents(position)]
@@ -62,10 +72,14 @@ class Mission(MissionStatus):
             return orders[text.strip()](now)
         readable = len(text) <= MAX_WORD_LENGTH
         report = parse_report(text) if readable else None
-        if report is not None and self.status in LIVE:
+        word = parse_word(text) if readable and report is None else None
+        if word is not None and word.event == ORDERED and word.seq is not None and self.status in LIVE:
+            return self._on_order_receipt(word.agent, word.seq, now)
+        if self._automata.is_won() and self.status in LIVE:
+            self._reject("impossible", f"{text[:80]} after the goal was reached", level="info")
+        elif report is not None and self.status in LIVE:
             return self._on_robot_report(report, now)
-        word = parse_word(text) if readable else None
-        if word is None:
+        elif word is None:
             self._reject("unreadable", f"not a word: {text[:80]!r}")
         elif self.status not in LIVE:
             self._reject("impossible", f"{text} while the mission is {self.status}")
@@ -86,6 +100,11 @@ class Mission(MissionStatus):
         """Handle deadlines, late and lost agents, and internal edges of objectives that are due."""
         if self.status not in LIVE:
             return []
+        if any(now >= given + self._lost_after * self._unit for _, given in self._unanswered()):
+            if self._automata.is_won():
+                return self.stop(self.orders.awaited(), now)
+            for order, _ in self._unanswered():
+                self._mark_lost(order.agent, f"{UNACKNOWLEDGED} {order.event}")
         position = self.position(now)
         moves = self._automata.internal_move(position)
         if moves:
@@ -131,6 +150,7 @@ class Mission(MissionStatus):
         self.ways.turns.clear()
         self._planning.adopt(self.late.union(self.lost))
         self.robots.adopt(state)
+        self.orders.adopt(state.orders, now)
         self.shared_ends.adopt(state)
         self._beginnings.forget()
         self._commanded = state.commanded
@@ -165,6 +185,8 @@ class Mission(MissionStatus):
         if self.model.goal:
             self._log("warn", f"{FINISH} before the goal is reached: ignored")
             return []
+        if self.orders.awaited():
+            return self.stop(self.orders.awaited(), now)
         return self._end(life.WIN, "", now)
 
     # Moves ------------------------------------------------------------------------------------------------------------
@@ -262,6 +284,7 @@ class Mission(MissionStatus):
                 self._planning.excused -= {name}
             self.seq, self._shown = self.seq + 1, self.robots.revision()
             self._beginnings.on_moves(moves, self.seq)
+            self.orders.on_moves(moves, self.seq, commanded, self.lost, self.position(now).locations, now)
             self.counts["taken"] += 1
             self._warned = False
             self._agent, self._event = moves[0].automaton, moves[0].edge.word
@@ -273,10 +296,17 @@ class Mission(MissionStatus):
         return states
 
     def _evaluate(self, now: float, why: str = "") -> Optional[Tuple[Move, ...]]:
-        """End the mission if it is won, lost or not covered; else return the enabled internal edge of an objective."""
+        """End the mission if it is won, lost or not covered; else return the enabled internal edge of an objective.
+
+        At the goal it is won once all orders were acknowledged; nothing else counts until then.
+        """
         position = self.position(now)
         if self._automata.is_won():
-            self._conclude(life.WIN, "", now)
+            self.goal_at = now
+            if self.orders.awaited():
+                self._log("info", f"the goal is reached, but {self.orders.awaited()} yet")
+            else:
+                self._conclude(life.WIN, "", now)
         elif self._automata.lost():
             broken = [self.model.says[name] for name in self._automata.lost() if name in self.model.says]
             reason = why or f"{self._event} by {self._agent}"
@@ -287,6 +317,24 @@ class Mission(MissionStatus):
                 self._update_status(now, self._tolerance)
             return moves
         return None
+
+    # Orders -----------------------------------------------------------------------------------------------------------
+
+    def _unanswered(self) -> List[Tuple[Order, float]]:
+        """Return the orders whose acknowledgement is still waited for, and when they were given."""
+        waits = self._automata.is_won()
+        return [(order, given) for order, given in self.orders.open_since() if waits or order.agent not in self.lost]
+
+    def _on_order_receipt(self, robot: str, seq: int, now: float) -> List[SystemState]:
+        """Take that a robot's side has an order; the state that is published again answers it."""
+        if self.orders.on_receipt(robot, seq):
+            if self.lost.get(robot, "").startswith(UNACKNOWLEDGED):
+                del self.lost[robot]
+            if not self._automata.is_won():
+                return self._status_changes(now) or [self.state(now)]
+            if not self.orders.awaited():
+                self._conclude(life.WIN, "", now)
+        return [self.state(now)]
 
     # Reports ----------------------------------------------------------------------------------------------------------
 

@@ -8,6 +8,7 @@ from pursue_runtime.model import Model, Position
 from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.beginnings import Beginnings
 from pursue_runtime.observer.life import Life
+from pursue_runtime.observer.orders import Orders
 from pursue_runtime.observer.planning import Planning
 from pursue_runtime.observer.robots import Robots
 from pursue_runtime.observer.shared_ends import ALL, SharedEnds
@@ -56,6 +57,7 @@ class MissionState:
         self.silent: Set[str] = set()
         self.ways = Ways(model)
         self.robots = Robots(model)
+        self.orders = Orders(model)
         self.shared_ends = SharedEnds(model, shared_ends)
         self.in_force: Optional[Dict[str, Any]] = None  # the data of the plan, None: the workspace's own
         self._cover, self._log, self._unit, self._tolerance = cover, log, unit, tolerance
@@ -70,6 +72,8 @@ class MissionState:
         self._event = self._agent = ""
         self._commanded = False
         self._ended: Optional[float] = None
+        self.goal_at: Optional[float] = None
+        """When the goal was reached; the mission is won once all orders were acknowledged."""
 
     @property
     def status(self) -> str:
@@ -94,12 +98,12 @@ class MissionState:
         held, displaced, returning = self.robots.revision()
         finished = tuple(sorted(self.shared_ends.finished))
         robots = state._replace(held=held, displaced=displaced, returning=returning)
-        return robots._replace(commanded=self._commanded, finished=finished)
+        return robots._replace(commanded=self._commanded, finished=finished, orders=self.orders.texts())
 
     def revision(self) -> Tuple[object, ...]:
         """Return a value that a call changes if, and only if, the call has to be in the journal."""
         people = len(self.late), len(self.lost), len(self.silent)
-        robots = *self.robots.revision(), *self.ways.revision(), *self.shared_ends.revision()
+        robots = *self.robots.revision(), *self.ways.revision(), *self.shared_ends.revision(), self.orders.texts()
         return (self.seq, self.status, self.reason, *people, *robots, *self._early, *self._planning.revision())
 
     def _new_state(self, now: float) -> List[SystemState]:

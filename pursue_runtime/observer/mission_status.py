@@ -70,7 +70,7 @@ class MissionStatus(MissionState):
 
     def _status_changes(self, now: float) -> List[SystemState]:
         """Return a new state if the status, its reason or the waiting robots have changed without an event."""
-        if self.status not in LIVE:
+        if self.status not in LIVE or self._automata.is_won():
             return []
         before = self.status, self.reason, self._shown
         self._update_status(now, self._cover_grace if self.status == RUNNING else self._tolerance)
@@ -185,4 +185,7 @@ class MissionStatus(MissionState):
         self.ways.turns.clear()
         self._update_status(now, self._tolerance)
         self._beginnings.on_moves(turns, self.seq + 1)
+        for turn in turns:
+            locations = self.position(now).locations
+            self.orders.on_moves((turn,), self.seq + 1, True, self.lost, locations, now)
         return self._new_state(now)

@@ -144,6 +144,7 @@ class Simulator:
         self._state: Optional[SystemState] = None
         self._state_received = 0.0
         self._orders: Dict[str, Dict[str, float]] = {robot.name: {} for robot in self._agents}
+        self._taken: Dict[str, int] = {}  # the number of the last order of each robot
         self._counts: Dict[str, int] = {}
         self._activities: Dict[str, Activity] = {}
 
@@ -159,13 +160,20 @@ class Simulator:
                 activity.sends = min(activity.sends, 1)
         if state.status not in LIVE:
             self._activities.clear()
+            self._taken.clear()
             return
         for automaton in self._agents:
             # At the first state, agents may be under way already: their goals were sent before this node started.
             self._update_activity(automaton, state, newborn=before is None)
 
-    def on_order(self, robot: str, now: float, order: str = "") -> None:
-        """Take that a robot got an order at the time `now`: the event of an action, or a goal ("")."""
+    def on_order(self, robot: str, now: float, order: str = "", seq: int = 0) -> None:
+        """Take that a robot got an order at the time `now`: the event of an action, or a goal ("").
+
+        `seq` is the number of the order (0: it has none): one that comes again changes nothing.
+        """
+        if seq and seq <= self._taken.get(robot, 0):
+            return
+        self._taken[robot] = seq or self._taken.get(robot, 0)
         activity = self._activities.get(robot)
         if activity is not None and not activity.under_way and _begins(order, activity.location):
             self._start(activity, now)

@@ -13,14 +13,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.language.scenario import Ref
 from pursue_gen.partition import SubStrategy, partition
 from pursue_gen.partition.strategy_data import strategy_data
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Strategy
 from pursue_gen.tga.network import is_end
 from pursue_gen.tga.uppaal import read_network
-from tests.partition.games import AGENTS, QUICK, SPAN, agent, game, joint_moves, random_strategies
+from tests.partition.games import AGENTS, QUICK, agent, game, joint_moves, random_strategies
 
 SHAPES = ("distributed", "centralized", "general")
 POLICIES = ("dedicated", "all", "bot1", "bot2")
@@ -203,14 +202,3 @@ def test_published_plans(reference_dir: Path, name: str, robots: List[str]) -> N
     assert [sub.controller for sub in subs][: len(robots)] == [f"controller_{robot}" for robot in robots]
     assert given_to(subs) == all_of(strategy, ends=False)
     assert 0 < sum(sub.commands for sub in subs) < sum(len(block.commands) for block in strategy.blocks)
-
-
-def test_only_agents_that_somebody_commands_are_named_as_those_who_do_an_event_together() -> None:
-    meet = Ref("meet", SPAN)
-    host = replace(agent("bot1"), reacts_to=(meet,))
-    doers = [replace(each, can_do=(meet,)) for each in (agent("bot2"), agent("guest", controllable=False))]
-    nurse = replace(agent("nurse", human=True), can_do=(meet, Ref("wash", SPAN)))
-    thief = agent("thief", controllable=False)
-    subs = by_name(partition(Strategy(()), game(), (host, *doers, nurse, thief)))
-    assert subs["controller_bot1"].reacts_to == (("bot1", "meet", ("bot2", "nurse")),)
-    assert subs["controller_bot2"].reacts_to == ()

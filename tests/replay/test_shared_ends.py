@@ -80,17 +80,18 @@ def play(path: Path, silent: str = "") -> Played:
                 for order in scheduler.on_state(state, at):
                     if order.agent == "reachObj":
                         continue
-                    if order.target.startswith("going_"):
-                        poi = order.target.split("_to_")[1]
+                    if order.location.startswith("going_"):
+                        poi = order.location.split("_to_")[1]
                         pose = poses(game().scenario)[0][poi]
                         made.orders.append(RobotOrder(at + 0.01, order.agent, name, (pose.x, pose.y, pose.z)))
-                        pending.append((at + 2.5, f"{order.agent}_{order.target}2{poi}", "sim"))
-                    elif order.target.startswith("doing_"):
-                        made.orders.append(RobotOrder(at + 0.01, order.agent, name, None, order.trigger))
+                        pending.append((at + 2.5, f"{order.agent}_{order.location}2{poi}", "sim"))
+                    elif order.location.startswith("doing_"):
+                        made.orders.append(RobotOrder(at + 0.01, order.agent, name, None, order.event))
                         if order.agent != silent:
                             pending.append((at + ENDS[order.agent], f"{order.agent}:rideDONE", "sim"))
                     else:
-                        made.orders.append(RobotOrder(at + 0.01, order.agent, name, None, order.trigger))
+                        made.orders.append(RobotOrder(at + 0.01, order.agent, name, None, order.event))
+                        pending.append((at + 0.02, f"{order.agent}:_order_@{order.seq}", "sim"))
     made.journal = (path / "journal.jsonl").read_bytes()
     return made
 

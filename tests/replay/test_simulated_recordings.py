@@ -23,7 +23,7 @@ from pursue_gen.simulation.stage import Stage, stage_of
 from pursue_gen.solving.rules import DEFAULT, Rules
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.workspace import Options
-from pursue_runtime.controller.scheduler import StartedActivity
+from pursue_runtime.orders import Order
 from pursue_runtime.state import SystemState
 from pursue_runtime.words import Word, format_word
 from tests.assumptions import AWAY, CAFE, GOODBYE, LEAVES, MUSEUM, ONCE
@@ -82,11 +82,11 @@ class Recorded(SimulatedMission):
         self.words.append(read_word(self.events.now, format_word(word), node))
         super().publish_word(node, word, latest)
 
-    def command_robot(self, node: str, order: StartedActivity, seq: int, newest: int, again: bool) -> None:
-        pose = poses(self.game.scenario)[0].get(order.target.rpartition("_to_")[2])
-        goes = order.target.startswith("going_") and pose is not None
+    def command_robot(self, node: str, order: Order, seq: int, newest: int, again: bool) -> None:
+        pose = poses(self.game.scenario)[0].get(order.location.rpartition("_to_")[2])
+        goes = order.location.startswith("going_") and pose is not None
         goal = (pose.x, pose.y, pose.z) if goes and pose is not None else None
-        self.orders.append(RobotOrder(self.events.now, order.agent, node, goal, "" if goes else order.trigger))
+        self.orders.append(RobotOrder(self.events.now, order.agent, node, goal, "" if goes else order.event))
         super().command_robot(node, order, seq, newest, again)
 
     def _choose_move(self, state: SystemState) -> None:
@@ -133,8 +133,8 @@ def test_who_unloads_without_having_loaded_is_a_fault() -> None:
     mission.run()
     loaded = next(state for state in mission.states if state.event == "loadDONE").agent
     other = {"cart1": "cart2", "cart2": "cart1"}[loaded]
-    last = mission.states[-1]
-    mission.states[-1] = last._replace(agent=other)
+    last = mission.states[-1].seq
+    mission.states = [s._replace(agent=other) if s.seq == last else s for s in mission.states]
     assert "step" in kinds(mission.found(), FAULT)
 
 

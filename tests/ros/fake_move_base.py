@@ -24,7 +24,7 @@ import contextlib
 import math
 import os
 import threading
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Any, Dict, List, Optional, Set, Tuple
 
 import rospy
 import tf2_ros
@@ -132,6 +132,7 @@ class FakeMoveBase:
         self.reboot = float(settings.get("reboot", boot))
         self.plays: List[str] = list(settings.get("plays", ["succeed"]))
         self.count = 0
+        self.begun: Set[str] = set()  # the numbers of the orders that it has
         self.process: List[Any] = []  # the topics of move_base, which end with it
         self.server = False
         self.goals: List[Tuple[GoalStatus, float]] = []  # and when each is over, inf before that
@@ -319,8 +320,14 @@ class FakeMoveBase:
 
     def on_action(self, message: String) -> None:
         x, y, _ = self.body.at
-        self.say(f"action {message.data} {x:.2f} {y:.2f}")
-        done = String(f"{message.data}DONE")
+        event, _, number = message.data.partition("@")
+        if number:
+            self.words.publish(String(f"{self.name}:_order_@{number}"))
+        if number in self.begun:
+            return  # the order was sent again
+        self.begun |= {number} if number else set()
+        self.say(f"action {event} {x:.2f} {y:.2f}")
+        done = String(f"{event}DONE")
         if self.acts >= 0.0:
             rospy.Timer(rospy.Duration(self.acts), lambda _: self.words.publish(done), oneshot=True)
 

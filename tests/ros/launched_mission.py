@@ -159,9 +159,15 @@ class LaunchedMission:
         return [events[seq] for seq in sorted(events)]
 
     def orders(self) -> List[Tuple[str, str]]:
-        """The orders that robots got, in order: (robot, action or place)."""
-        orders = (entry for entry in self.look() if entry["topic"] in (GOAL, ACTION))
-        return [(entry["robot"], str(entry["data"])) for entry in orders]
+        """The orders that robots got, in order: (robot, action or place). One that is sent again is the same order."""
+        found: List[Tuple[str, str]] = []
+        numbered: Set[Tuple[str, str]] = set()
+        for entry in self.look():
+            if entry["topic"] in (GOAL, ACTION):
+                order = entry["robot"], str(entry["data"])
+                found += [] if order in numbered else [(order[0], order[1].partition("@")[0])]
+                numbered |= {order} if "@" in order[1] else set()
+        return found
 
     def values(self, node: str) -> Dict[str, str]:
         """The values of a node's last diagnostics."""

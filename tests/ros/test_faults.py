@@ -289,7 +289,7 @@ def test_a_robot_that_is_lost_is_planned_without_and_counts_again_when_it_report
         before = [state for state in run.states() if state.seq < running.seq][-1]
         assert before.status == "holding" and running.seq == before.seq + 1
         assert (running["plan"], running["lost"], running["reason"]) == ("1", "bot2", "")
-        (journal,) = (tmp_path / "home" / "pursue" / "scenario_1").glob("journal-*")
+        (journal,) = (tmp_path / "home" / "pursue" / "scenario_1").glob("journal-*.jsonl")
         calls = read_records(str(journal)).records[1:]
         swap = next(number for number, call in enumerate(calls) if call["seq"] == running.seq)
         has = {word for call in calls[:swap + 1] for word in call["args"] if str(word).endswith(":_plan_@1")}

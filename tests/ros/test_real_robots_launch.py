@@ -100,7 +100,8 @@ def test_a_person_reports_at_the_terminal_what_a_visitor_and_a_robot_have_done(r
     os.mkfifo(tmp_path / "keys")
     keys = os.open(tmp_path / "keys", os.O_RDWR)
     log = tmp_path / "terminal"
-    launch = f"roslaunch visited_bringup mission.launch simulate:=false ends:=words time_unit:=0.2 wait:={PATIENCE:g}"
+    told = f"simulate:=false ends:=words orders:=person time_unit:=0.2 wait:={PATIENCE:g}"
+    launch = f"roslaunch visited_bringup mission.launch {told}"
     command = f"source devel/setup.bash; exec script -qefc '{launch}' {log} <{tmp_path}/keys"
 
     def says(text: str) -> Callable[[], bool]:

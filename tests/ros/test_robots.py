@@ -73,6 +73,7 @@ def test_a_robot_that_connects_late_is_reported_and_is_called_back_when_its_cont
     automata = [f"{{name: {name}, location: {location}}}" for name, location in locations.items()]
     clocks = "[{name: Cbot1, value: 1.0}, {name: Cbot2, value: 1.0}]"
     fields = f"seq: 3, stamp: {{secs: 1}}, time_unit: 1.0, automata: [{', '.join(automata)}], clocks: {clocks}"
+    fields += ", orders: ['bot1:bot1_c2b@3/going_c_to_b']"
     publish = f"exec rostopic pub -l pursue/state pursue_msgs/SystemState '{{{fields}, status: %s}}'"
     told = {status: publish % status for status in ("holding", "running")}
     command = "exec rosrun controller_bot1 controller_bot1 _goals:=action _on_stop:=cancel"

@@ -16,6 +16,7 @@ from pursue_gen.simulation.outcome import FAILED, Outcome, Settings
 from pursue_runtime.controller.scheduler import CommandScheduler
 from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.mission import Mission
+from pursue_runtime.orders import Order
 from pursue_runtime.state import SystemState
 
 SABOTAGE: Mapping[str, Tuple[type, str, str, str, str]] = {
@@ -28,9 +29,9 @@ SABOTAGE: Mapping[str, Tuple[type, str, str, str, str]] = {
     "a number that is skipped": (Mission, "_take", "self.seq + 1", "self.seq + 2", "state 3 follows state 1"),
     "an order for another place": (
         CommandScheduler,
-        "_begun",
-        "orders.append(StartedActivity(agent, trigger, origin, target))",
-        'orders.append(StartedActivity(agent, trigger, origin, "going_a_to_b_"))',
+        "_new_orders",
+        "return [order for order in standing",
+        'return [order._replace(location="going_a_to_b_") for order in standing',
         "wrong order: polBot1 gets the order",
     ),
 }  # fmt: skip
@@ -118,14 +119,14 @@ def test_a_step_too_early_is_a_problem_without_faults_and_with_them_where_it_is_
 def test_what_is_held_is_ordered_once_and_only_while_it_lasts() -> None:
     watching = judge()
     watching.on_state(first(), 0.0)
-    watching.on_order("polBot1", "polBot1_a2b", "going_a_to_b", 1, 1, False)
+    watching.on_order(Order("polBot1", "polBot1_a2b", 2, "going_a_to_b"), 1, 1, False)
     assert "not what was last commanded" in watching.problems[0]
 
 
 def test_an_order_as_of_an_old_state_is_a_problem() -> None:
     watching = judge()
     watching.on_state(first(), 0.0)
-    watching.on_order("polBot1", "polBot1_a2b", "going_a_to_b", 1, 2, False)
+    watching.on_order(Order("polBot1", "polBot1_a2b", 2, "going_a_to_b"), 1, 2, False)
     assert "though state 2 is known" in watching.problems[0]
 
 

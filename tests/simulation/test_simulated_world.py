@@ -9,7 +9,8 @@ import pytest
 from pursue_gen.simulation.event_queue import EventQueue
 from pursue_gen.simulation.faults import Breakdown, FaultPlan
 from pursue_gen.simulation.world import SimulatedAgent
-from pursue_runtime.controller.scheduler import StartedActivity
+from pursue_runtime.orders import Order
+from pursue_runtime.words import ORDERED
 from tests.runtime.models import state
 from tests.simulation.stages import stage
 
@@ -29,7 +30,8 @@ class Robot:
         self.enter(1, "c")
 
     def report(self, agent: str, word: str) -> None:
-        self.reports.append(word.partition("~")[0])
+        if ORDERED not in word:
+            self.reports.append(word.partition("~")[0])
 
     def enter(self, seq: int, location: str) -> None:
         """The state of this number has it at another location, since now."""
@@ -37,7 +39,7 @@ class Robot:
 
     def order(self, target: str, seq: int) -> None:
         """It gets the order for this location, from a controller whose newest state is of this number."""
-        self.agent.on_order(StartedActivity("bot1", target, "", target), seq)
+        self.agent.on_order(Order("bot1", "e", seq, target), seq)
 
     def wait(self, seconds: float) -> None:
         """So much time passes."""

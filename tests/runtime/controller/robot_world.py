@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Any, List, Optional, Tuple
+from typing import Any, List, Optional, Set, Tuple
 
 from pursue_runtime.controller.goal import Answer, Movement
 from pursue_runtime.controller.navigation import Navigation, View
 from pursue_runtime.controller.settings import read_settings
 from pursue_runtime.controller.whereabouts import Place, Position
+from pursue_runtime.locations import is_action
+from pursue_runtime.orders import Order
 
 B, C = Place("b", 3.0, 4.0, 0.0), Place("c", 0.0, 0.0)
 WAY = Movement("going_c_to_b", B)
@@ -28,8 +30,13 @@ class World:
         self.robot = Navigation(
             "bot1", read_settings("bot1", settings), lambda level, text: self.said.append((level, text))
         )
+        self.seen = View()
         self.goals: List[Any] = []
         self.actions: List[str] = []
+        self.acknowledges = True
+        """The robot's side acknowledges each order as soon as it has it."""
+        self.acknowledged: Set[int] = set()
+        self.ordered: List[Order] = []
         self.texts: List[str] = []
 
     @property
@@ -38,10 +45,20 @@ class World:
         return [text.split(" ")[0].partition("#")[0] for text in self.texts]
 
     def act(self) -> None:
-        goal, action, word = self.robot.due(self.now, self.now)
+        goal, actions, word = self.robot.due(self.now, self.now)
         self.goals += [goal] if goal else []
-        self.actions += [action.trigger] if action else []
+        self.actions += [order.event for order in actions]
         self.texts += [word] if word else []
+        if actions and self.acknowledges:
+            self.acknowledged |= {order.seq for order in actions}
+            self._see()
+
+    def order(self, event: str, location: str = "b") -> None:
+        """It is ordered to do the event, which goes on at a location that is no place."""
+        self.ordered.append(Order("bot1", event, len(self.ordered) + 1, location, at_once=not is_action(location)))
+        self.view(self.seen)
+        self.robot.act(self.ordered[-1])
+        self.act()
 
     def go(self, way: Any = WAY) -> None:
         self.state(way)
@@ -58,8 +75,14 @@ class World:
         self.view(View(location, None, place, running), **lists)
 
     def view(self, view: View, **lists: bool) -> None:
-        self.robot.on_state(view._replace(**lists), self.now)
+        self.seen = view._replace(**lists)
+        self._see()
         self.act()
+
+    def _see(self) -> None:
+        """It gets the state, which shows what was acknowledged."""
+        unanswered = {order.seq for order in self.ordered} - self.acknowledged
+        self.robot.on_state(self.seen._replace(unanswered=frozenset(unanswered)), self.now)
 
     def result(self, status: int, goal: Optional[str] = None, stamp: Optional[float] = None, text: str = "") -> None:
         """The answer to the last goal, unless another is named."""

@@ -89,7 +89,7 @@ class Anything:
             self.show()
         elif kind == "act" and self.doing is not None:
             self.acts += 1
-            world.robot.act(value, f"doing_e_in_{B.poi}" if self.doing and value == "e" else "")
+            world.order(value, f"doing_e_in_{B.poi}" if self.doing and value == "e" else "b")
         elif kind == "result" and -value[1] <= len(world.goals):
             world.result(value[0], world.goals[value[1]].name)
         elif kind == "status":

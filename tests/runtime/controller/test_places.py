@@ -48,8 +48,7 @@ def robot(request: pytest.FixtureRequest) -> World:
 def test_a_robot_that_has_arrived_does_its_action_at_once(robot: World) -> None:
     assert robot.robot.is_placed(robot.now)
     robot.stay(doing="e")
-    robot.robot.act("e", "doing_e_in_b")
-    robot.act()
+    robot.order("e", "doing_e_in_b")
     assert robot.actions == ["e"] and robot.words == []
 
 
@@ -104,8 +103,7 @@ def test_a_robot_is_not_back_while_move_base_has_its_goal_in_progress(robot: Wor
 def test_an_action_that_has_begun_in_the_state_begins_late(robot: World) -> None:
     robot.at(8.0, 4.0)
     robot.stay(doing="e")
-    robot.robot.act("e", "doing_e_in_b")
-    robot.act()
+    robot.order("e", "doing_e_in_b")
     assert robot.actions == [] and set(robot.words) == {DISPLACED} and "is 5.0 m from b" in robot.texts[-1]
     robot.stay(doing="e", displaced=True, returning=True, running=False)
     robot.wait(1.0)
@@ -120,8 +118,7 @@ def test_an_action_that_has_begun_in_the_state_begins_late(robot: World) -> None
 
 def test_a_robot_may_move_in_its_action(robot: World) -> None:
     robot.stay(doing="clean")
-    robot.robot.act("clean", "doing_clean_in_b")
-    robot.act()
+    robot.order("clean", "doing_clean_in_b")
     robot.at(8.0, 4.0)
     assert robot.wait(30.0) == [] and robot.actions == ["clean"] and len(robot.goals) == 1
     robot.stay()
@@ -258,8 +255,7 @@ def test_a_person_may_say_that_a_robot_with_words_is_back() -> None:
 def test_a_robot_with_words_may_have_goals_of_its_own_in_its_action() -> None:
     robot = World(goals="action")
     robot.stay(doing="clean")
-    robot.robot.act("clean", "doing_clean_in_b")
-    robot.act()
+    robot.order("clean", "doing_clean_in_b")
     robot.status(Answer("own-1", robot.now, ACTIVE))
     robot.status(Answer("own-1", robot.now, SUCCEEDED))
     robot.stay()
@@ -300,8 +296,7 @@ def test_a_position_that_comes_after_the_arrival_and_contradicts_it_counts() -> 
 def test_words_alone_are_believed() -> None:
     robot = World()
     robot.stay(doing="e")
-    robot.robot.act("e", "doing_e_in_b")
-    robot.act()
+    robot.order("e", "doing_e_in_b")
     assert robot.actions == ["e"] and robot.robot.is_placed(robot.now) and robot.words == []
 
 
@@ -315,11 +310,10 @@ def test_a_robot_that_reports_its_ends_itself_is_looked_at_where_a_position_is_g
 def test_what_is_done_at_once_waits_for_the_robot_too(robot: World) -> None:
     robot.at(3.0, 4.0)
     robot.stay(running=False)
-    robot.robot.act("beep")
-    robot.act()
+    robot.order("beep")
     assert robot.actions == ["beep"], "it is decided, whatever the mission waits for"
     robot.at(8.0, 4.0)
-    robot.robot.act("beep")
+    robot.order("beep")
     robot.wait(5.0)
     assert robot.actions == ["beep"]
     robot.at(3.0, 4.0)

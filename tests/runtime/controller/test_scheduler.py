@@ -7,8 +7,9 @@ from typing import Any, List, Optional
 import pytest
 
 from pursue_runtime.controller.scheduler import UNREADY, CommandScheduler
+from pursue_runtime.orders import Order, parse_order
 from pursue_runtime.state import SystemState
-from pursue_runtime.strategy import Strategy
+from pursue_runtime.strategy import Command, Strategy
 from pursue_runtime.words import Word
 from tests.runtime.texts import read
 
@@ -31,9 +32,17 @@ def player(text: str = STRATEGY) -> Any:
     return CommandScheduler(Strategy(read(text)))
 
 
-def state(seq: int, stamp: float, bot: str = "c", clock: float = 0.0, event: str = "", status: str = "running") -> Any:
-    agent = "bot" if event else ""
-    return SystemState(seq, stamp, {"bot": bot}, {}, {"Cbot": clock}, event, agent, status)
+def state(
+    seq: int, stamp: float, bot: str = "c", clock: float = 0.0, event: str = "", status: str = "running",
+    orders: Any = (),
+) -> Any:  # fmt: skip
+    what = event, "bot" if event else "", status
+    made = SystemState(seq, stamp, {"bot": bot}, {}, {"Cbot": clock}, *what, orders=tuple(orders))
+    return made._replace(commanded=bool(orders))
+
+
+GO = "bot:bot_c2b@2/going_c_to_b"
+CATCH = "bot:catch@4/b!"
 
 
 def test_it_waits_for_the_moment_and_speaks_for_the_state_it_knows() -> None:
@@ -137,40 +146,37 @@ def test_a_window_that_is_still_open_is_used_however_late() -> None:
 def test_its_robot_moves_once_the_observer_has_taken_the_word() -> None:
     bot = player()
     bot.on_state(state(1, 100.0), 100.0)
-    orders = bot.on_state(state(2, 105.0, bot="going_c_to_b", event="bot_c2b"), 105.0)
-    assert orders == [("bot", "bot_c2b", "c", "going_c_to_b")]
+    orders = bot.on_state(state(2, 105.0, bot="going_c_to_b", event="bot_c2b", orders=[GO]), 105.0)
+    assert orders == [Order("bot", "bot_c2b", 2, "going_c_to_b")]
+    assert bot.on_state(state(2, 107.0, bot="going_c_to_b", event="bot_c2b", clock=2.0, orders=[GO]), 107.0) == []
     assert bot.on_state(state(3, 114.0, bot="b", event="bot_going_c_to_b2b"), 114.0) == []
 
 
 def test_an_instantaneous_action_goes_to_the_robot_too() -> None:
     bot = player()
     bot.on_state(state(3, 114.0, bot="b"), 114.0)
-    assert bot.on_state(state(4, 116.0, bot="b", event="catch"), 116.0) == [("bot", "catch", "b", "b")]
+    orders = bot.on_state(state(4, 116.0, bot="b", event="catch", orders=[CATCH]), 116.0)
+    assert orders == [Order("bot", "catch", 4, "b", at_once=True)]
 
 
-def test_what_others_do_moves_nobody() -> None:
+def test_orders_of_other_robots_are_not_ours() -> None:
     bot = player()
     bot.on_state(state(1, 100.0, bot="b"), 100.0)
-    other = state(2, 101.0, bot="b")._replace(event="catch", agent="dog")
-    assert bot.on_state(other, 101.0) == []
+    assert bot.on_state(state(2, 101.0, bot="b", orders=["dog:catch@2/b!"]), 101.0) == []
 
 
-def test_the_answer_to_a_ping_changes_nothing() -> None:
-    bot = player()
-    bot.on_state(state(1, 100.0), 100.0)
-    bot.on_state(state(2, 105.0, bot="going_c_to_b", event="bot_c2b"), 105.0)
-    assert bot.on_state(state(2, 107.0, bot="going_c_to_b", event="bot_c2b", clock=2.0), 107.0) == []
-
-
-@pytest.mark.parametrize(
-    "place, trigger", [("going_c_to_b", "going_c_to_b"), ("doing_pick_in_box_in_b", "pick_in_box")]
-)
-def test_one_that_comes_late_or_missed_states_tells_the_robot_where_it_should_be(place: str, trigger: str) -> None:
+@pytest.mark.parametrize("order", [GO, "bot:pick_in_box@7/doing_pick_in_box_in_b", CATCH])
+def test_one_that_comes_late_or_missed_states_has_the_orders_that_stand(order: str) -> None:
+    at = order.rstrip("!").partition("/")[2]
     fresh = player()
-    assert fresh.on_state(state(7, 100.0, bot=place), 101.0) == [("bot", trigger, "", place)]
+    assert fresh.on_state(state(7, 100.0, bot=at, orders=[order]), 101.0) == [parse_order(order)]
     missed = player()
     missed.on_state(state(1, 90.0), 90.0)
-    assert missed.on_state(state(7, 100.0, bot=place), 101.0) == [("bot", trigger, "c", place)]
+    assert missed.on_state(state(7, 100.0, bot=at, orders=[order]), 101.0) == [parse_order(order)]
+
+
+def test_a_restart_makes_no_order_of_what_somebody_published_by_hand() -> None:
+    assert player().on_state(state(2, 102.0, bot="going_c_to_b", event="bot_c2b"), 103.0) == []
 
 
 def test_a_robot_gets_no_order_that_the_strategy_does_not_hold() -> None:
@@ -178,6 +184,22 @@ def test_a_robot_gets_no_order_that_the_strategy_does_not_hold() -> None:
     bot.on_state(state(1, 100.0), 100.0)
     assert bot.on_state(state(2, 102.0, bot="going_c_to_a", event="bot_c2a"), 102.0) == []
     assert bot.counts["not_ours"] == 1
+
+
+def test_a_robot_does_not_leave_before_it_has_acknowledged_what_it_was_to_do_at_once() -> None:
+    bot = player()
+    waiting = state(4, 100.0, clock=5.5, orders=["bot:wave@4/c!"])
+    bot.on_state(waiting, 100.0)
+    assert bot.on_timer(100.1) is None and bot.next_wakeup()[1] is not None
+    assert bot.on_state(waiting._replace(stamp=100.2, orders=()), 100.2) == [] and bot.is_new
+    assert bot.on_timer(100.2) == Word("bot", "bot_c2b", 4)
+
+
+def test_no_command_is_published_for_a_robot_that_cannot_get_the_order() -> None:
+    bot = player()
+    bot.on_state(state(1, 100.0, clock=5.5), 100.0)
+    assert bot.on_timer(100.1, lambda command: command.event != "bot_c2b") is None
+    assert bot.on_timer(100.15, lambda command: command.event == "bot_c2b") == Word("bot", "bot_c2b", 1)
 
 
 def test_a_burst_of_late_states_changes_nothing() -> None:
@@ -212,13 +234,6 @@ def test_after_an_end_an_observer_that_starts_anew_is_followed_and_so_is_one_who
     assert bot.state.seq == 2
 
 
-def test_an_end_after_a_state_that_was_missed_is_no_order() -> None:
-    bot = player()
-    bot.on_state(state(1, 100.0, bot="b", clock=0.5), 100.0)
-    assert bot.on_state(state(3, 106.0, bot="b", event="workDONE"), 106.0) == []
-    assert bot.on_state(state(5, 109.0, bot="b", event="catch"), 109.0) == [("bot", "catch", "b", "b")]
-
-
 def test_a_state_that_is_said_again_is_no_news() -> None:
     bot = player()
     for current, news in ((state(1, 100.0), True), (state(1, 101.0, clock=1.0), False), (state(2, 102.0), True),
@@ -233,44 +248,22 @@ def test_a_state_that_takes_the_whole_reaction_is_not_too_late() -> None:
     assert bot.on_timer(100.2 + 1e-7) == Word("bot", "bot_c2b", 1)
 
 
-def test_the_robot_does_what_wins_the_mission_where_that_is_done_at_once() -> None:
+@pytest.mark.parametrize("status", ["won", "lost", "stopped"])
+def test_after_the_end_nothing_is_ordered(status: str) -> None:
     bot = player()
     bot.on_state(state(1, 100.0, bot="b", clock=0.5), 100.0)
-    assert bot.on_state(state(2, 101.0, bot="b", event="catch", status="won"), 101.0) == [("bot", "catch", "b", "b")]
-    for status in ("lost", "stopped"):
-        bot = player()
-        bot.on_state(state(1, 100.0, bot="b", clock=0.5), 100.0)
-        assert bot.on_state(state(2, 101.0, bot="b", event="catch", status=status), 101.0) == []
+    assert bot.on_state(state(2, 101.0, bot="b", event="catch", status=status, orders=[CATCH]), 101.0) == []
 
 
-def test_after_a_restart_an_action_is_ordered_by_its_name_whatever_the_place_is_called() -> None:
-    text = """
-format: 1
-controller: controller_bot
-commands_agents: [bot]
-reaction: 0.2
-strategy:
-- state: {bot: room_in_b}
-  commands:
-  - {do: clean, agent: bot, from: room_in_b, to: doing_clean_in_room_in_b, when: ["1 < Cbot"]}
-"""
-    under_way = state(4, 100.0, "doing_clean_in_room_in_b")
-    assert player(text).on_state(under_way, 100.0) == [("bot", "clean", "", "doing_clean_in_room_in_b")]
-    assert player().on_state(state(4, 100.0, "doing_screw_in_s"), 100.0) == [("bot", "screw", "", "doing_screw_in_s")]
-
-
-def test_an_action_waits_until_its_robot_is_in_its_place_and_a_movement_does_not() -> None:
+def test_a_command_waits_until_its_robot_may_begin() -> None:
     bot = player()
     bot.on_state(state(1, 100.0, bot="b", clock=2.0), 100.0)
     asked: List[str] = []
 
-    def is_placed(agent: str) -> bool:
-        asked.append(agent)
+    def may_begin(command: Command) -> bool:
+        asked.append(command.event)
         return len(asked) > 2
 
-    assert bot.on_timer(100.0, is_placed) is None and bot.next_wakeup()[1] == UNREADY
-    assert bot.on_timer(100.01, is_placed) is None and bot.counts["sent"] == 0
-    assert bot.on_timer(100.02, is_placed) == Word("bot", "catch", 1) and asked == ["bot"] * 3
-    leaving = player()
-    leaving.on_state(state(1, 100.0, clock=5.0), 100.0)
-    assert leaving.on_timer(100.0, lambda agent: False) == Word("bot", "bot_c2b", 1)
+    assert bot.on_timer(100.0, may_begin) is None and bot.next_wakeup()[1] == UNREADY
+    assert bot.on_timer(100.01, may_begin) is None and bot.counts["sent"] == 0
+    assert bot.on_timer(100.02, may_begin) == Word("bot", "catch", 1) and asked == ["catch"] * 3

@@ -17,7 +17,7 @@ from rospy.topics import SubscribeListener, _PublisherImpl
 from std_msgs.msg import String
 
 from pursue_runtime.nodes.publishing import publish_to_one
-from pursue_runtime.nodes.robot_link import Order
+from pursue_runtime.nodes.robot_link import Message
 
 ALL, ONE = "for every subscriber", "for one"
 Send = Callable[[Any, Callable[[Any], None], Any], None]
@@ -121,7 +121,7 @@ def both(send: Send) -> Subscriber:
 
 def order_again(publisher: Any, peer_publish: Callable[[Any], None], message: Any) -> None:
     """As a controller sends its order to a robot that connects late."""
-    Order("", publisher, message).publish(peer_publish)
+    Message("", publisher, message).publish(peer_publish)
 
 
 @pytest.mark.parametrize("send", [publish_to_one, order_again])

@@ -16,6 +16,7 @@ from pursue_runtime.controller.goal import Goal, Movement
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.whereabouts import Place
 from pursue_runtime.nodes.robot_link import RobotLink
+from pursue_runtime.orders import Order
 
 
 @pytest.fixture
@@ -46,11 +47,11 @@ def link(happened: List[str]) -> RobotLink:
     ending: Any = None
     log = lambda level, text: happened.append(f"{level}: {text}")
     nothing = lambda *_: None
-    return RobotLink("bot", Settings(simulated=True), ending, log, nothing, nothing, nothing)
+    return RobotLink("bot", Settings(simulated=True), ending, log, nothing, nothing, nothing, nothing)
 
 
 def test_an_action_is_sent_before_it_is_logged(happened: List[str]) -> None:
-    link(happened).do("answer")
+    link(happened).do(Order("bot", "answer", 3, "b", at_once=True))
     assert happened == [
         "published on bot/pursue/actions",
         "warn: no subscriber on bot/pursue/actions yet",
