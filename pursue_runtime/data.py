@@ -75,4 +75,4 @@ def data_file(package: Package, name: str, config: str = "") -> str:
         if os.path.isfile(path):
             return path
     places = " nor in ".join(os.path.normpath(folder) for folder in folders)
-    raise DataError(f"no {name} in {places}; set ~config to its folder")
+    raise DataError(f"no {name} in {places}; pass its folder as --config")

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import shlex
 from typing import Any, Mapping, Optional, Sequence, Tuple
 
 from pursue_runtime.data import DataError
@@ -80,13 +79,3 @@ def names(given: Mapping[str, Any], name: str, default: Sequence[str] = ()) -> T
     if not isinstance(value, (list, tuple)) or not all(isinstance(each, str) for each in value):
         raise ParameterError(f"~{name} is {value!r}; expected a list of names")
     return tuple(value)
-
-
-def command(given: Mapping[str, Any], name: str, default: str) -> str:
-    """Return a text that is a shell command, or `off`. Raises ParameterError."""
-    value = text(given, name, default)
-    try:
-        shlex.split(value)
-    except ValueError as problem:
-        raise ParameterError(f"~{name} is {value!r}; expected a command, or off ({problem})") from problem
-    return value

@@ -17,14 +17,14 @@ class ServerError(Exception):
     """The node cannot serve; the message says why, and what to do."""
 
 
-def bind(host: str, port: int, parameter: str) -> List[Any]:
-    """Listening sockets; port 0: any that is free. Raises ServerError, which names the node's parameter."""
+def bind(host: str, port: int, argument: str) -> List[Any]:
+    """Listening sockets; port 0: any that is free. Raises ServerError, which names the node's argument."""
     try:
         if not 0 <= port < 1 << 16:
             raise OSError("there is no such port")
         return list(bind_sockets(port, host))
     except (OSError, UnicodeError) as problem:
-        hint = f"choose another {parameter} (0: any that is free) or ~host"
+        hint = f"choose another {argument} (0: any that is free) or --host"
         raise ServerError(f"cannot listen on {host}, port {port}: {problem}; {hint}") from problem
 
 

@@ -65,7 +65,7 @@ def tls(certificate: str, private_key: str) -> Optional[ssl.SSLContext]:
     """TLS 1.2 or newer with this certificate and its key (PEM files); None without. Raises ServerError."""
     if not certificate:
         if private_key:
-            raise ServerError("~private_key needs ~certificate: give both, or none for HTTP without TLS")
+            raise ServerError("--private_key needs --certificate: give both, or none for HTTP without TLS")
         return None
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     context.minimum_version = ssl.TLSVersion.TLSv1_2
@@ -74,7 +74,7 @@ def tls(certificate: str, private_key: str) -> Optional[ssl.SSLContext]:
         context.load_cert_chain(certificate, private_key or None, password=lambda: b"")
     except (OSError, ValueError) as problem:
         files = ", ".join(filter(None, (certificate, private_key)))
-        hint = "~certificate and ~private_key are PEM files that belong together, the key without a password"
+        hint = "--certificate and --private_key are PEM files that belong together, the key without a password"
         raise ServerError(f"cannot use {files}: {problem}; {hint}") from problem
     return context
 

@@ -1,22 +1,21 @@
 """Takes missions from the desk over HTTP and publishes them for pursue_reader; forwards topics to tools without ROS.
 
-Parameters: ~robot (the name that the desk knows; its namespace, or this machine's name where there is none), ~host
-(127.0.0.1), ~port (13000), ~topicName (local_mission), ~limit (bytes of the largest bundle), ~keys (folder of the
-trusted keys; $ROS_HOME/pursue/keys), ~certificate and ~private_key (PEM files, for TLS), ~patience (seconds for the
-reader's answer; 10), ~connections (at a time; 64), ~pubsubport (13001), ~forwardedtopics (of type std_msgs/String,
-with commas between; none).
+Parameters: ~robot (the name that the desk knows; its namespace, or this machine's name where there is none), ~topicName
+(local_mission), ~limit (bytes of the largest bundle), ~patience (seconds for the reader's answer; 10), ~connections (at
+a time; 64). Arguments: see ARGUMENTS.
 """
 
 from __future__ import annotations
 
 import os
 import socket
-from typing import Dict, List, Optional, Tuple
+from typing import Dict, List, Mapping, Optional, Tuple
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import String
 
+from pursue_runtime.arguments import KEYS, LOOPBACK, Argument, port
 from pursue_runtime.bundle import LIMIT
 from pursue_runtime.data import Package
 from pursue_runtime.folders import keys_folder
@@ -29,23 +28,33 @@ from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, Repo
 from pursue_runtime.parameters import number, whole
 from pursue_runtime.trusted_keys import KeyFolder
 
+ARGUMENTS = (
+    KEYS,
+    Argument("host", "ADDRESS", "where to listen (default 127.0.0.1); 0.0.0.0: on all addresses", LOOPBACK),
+    Argument("port", "N", "the port for missions (default 13000)", "13000"),
+    Argument("certificate", "FILE", "a PEM file: TLS on the port for missions"),
+    Argument("private_key", "FILE", "the certificate's key, a PEM file"),
+    Argument("pubsubport", "N", "the port of forwarded topics (default 13001)", "13001"),
+    Argument("forwardedtopics", "TOPICS", "topics of type std_msgs/String that are forwarded, with commas between"),
+)
+
 
 class CommunicationManager:
     """The node: ROS on one side, a thread with the servers on the other."""
 
-    def __init__(self) -> None:
-        host = str(rospy.get_param("~host", "127.0.0.1"))
+    def __init__(self, told: Mapping[str, str]) -> None:
+        host = told["host"] or LOOPBACK
         exposed = not is_loopback(host)
-        keys = str(rospy.get_param("~keys", "")) or keys_folder(os.environ)
+        keys = told["keys"] or keys_folder(os.environ)
         self.record = RequestLog(lambda *text: rospy.logwarn("%s", *text), lambda *text: rospy.loginfo("%s", *text))
         given = rospy.get_param("~", {})
         limit = whole(given, "limit", LIMIT, least=1)
         self.manager = Manager(robot_name(), KeyFolder(keys), self.reader_connected, limit, exposed)
-        context = tls(str(rospy.get_param("~certificate", "")), str(rospy.get_param("~private_key", "")))
+        context = tls(told["certificate"], told["private_key"])
         self.limits = Limits(whole(given, "connections", 64, least=1), number(given, "patience", 10.0, least=1.0))
-        self.sockets = bind(host, whole(given, "port", 13000, most=65535), "~port")
+        self.sockets = bind(host, port(told, "port"), "--port")
         self.server = Server(self.manager, self.sockets, self.publish, self.record, self.limits, context)
-        self.forwarder, topics = self.make_forwarder(host)
+        self.forwarder, topics = self.make_forwarder(host, told)
         services: Tuple[Service, ...] = (self.server, *([self.forwarder] if self.forwarder else []))
         self.background = Background(services, self.record.count)
         self.ending = Ending()
@@ -61,15 +70,15 @@ class CommunicationManager:
         pulses = subscribe("/diagnostics", DiagnosticArray, lambda _: None, self.ending, queue_size=100)
         Diagnostics(self.report, self.ending, Links(pulses, ending=self.ending, lost=self.master_lost))
 
-    def make_forwarder(self, host: str) -> Tuple[Optional[Forwarder], List[str]]:
+    def make_forwarder(self, host: str, told: Mapping[str, str]) -> Tuple[Optional[Forwarder], List[str]]:
         """The socket and the topics that go there; none without topics. Raises ServerError and ParameterError."""
         try:
-            topics = topic_names(str(rospy.get_param("~forwardedtopics", "")))
+            topics = topic_names(told["forwardedtopics"])
         except ValueError as problem:
-            raise ServerError(f"~forwardedtopics: {problem}") from problem
+            raise ServerError(f"--forwardedtopics: {problem}") from problem
         if not topics:
             return None, []
-        sockets = bind(host, whole(rospy.get_param("~", {}), "pubsubport", 13001, most=65535), "~pubsubport")
+        sockets = bind(host, port(told, "pubsubport"), "--pubsubport")
         return Forwarder(sockets, self.record), topics
 
     def log_address(self, host: str, exposed: bool, safe: bool) -> None:
@@ -135,4 +144,4 @@ def robot_name() -> str:
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
     lower_priority()
-    return run_node("communication_manager", lambda: CommunicationManager().run(), ServerError)
+    return run_node("communication_manager", ARGUMENTS, lambda told: CommunicationManager(told).run(), ServerError)

@@ -1,7 +1,7 @@
 """A controller: plays its part of the strategy (strategy.yaml).
 
-Parameters: those of robots (see exeggutor), ~config (another folder of data), ~received (missions from the desk count),
-~again (after a mission it begins anew and waits for the next one).
+Parameters: those of robots (see exeggutor), ~received (missions from the desk count), ~again (after a mission it begins
+anew and waits for the next one). Argument: --config (another folder of data).
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import Dict
 import rospy
 from std_msgs.msg import String
 
+from pursue_runtime.arguments import CONFIG
 from pursue_runtime.controller.follower import Follower
 from pursue_runtime.data import DataError, Package
 from pursue_runtime.folders import ros_home
@@ -23,7 +24,7 @@ from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Endin
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.nodes.state_printer import StatePrinter
 from pursue_runtime.nodes.witness import Witness
-from pursue_runtime.parameters import flag, text
+from pursue_runtime.parameters import flag
 from pursue_runtime.state import LOST, STOPPED, WON, SystemState
 from pursue_runtime.state_filter import OLD, OURS, REFUSED
 from pursue_runtime.strategy import parse_plan
@@ -34,9 +35,9 @@ from pursue_runtime.words import PLAN, format_word
 class Controller:
     """Plays a part of the strategy: publishes commands when they are due, and orders robots what the observer took."""
 
-    def __init__(self, package: Package) -> None:
+    def __init__(self, package: Package, config: str) -> None:
         given = rospy.get_param("~", {})
-        own = own_source(package, "strategy.yaml", text(given, "config"))
+        own = own_source(package, "strategy.yaml", config)
         home = ros_home(os.environ) if flag(given, "received") else ""
         missions, name = Missions(own, package.name, home), rospy.get_name().strip("/")
         again = flag(given, "again")
@@ -191,4 +192,4 @@ class Controller:
 
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
-    return run_node(package.name, lambda: Controller(package).run())
+    return run_node(package.name, [CONFIG], lambda told: Controller(package, told["config"]).run())

@@ -4,9 +4,9 @@ records how long all that takes: for `pursue-gen calibrate`. One robot after the
 Parameters: ~robots (names; all by default), ~times (how often each way, 5), ~actions (how often each action
 that a robot does alone, 0), ~start (where the first robot begins; by
 default each where the scenario has it), ~limit (seconds that a drive may take, 300), ~pause (seconds between two of
-them, 1), ~file (a path; by default pursue/<scenario>/drives.bag under ROS_HOME; no file is ever
-overwritten, the name gets a number), ~config, and how robots are connected, as for controllers: ~goals (action), ~ends
-(result), ~on_stop (cancel), and the others.
+them, 1), and how robots are connected, as for controllers: ~goals (action), ~ends (result), ~on_stop (cancel), and the
+others. Arguments: --file (a path; by default pursue/<scenario>/drives.bag under ROS_HOME; no file is ever overwritten,
+the name gets a number), --config (another folder of data).
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ import rosgraph
 import rospy
 from std_msgs.msg import String
 
+from pursue_runtime.arguments import BAG, CONFIG
 from pursue_runtime.controller.goal import Answer
 from pursue_runtime.controller.settings import Settings, read_settings
 from pursue_runtime.controller.whereabouts import Position, place_of
@@ -58,15 +59,14 @@ LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 class DriveLegs:
     """The node on ROS: one lock, the topics of one robot at a time, a bag."""
 
-    def __init__(self, package: Package) -> None:
+    def __init__(self, package: Package, told: Mapping[str, str]) -> None:
         self.ending = Ending()
         self._given = {**DEFAULTS, **rospy.get_param("~", {})}
-        source = own_source(package, "model.yaml", str(self._given.get("config", "")))
+        source = own_source(package, "model.yaml", told["config"])
         self._waiting = driven_robots(source.read, self._given, _package_folder)
         check_no_mission()
-        file = str(self._given.get("file", ""))
         folder = scenario_folder(os.environ, package.scenario)
-        self.path = reserve_file(file or os.path.join(folder, "drives.bag"), folder)
+        self.path = reserve_file(told["file"] or os.path.join(folder, "drives.bag"), folder)
         self._lock = threading.RLock()
         self._bag: Optional[rosbag.Bag] = rosbag.Bag(self.path + ACTIVE, "w", chunk_threshold=CHUNK)
         with contextlib.suppress(DataError):
@@ -257,4 +257,4 @@ def _package_folder(package: str) -> Optional[str]:
 
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
-    return run_node("drive_legs", lambda: DriveLegs(package).run(), OSError)
+    return run_node("drive_legs", [CONFIG, BAG], lambda told: DriveLegs(package, told).run(), OSError)

@@ -1,6 +1,6 @@
 """Shows the mission in rviz: visualization_msgs/MarkerArray on pursue/markers, latched.
 
-Parameters: ~map_frame (default: map), ~config, ~received, ~again (see membership).
+Parameters: ~map_frame (default: map), ~received, ~again (see membership). Argument: --config (another folder of data).
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import rospy
 from geometry_msgs.msg import Point
 from std_msgs.msg import String
 
+from pursue_runtime.arguments import CONFIG
 from pursue_runtime.data import DataError, Package
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
@@ -44,11 +45,11 @@ HEIGHTS = {LINES: 0.0, DISC: 0.01, ARROW: 0.04, BALL: 0.1, TEXT: 0.2}
 class MarkersNode:
     """Publishes the markers of each state that shows something else than the one before."""
 
-    def __init__(self, package: Package) -> None:
+    def __init__(self, package: Package, config: str) -> None:
         """Raises DataError."""
         self.messages = needed("visualization_msgs", "visualization_msgs.msg", "rosrun UI markers")
         self.ending = Ending()
-        self.membership = Membership(package, self.ending)
+        self.membership = Membership(package, self.ending, config)
         source, model = self.membership.source, self.membership.model
         settings = source.read("ui.yaml")
         plan = read_floor_plan(source.read("poses.yaml"), settings)
@@ -150,4 +151,4 @@ class MarkersNode:
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
     lower_priority()
-    return run_node("markers", lambda: MarkersNode(package).run())
+    return run_node("markers", [CONFIG], lambda told: MarkersNode(package, told["config"]).run())

@@ -35,9 +35,8 @@ class Membership:
     has seen last.
     """
 
-    def __init__(self, package: Package, ending: Ending) -> None:
-        """Raises DataError."""
-        config = rospy.get_param("~config", "")
+    def __init__(self, package: Package, ending: Ending, config: str) -> None:
+        """`config`: the folder of the data files, "" for that of the package. Raises DataError."""
         own = own_source(package, "model.yaml", config)
         given = rospy.get_param("~", {})
         self.received, self.again = flag(given, "received"), flag(given, "again")

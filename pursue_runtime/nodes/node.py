@@ -36,9 +36,11 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rosgraph.xmlrpc import ThreadingXMLRPCServer
 from rosgraph_msgs.msg import Clock
 
+from pursue_runtime.arguments import Argument, ignored, read_arguments
 from pursue_runtime.data import DataError
 from pursue_runtime.links import MASTER_PROBLEMS
 from pursue_runtime.links import REFUSED as MASTER_REFUSED
+from pursue_runtime.parameters import ParameterError
 
 if TYPE_CHECKING:
     from pursue_runtime.nodes.links import Links
@@ -374,18 +376,39 @@ def _end_if_closed(server: Any) -> None:
         raise OSError(errno.EBADF, "the server is closed")
 
 
-def run_node(name: str, run: Callable[[], int], *refusals: Type[Exception]) -> int:
+def run_node(
+    name: str,
+    known: Sequence[Argument],
+    run: Callable[[Mapping[str, str]], int],
+    *refusals: Type[Exception],
+) -> int:
     """Connects the process to ROS as the node `name`, and runs it until it ends; returns its exit status.
 
-    Where `run` raises DataError, or one of `refusals`, the message is logged and the exit status is 3.
+    `run` gets the values of the `known` arguments by name. Where an argument is not known, or `run` raises DataError or
+    one of `refusals`, the message is logged and the exit status is 3.
     """
     expected: Tuple[Type[Exception], ...] = (DataError, *refusals)
-    init_node(name)
     try:
-        return run()
+        told = read_arguments(name, known, rospy.myargv(sys.argv)[1:])
+    except ParameterError as problem:
+        print(f"{name}: {problem}", file=sys.stderr)
+        return REFUSED
+    init_node(name)
+    warn_of_ignored(known)
+    try:
+        return run(told)
     except expected as problem:
         rospy.logfatal("%s", problem)
         return REFUSED
+
+
+def warn_of_ignored(known: Sequence[Argument]) -> None:
+    """Log a warning for each of these arguments that somebody has set as a parameter of the node."""
+    if known:
+        with contextlib.suppress(OSError, rospy.ROSException):
+            sentence = ignored(known, rospy.get_param("~", {}))
+            if sentence:
+                rospy.logwarn("%s", sentence)
 
 
 def lower_priority() -> None:

@@ -14,7 +14,7 @@ import os
 import threading
 import time
 from functools import partial
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, List, Mapping, Optional
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -50,7 +50,7 @@ from pursue_runtime.observer.journal import Journal, last_mission
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planner import Planner, PlannerAnswer
 from pursue_runtime.observer.returning import Returning
-from pursue_runtime.observer.settings import read_settings
+from pursue_runtime.observer.settings import ARGUMENTS, read_settings
 from pursue_runtime.observer.witnesses import contradicts, find_state, mission_seen, unknown_state
 from pursue_runtime.resend import StateRepeats
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, STOPPED, WAITING, WON, SystemState, format_state
@@ -71,13 +71,13 @@ def log(level: str, text: str) -> None:
 class Observer:
     """The mission on ROS: one lock, so that events are taken one by one, in the order of their arrival."""
 
-    def __init__(self, package: Package) -> None:
+    def __init__(self, package: Package, told: Mapping[str, str]) -> None:
         self.package = package
-        self.settings = read_settings(rospy.get_param("~", {}))
+        self.settings = read_settings(rospy.get_param("~", {}), told)
         self.lock = threading.RLock()
         self.ending = Ending()
         self.log_lines, self.after_reaction = Later("log", self.ending), Later("texts", self.ending)
-        own = own_source(package, "model.yaml", rospy.get_param("~config", ""))
+        own = own_source(package, "model.yaml", told["config"])
         home = ros_home(os.environ) if self.settings.received else ""
         self.missions = Missions(own, package.name, home)
         self.newest = Newest(self._journal_name(), self.ending)
@@ -149,7 +149,7 @@ class Observer:
         return Planner(self.settings.planner, game, self.settings.planning_limit, self.answer, searching)
 
     def _journal_name(self) -> str:
-        """One for each launch (~launch), or for each roscore: an observer that is started again goes on with it."""
+        """One for each launch (--launch), or for each roscore: an observer that is started again goes on with it."""
         launch = self.settings.launch or rospy.get_param("/run_id", "")
         return "".join(sign if sign.isalnum() else "_" for sign in launch)
 
@@ -160,7 +160,7 @@ class Observer:
 
     def _journal(self) -> Journal:
         model = json.dumps(self.source.read("model.yaml"), sort_keys=True)
-        settings = {name: value for name, value in sorted(rospy.get_param("~", {}).items()) if name != "launch"}
+        settings = {name: value for name, value in self.settings._asdict().items() if name != "launch"}
         digest = hashlib.sha256(model.encode()).hexdigest()
         header: Dict[str, object] = {"scenario": self.mission.model.scenario, "model": digest, "settings": settings}
         header.update({"mission": self.source.mission, "launch": self._journal_name()})
@@ -396,4 +396,4 @@ class Observer:
 
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
-    return run_node(package.name, lambda: Observer(package).run())
+    return run_node(package.name, ARGUMENTS, lambda told: Observer(package, told).run())

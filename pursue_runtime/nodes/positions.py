@@ -94,7 +94,7 @@ class _Watch:
         with contextlib.suppress(DataError):
             kind = needed("nav_msgs", "nav_msgs.msg", "a planned path").Path
             for robot in self._settings:
-                topic = text(rospy.get_param("~", {}), "path", PATH).format(robot=robot)
+                topic = text(rospy.get_param("~", {}), "path", PATH).replace("{robot}", robot)
                 subscribe(topic, kind, self._path, self._ending, robot, queue_size=1, tcp_nodelay=True)
 
     def _path(self, message: Any, robot: str) -> None:

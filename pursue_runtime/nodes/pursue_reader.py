@@ -1,9 +1,9 @@
 """Takes missions from the desk (topic local_mission), checks and keeps them, and has them played when no other runs.
 
-Parameters: ~robot (the robot's name; its namespace, or this machine's name where there is none), ~keys (the folder of
-the keys that are trusted), ~keep (so many earlier missions), ~limit (bytes of the largest bundle), ~patience (seconds
-after the start without an observer, until missions may be exchanged), ~state_topic, ~nodes (those of missions that run
-on this machine: all, or names with blanks between them).
+Parameters: ~robot (the robot's name; its namespace, or this machine's name where there is none), ~keep (so many earlier
+missions), ~limit (bytes of the largest bundle), ~patience (seconds after the start without an observer, until missions
+may be exchanged), ~state_topic, ~nodes (those of missions that run on this machine: all, or names with blanks between
+them). Argument: --keys (the folder of the keys that are trusted).
 """
 
 from __future__ import annotations
@@ -20,13 +20,14 @@ import rospkg
 import rospy
 from std_msgs.msg import String
 
+from pursue_runtime.arguments import KEYS
 from pursue_runtime.bundle import LIMIT, MISSION, mission_id
 from pursue_runtime.data import Package
 from pursue_runtime.folders import keys_folder, missions_folder
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import OK, WARN, Alarm, Diagnostics, Ending, Report, run_node, subscribe
 from pursue_runtime.nodes.state_message import subscribe_states
-from pursue_runtime.parameters import number, text, whole
+from pursue_runtime.parameters import number, whole
 from pursue_runtime.reader.contents import StoreError
 from pursue_runtime.reader.packages import ALL, packages_here, without_package
 from pursue_runtime.reader.reader import KEYS_PERIOD, PATIENCE, Machine, Reader
@@ -49,11 +50,10 @@ def log(level: str, text: str) -> None:
 class Node:
     """The reader on ROS: one lock, so that orders and states are taken one by one."""
 
-    def __init__(self, scenario: str, ending: Ending, store: Store) -> None:
+    def __init__(self, scenario: str, ending: Ending, store: Store, keys: KeyFolder) -> None:
         self.lock = threading.RLock()
         self.ending = ending
         given = rospy.get_param("~", {})
-        keys = KeyFolder(text(given, "keys") or keys_folder(os.environ))
         limit, patience = whole(given, "limit", LIMIT, least=1), number(given, "patience", PATIENCE)
         nodes, installed = str(rospy.get_param("~nodes", ALL)), mission_packages()
         robot = Machine(robot_name(), scenario, packages_here(nodes, installed), limit)
@@ -146,12 +146,13 @@ def open_store(ending: Ending) -> Store:
 
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
-    return run_node(package.name, lambda: run(package.scenario))
+    return run_node(package.name, [KEYS], lambda told: run(package.scenario, told["keys"]))
 
 
-def run(scenario: str) -> int:
-    """Runs the reader until it ends; returns the exit status. Raises ParameterError."""
+def run(scenario: str, keys: str) -> int:
+    """Runs the reader until it ends, with the trusted keys in the folder `keys`, "" for the default; returns the exit
+    status. Raises ParameterError."""
     ending = Ending()
     with contextlib.suppress(StoreError):
-        Node(scenario, ending, open_store(ending))
+        Node(scenario, ending, open_store(ending), KeyFolder(keys or keys_folder(os.environ)))
     return ending.wait()

@@ -1,9 +1,9 @@
 """Records a mission in a bag, for `pursue-gen replay` and ROS's own tools: complete from its first message on,
 because the UI does not start it before every publisher is connected here, and closed when the mission has ended.
 
-Parameters: ~file (a path, relative to ROS_HOME; "" or true: pursue/<scenario>/mission.bag there; no file is ever
-overwritten, the name gets a number), ~nodes (whose words must not be missed), ~topics (more to record),
-~config, ~received, ~again (see membership).
+Parameters: ~nodes (whose words must not be missed), ~topics (more to record), ~received, ~again (see membership).
+Arguments: --file (a path, relative to ROS_HOME; "" or true: pursue/<scenario>/mission.bag there; no file is ever
+overwritten, the name gets a number), --config (another folder of data).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import io
 import json
 import os
 import threading
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, List, Mapping, Optional
 
 import genpy
 import rosbag
@@ -21,6 +21,7 @@ import rospy
 from pursue_msgs.msg import SystemState as SystemStateMessage
 from std_msgs.msg import String
 
+from pursue_runtime.arguments import BAG, CONFIG
 from pursue_runtime.data import Package
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.nodes.links import Links, is_gone
@@ -69,14 +70,13 @@ class Bag(rosbag.Bag):
 class Recorder:
     """The recorder on ROS: one lock, a subscriber for each topic."""
 
-    def __init__(self, package: Package) -> None:
+    def __init__(self, package: Package, told: Mapping[str, str]) -> None:
         self.ending = Ending()
-        self.membership = Membership(package, self.ending)
+        self.membership = Membership(package, self.ending, told["config"])
         model, settings = self.membership.model, self.membership.source.read("ui.yaml")
         given = rospy.get_param("~", {})
         self.nodes = ["UI", *expected(given, settings.get("nodes", ()))]
-        file = str(rospy.get_param("~file", ""))
-        file = "" if file.lower() == "true" else file
+        file = "" if told["file"].lower() == "true" else told["file"]
         self.path = reserve_file(file, scenario_folder(os.environ, package.scenario))
         self.lock = threading.Lock()
         self.status = ""
@@ -184,7 +184,7 @@ def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
     lower_priority()
     try:
-        return run_node("recorder", lambda: Recorder(package).run())
+        return run_node("recorder", [CONFIG, BAG], lambda told: Recorder(package, told).run())
     except OSError as problem:
         rospy.logfatal("cannot record: %s", problem)
         return REFUSED

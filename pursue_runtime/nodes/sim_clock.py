@@ -111,4 +111,4 @@ def remember(scenario: str) -> Optional[ClockFile]:
 
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
-    return run_node("sim_clock", lambda: run(pace(), package.scenario))
+    return run_node("sim_clock", [], lambda _: run(pace(), package.scenario))

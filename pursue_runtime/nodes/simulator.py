@@ -1,7 +1,7 @@
 """The simulated robots, people and other agents: reports the ends of what they do.
 
 Parameters: ~reports (whose ends; default: those that ui.yaml names, or all), ~delays (random, early, middle,
-late), ~seed, ~config, ~received, ~again (see membership).
+late), ~seed, ~received, ~again (see membership). Argument: --config (another folder of data).
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import rospy
 from geometry_msgs.msg import PoseStamped
 from std_msgs.msg import String
 
+from pursue_runtime.arguments import CONFIG
 from pursue_runtime.data import Package
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
@@ -41,9 +42,9 @@ from pursue_runtime.words import EVENTS, ORDERED, Word, format_word, parse_word
 class SimulatorNode:
     """The simulator on ROS: one lock, an alarm for the next end, a word on pursue/events for each."""
 
-    def __init__(self, package: Package) -> None:
+    def __init__(self, package: Package, config: str) -> None:
         self.ending = Ending()
-        self.membership = Membership(package, self.ending)
+        self.membership = Membership(package, self.ending, config)
         model, settings = self.membership.model, self.membership.source.read("ui.yaml")
         agents = [automaton.name for automaton in model.of_kind(*ACTING)]
         given = rospy.get_param("~", {})
@@ -144,4 +145,4 @@ class SimulatorNode:
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
     lower_priority()
-    return run_node("simulator", lambda: SimulatorNode(package).run(), ValueError)
+    return run_node("simulator", [CONFIG], lambda told: SimulatorNode(package, told["config"]).run(), ValueError)

@@ -29,6 +29,7 @@ from pursue_runtime.nodes.node import (
     restart_process,
     start_thread,
     subscribe,
+    warn_of_ignored,
 )
 from pursue_runtime.nodes.publishing import Newcomers, listeners
 from pursue_runtime.nodes.state_message import subscribe_states
@@ -51,7 +52,7 @@ from pursue_runtime.ui.mission_view import (
     reporters,
     tasks,
 )
-from pursue_runtime.ui.options import Options, read_options
+from pursue_runtime.ui.options import ARGUMENTS, Options, read_options, read_told
 from pursue_runtime.ui.requests import numbered
 from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, Terminal, on_terminal
 from pursue_runtime.ui.trace import TraceError
@@ -380,13 +381,13 @@ def save_verdict(path: str, outcome: str, sentence: str) -> None:
 def main(package: Package) -> int:
     """Runs the node of this package until it ends; returns its exit status."""
     arguments = rospy.myargv(sys.argv)[1:]
-    if {"-h", "--help"} & set(arguments):
-        read_options(arguments, {}, False, ())  # ends here, and needs no roscore
+    told = read_told(arguments)  # --help ends here, and needs no roscore
     lower_priority()
     init_node("UI")
+    warn_of_ignored(ARGUMENTS)
     try:
         ending = Ending()
-        membership = Membership(package, ending)
+        membership = Membership(package, ending, told["config"])
         model, settings = membership.model, membership.source.read("ui.yaml")
         options = read_options(arguments, rospy.get_param("~", {}), on_terminal(), settings.get("nodes", ()))
         player = make_player(options, model)
@@ -395,6 +396,6 @@ def main(package: Package) -> int:
         ui.page.open(settings)
     except (DataError, TraceError) as problem:
         print(f"UI: {problem}", file=sys.stderr)
-        save_verdict(str(rospy.get_param("~verdict", "")), NOT_STARTED, str(problem))
+        save_verdict(told["verdict"], NOT_STARTED, str(problem))
         return 2
     return ui.run()

@@ -72,7 +72,7 @@ class Planner:
     def _run_command(self, request: PlanRequest) -> Tuple[Optional[Dict[str, Any]], str]:
         """The plan, or None and why there is none."""
         if not self._command:
-            return None, "planning is switched off (~planner)"
+            return None, "planning is switched off (--planner)"
         what = {key: value for key, value in request._asdict().items() if key not in ("number", "stamp")}
         text = json.dumps({"format": 1, "game": self._game, **what})
         try:
@@ -87,7 +87,7 @@ class Planner:
                     start_new_session=True,
                 )
         except OSError as problem:
-            return None, f"{self._command[0]} cannot be run here: {problem}; set ~planner to the planner's command"
+            return None, f"{self._command[0]} cannot be run here: {problem}; name another with planner:= or --planner"
         ended = threading.Event()
         threading.Thread(target=self._watch, args=(request.number, ended), name="search", daemon=True).start()
         try:

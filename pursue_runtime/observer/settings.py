@@ -1,11 +1,19 @@
-"""The settings of the observer: parameters of its node, checked before anything is done."""
+"""The settings of the observer: parameters of its node and arguments of its process, checked at its start."""
 
 from __future__ import annotations
 
 from typing import Any, Mapping, NamedTuple
 
+from pursue_runtime.arguments import CONFIG, Argument, command
 from pursue_runtime.observer.shared_ends import ALL, WHOSE
-from pursue_runtime.parameters import choice, command, flag, number, text
+from pursue_runtime.parameters import choice, flag, number
+
+ARGUMENTS = (
+    CONFIG,
+    Argument("planner", "COMMAND", "the command that computes a plan; off: no planning", "pursue-gen replan"),
+    Argument("journal", "FILE", "on (default), off, or the path of the journal", "on"),
+    Argument("launch", "NAME", "identifies the launch: only a mission of this launch is continued"),
+)
 
 ON_UNCOVERED = ("plan", "stop", "warn")
 """What may follow in a state that no strategy covers."""
@@ -32,8 +40,8 @@ class Settings(NamedTuple):
     plain_words: bool
 
 
-def read_settings(given: Mapping[str, Any]) -> Settings:
-    """Return the settings that these parameters give. Raises ParameterError."""
+def read_settings(given: Mapping[str, Any], told: Mapping[str, str]) -> Settings:
+    """Return the settings that these parameters and `told`, the values of ARGUMENTS, give. Raises ParameterError."""
     return Settings(
         time_unit=number(given, "time_unit", 1.0, above=True),
         tolerance=number(given, "tolerance", 0.1),
@@ -41,10 +49,10 @@ def read_settings(given: Mapping[str, Any]) -> Settings:
         lost_after=number(given, "lost_after", 30.0),
         silence=number(given, "silence", 20.0, above=True),
         heartbeat=number(given, "heartbeat", 1.0, above=True),
-        planner=command(given, "planner", "pursue-gen replan"),
+        planner=command(told, "planner"),
         planning_limit=number(given, "planning_limit", 10.0, above=True),
-        journal=text(given, "journal", "on"),
-        launch=text(given, "launch"),
+        journal=told["journal"],
+        launch=told["launch"],
         linger=number(given, "linger", 1.0),
         received=flag(given, "received"),
         again=flag(given, "again"),

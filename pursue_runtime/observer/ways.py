@@ -98,4 +98,4 @@ def check_avoids(answer: Mapping[str, Any], ways: Collection[Way]) -> None:
         except (AttributeError, KeyError, TypeError) as problem:
             raise DataError(f"its strategies lack or misspell something: {problem!r}") from problem
         if not movements.isdisjoint(commands):
-            raise DataError(f"it uses {in_words(way)}, which is blocked; ~planner has to be of this version")
+            raise DataError(f"it uses {in_words(way)}, which is blocked; --planner has to be of this version")

@@ -1,12 +1,13 @@
-"""The options of the UI: parameters of its node, or the command line, which takes precedence."""
+"""The options of the UI: arguments of its process, and parameters of its node, over which arguments take precedence."""
 
 from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, Mapping, Sequence, Tuple
+from typing import Any, Dict, Mapping, Sequence, Tuple
 
-from pursue_runtime.parameters import ParameterError, choice, flag, names, number, text, whole
+from pursue_runtime.arguments import CONFIG, LOOPBACK, Argument, add_arguments, port, values
+from pursue_runtime.parameters import ParameterError, choice, flag, names, number, whole
 
 MODES = {
     "ask": "you choose what the uncontrollable agents do",
@@ -22,6 +23,16 @@ SHOWS = {
     ALL_TOPICS: "all communication: also the robots' actions and the system state",
 }
 """What the terminal shows; e and f are modes of the thesis's UI."""
+
+ARGUMENTS = (
+    CONFIG,
+    Argument("trace", "FILE", "YAML list of {at: time units, do: word}; implies --mode trace"),
+    Argument("verdict", "FILE", "write there how the mission ended, when it has"),
+    Argument("host", "ADDRESS", "of --web: 127.0.0.1 (default), 0.0.0.0 for all", LOOPBACK),
+    Argument("port", "N", "of --web (default 8080; 0: any that is free)", "8080"),
+    Argument("token", "WORD", "of --web: who opens the page must know it; one is made for every address but loopback"),
+)
+"""What only the one who starts the process may say."""
 
 MIN_TOKEN_LENGTH = 8  # characters of a token
 
@@ -53,19 +64,18 @@ def read_options(arguments: Sequence[str], params: Mapping[str, Any], terminal: 
 
     Raises ParameterError; argparse ends the program on `--help` and on an unknown argument.
     """
-    given = vars(_parser().parse_args(list(arguments)))
-    found = dict(params)
-    found.update((name, value) for name, value in given.items() if value is not None)
-    trace = str(found.get("trace") or "")
+    told, given = read_told(arguments), vars(_parser().parse_args(list(arguments)))
+    found = {**params, **{name: value for name, value in given.items() if value is not None}, **told}
+    trace = told["trace"]
     usual = "trace" if trace else "ask" if terminal else "still"
     mode = choice({"mode": found.get("mode") or usual}, "mode", usual, tuple(MODES))
     if mode == "trace" and not trace:
-        raise ParameterError("~mode trace needs a trace file: --trace FILE or the parameter ~trace")
+        raise ParameterError("~mode trace needs a trace file: --trace FILE")
     web = flag(found, "web", False)
-    token = str(found.get("token") or "")
+    token = told["token"]
     if token and len(token) < MIN_TOKEN_LENGTH:
         hint = f"expected at least {MIN_TOKEN_LENGTH}, or no token: then one is generated"
-        raise ParameterError(f"~token has {len(token)} characters; {hint}")
+        raise ParameterError(f"--token has {len(token)} characters; {hint}")
     autostart = flag(found, "autostart", not terminal and not web)
     return Options(
         mode=mode,
@@ -77,13 +87,18 @@ def read_options(arguments: Sequence[str], params: Mapping[str, Any], terminal: 
         pace=number(found, "pace", 5.0, above=True),
         ends=flag(found, "ends", False),
         web=web,
-        host=str(found.get("host") or "127.0.0.1"),
-        port=whole(found, "port", 8080, most=65535),
+        host=told["host"] or LOOPBACK,
+        port=port(told, "port"),
         token=token,
-        verdict=text(found, "verdict"),
+        verdict=told["verdict"],
         stay=web and flag(found, "stay", terminal and not autostart),
         show=choice(found, "show", IN_WORDS, tuple(SHOWS)),
     )
+
+
+def read_told(arguments: Sequence[str]) -> Dict[str, str]:
+    """The value of each of ARGUMENTS; argparse ends the program on `--help` and on an unknown argument."""
+    return values(ARGUMENTS, vars(_parser().parse_args(list(arguments))))
 
 
 def expected(params: Mapping[str, Any], listed: Sequence[str]) -> Tuple[str, ...]:
@@ -101,11 +116,10 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="rosrun UI UI", description="Starts the mission, shows what happens, and says how it ends.",
         epilog="Exit status: 0 the goal is reached, 1 not, 2 the options are wrong. "
-        "Every option is also a parameter of the node (~mode, ~trace and so on).",
+        "Options that name no file, address or token are also parameters of the node (~mode, ~seed and so on).",
     )
     parser.add_argument("--mode", metavar="MODE", help="; ".join(f"{mode}: {what}" for mode, what in MODES.items()))
     parser.add_argument("--show", metavar="WHAT", help="; ".join(f"{what}: {says}" for what, says in SHOWS.items()))
-    parser.add_argument("--trace", metavar="FILE", help="YAML list of {at: time units, do: word}; implies --mode trace")
     parser.add_argument("--seed", metavar="N", help="for --mode random (default 0)")
     parser.add_argument("--pace", metavar="T", help="for --mode random: mean time units between two events (default 5)")
     parser.add_argument("--wait", metavar="S", help="seconds to wait for the other nodes (default 30)")
@@ -117,11 +131,7 @@ def _parser() -> argparse.ArgumentParser:
         "--ends", action="store_true", default=None, help="without a simulator: everybody's ends are reported here"
     )
     parser.add_argument("--web", action="store_true", default=None, help="serve a page for browsers as well")
-    parser.add_argument("--host", metavar="ADDRESS", help="of --web: 127.0.0.1 (default), 0.0.0.0 for all")
-    parser.add_argument("--port", metavar="N", help="of --web (default 8080; 0: any that is free)")
-    parser.add_argument("--token", metavar="WORD", help="of --web: who opens the page must know it; one is made for "
-                        "every address but loopback")
     parser.add_argument("--stay", action="store_true", default=None, help="of --web: the page stays after the mission, "
                         "until it is closed there (default on a terminal, without --autostart)")
-    parser.add_argument("--verdict", metavar="FILE", help="write there how the mission ended, when it has")
+    add_arguments(parser, ARGUMENTS)
     return parser

@@ -254,6 +254,25 @@ class LaunchedMission:
                     return int(slave.getPid("/test")[2])  # type: ignore[index]
         return 0
 
+    def set_parameter(self, name: str, value: object) -> None:
+        """Set a parameter of the master, as anybody can who reaches it."""
+        with xmlrpc.client.ServerProxy(self._uri) as master:
+            assert master.setParam("/stranger", name, value)[0] == 1  # type: ignore[arg-type, index]
+
+    def parameters(self) -> object:
+        """All parameters, as anybody can read them who reaches the master."""
+        with xmlrpc.client.ServerProxy(self._uri) as master:
+            return master.getParam("/stranger", "/")[2]  # type: ignore[index]
+
+    def shut_down(self, node: str) -> int:
+        """Have a node end, as anybody can who reaches it (rosnode kill); its process."""
+        process: int = self.until(lambda: self.pid(node))
+        with xmlrpc.client.ServerProxy(self._uri) as master:
+            _, _, uri = master.lookupNode("/stranger", f"/{node}")  # type: ignore[misc]
+        with xmlrpc.client.ServerProxy(str(uri), transport=Hasty()) as slave:
+            slave.shutdown("/stranger", "tests")
+        return process
+
     def delete_parameter(self, name: str) -> None:
         """Deletes a parameter of the master."""
         with xmlrpc.client.ServerProxy(self._uri) as master:

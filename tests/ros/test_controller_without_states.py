@@ -20,7 +20,7 @@ def test_words_of_a_controller_that_does_not_hear_the_observer_count_nothing(
 ) -> None:
     workspace, source = built("thesis/scenario_1"), "source devel/setup.bash; "
     with ros.master() as where:
-        command = f"{source}exec rosrun observer observer _planner:=off _on_uncovered:=warn"
+        command = f"{source}exec rosrun observer observer --planner off _on_uncovered:=warn"
         log = tmp_path / "observer"
         observer = ros.start(command, workspace, log, PYTHONUNBUFFERED="1", **where)
 

@@ -27,7 +27,7 @@ def test_one_robot_after_the_other_drives_all_ways_and_acts_and_ctrl_c_keeps_wha
     workspace = robots_workspace(ros, "thesis/scenario_1", ("bot1", "bot2"))
     log, bag = tmp_path / "log", tmp_path / "drives.bag"
     log.touch()
-    command = f"source devel/setup.bash; exec rosrun UI drive_legs _times:=1 _actions:=1 _pause:=0.05 _file:={bag}"
+    command = f"source devel/setup.bash; exec rosrun UI drive_legs _times:=1 _actions:=1 _pause:=0.05 --file {bag}"
     with ros.master() as there:
         mission = ros.start("source devel/setup.bash; exec " + PUBLISHES, workspace, tmp_path / "mission", **there)
         try:

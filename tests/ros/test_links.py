@@ -184,7 +184,7 @@ def play(made: Nodes, unit: float, options: str = "") -> None:
     """Starts the nodes of scenario 1, in real time (what is cut off would have no /clock); it takes some 20 units."""
     for node, room in MACHINES.items():
         package = "UI" if node == "simulator" else node
-        told = {"observer": f"_time_unit:={unit} _journal:=off {options}", "UI": f"--autostart --wait {PATIENCE}"}
+        told = {"observer": f"_time_unit:={unit} --journal off {options}", "UI": f"--autostart --wait {PATIENCE}"}
         made.start(node, f"source devel/setup.bash; exec devel/lib/{package}/{node} {told.get(node, '')}", room)
 
 
@@ -209,7 +209,7 @@ def test_a_mission_whose_robot_is_cut_off_goes_on_by_itself(
 
 
 OTHERS = {"recorder": "UI/recorder", "sim_clock": "UI/sim_clock", "reader": "pursue_reader/pursue_reader",
-          "manager": "communication_manager/communication_manager _port:=0"}
+          "manager": "communication_manager/communication_manager --port 0"}
 
 
 @pytest.mark.parametrize("way, reason", [

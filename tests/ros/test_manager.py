@@ -143,9 +143,9 @@ def test_missions_come_over_http_whoever_is_killed(ros: Ros, built: Build, tmp_p
         status, told = there.order(PREPARE, OWN)
         assert (status, told["ok"]) == (200, True), told
 
-        command = f"source devel/setup.bash; rosrun communication_manager communication_manager _port:={there.port}"
+        command = f"source devel/setup.bash; rosrun communication_manager communication_manager --port {there.port}"
         second = ros.run(command, workspace, ROS_HOME=str(tmp_path), ROS_MASTER_URI=there.uri)
-        assert second.returncode == 3 and "choose another ~port" in second.stdout
+        assert second.returncode == 3 and "choose another --port" in second.stdout
         assert "Traceback" not in second.stdout
     log = (tmp_path / "launch.log").read_text(errors="replace")
     assert "Traceback" not in log, log

@@ -24,8 +24,10 @@ WRONG = {
     "UI simulator _delays:=never": "~delays is 'never'; expected one of ",
     "UI sim_clock _speed:=0": f"~speed is 0; {ABOVE}",
     "UI recorder _received:=7": "~received is 7; expected true or false",
+    "observer observer --plan=off": "unrecognized arguments: --plan=off",
+    "observer observer --planner=": "--planner is ''; expected a command, or off",
     "pursue_reader pursue_reader _keep:=0": "~keep is 0; expected a whole number of at least 1",
-    "communication_manager communication_manager _port:=70000": "~port is 70000; expected a whole number",
+    "communication_manager communication_manager --port=70000": "--port is '70000'; expected a whole number",
 }  # fmt: skip
 
 

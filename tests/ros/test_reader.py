@@ -84,6 +84,11 @@ class RunningReader:
         text = write_order(Order(action, digest, size=size, bundle=seal, **given), key)
         return json.dumps({"order": text, **({"bundle": base64.b64encode(bundle).decode()} if bundle else {})})
 
+    def set_parameter(self, name: str, value: str) -> None:
+        """Set a parameter of the master, as anybody can who reaches it."""
+        with xmlrpc.client.ServerProxy(self._uri) as master:
+            assert master.setParam("/stranger", name, value)[0] == 1  # type: ignore[index]
+
     def kill(self) -> None:
         """kill -9."""
         with xmlrpc.client.ServerProxy(self._uri) as master:
@@ -176,3 +181,24 @@ def test_missions_that_come_are_checked_kept_and_survive_the_reader(ros: Ros, bu
         )
     log = (tmp_path / "launch.log").read_text(errors="replace")
     assert "Traceback" not in log and log.count("refused (") < 10
+
+
+def test_a_folder_of_keys_that_somebody_sets_as_a_parameter_is_not_trusted(
+    ros: Ros, built: Build, tmp_path: Path
+) -> None:
+    _, data = mission_of("scenario_1", files("thesis/scenario_1"))
+    manifest = make_manifest("scenario_1", "0", ("controller_bot1", "controller_bot2"), data)
+    theirs = tmp_path / "theirs"
+    theirs.mkdir()
+    (theirs / "stranger.pub").write_text(write_public_key(STRANGER.public_key(), "stranger"))
+    with running_reader(ros, built("thesis/scenario_1", "distributed", make_whole), tmp_path) as there:
+        first = there.until(lambda status: True)
+        there.set_parameter("/bot1/pursue_reader/keys", str(theirs))
+        there.kill()
+        there.until(lambda status: status["ticket"] != first["ticket"] and status["answer"] is None)
+        strange = pack(manifest, data, STRANGER)
+        there.publish("/bot1/local_mission", there.order(PREPARE, manifest.digest, strange, key=STRANGER))
+        there.publish("/bot1/local_mission", there.order(PREPARE, manifest.digest, strange))
+        refused = there.until(lambda status: status["answer"] is not None)
+        assert refused["answer"]["code"] == "unknown_key" and there.stored() == []
+    assert "ignored parameters: ~keys" in (tmp_path / "launch.log").read_text(errors="replace")

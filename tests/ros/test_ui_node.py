@@ -77,7 +77,7 @@ def test_missing_nodes_are_named_and_nothing_is_started(package: Path, where: Di
     (["--mode", "quick"], "expected one of ask, still, random, trace"),
     (["--trace", "/nowhere/trace.yaml"], "cannot read the trace /nowhere/trace.yaml"),
     (["_pace:=soon", "__name:=hasty"], "pace is 'soon'; expected a number"),
-    (["_config:=/nowhere", "__name:=lost"], "no model.yaml in /nowhere"),
+    (["--config", "/nowhere", "__name:=lost"], "no model.yaml in /nowhere"),
 ])
 def test_a_wrong_start_is_refused_in_one_line(package: Path, where: Dict[str, str], arguments: list, says: str) -> None:
     done = run(package, where, *arguments)

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import re
+import shlex
 from pathlib import Path
-from typing import Any, Dict, List
+from typing import Any, Callable, Dict, List
 
 import pytest
 
 from pursue_gen.language import load
 from pursue_gen.solving.solution import Rules, solve_scenario
 from pursue_gen.workspace import Options, write_workspace
+from pursue_runtime.arguments import BAG, CONFIG, KEYS, read_arguments
+from pursue_runtime.observer import settings
+from pursue_runtime.ui import options
 
 roslaunch = pytest.importorskip("roslaunch", reason="ROS is not installed")
+manager_node = pytest.importorskip("pursue_runtime.nodes.communication_manager")
 
 SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "thesis" / "scenario_1.pur"
 MISSION = ["observer", "controller_bot1", "controller_bot2", "controllerObj", "simulator", "UI"]
@@ -57,6 +62,10 @@ class Launched:
         self.nodes = {(node.namespace + node.name).lstrip("/"): node for node in config.nodes}
         self.params: Dict[str, Any] = {name: param.value for name, param in config.params.items()}
         self.cleared = {name.strip("/") for name in config.clear_params}
+
+    def told(self, node: str) -> Dict[str, str]:
+        """What the process of a node is told: its arguments by name, as roslaunch splits them."""
+        return dict(word[2:].split("=", 1) for word in shlex.split(self.nodes[node].args))
 
     @property
     def names(self) -> List[str]:
@@ -113,8 +122,8 @@ def test_what_an_earlier_launch_has_set_on_the_same_master_does_not_count(launch
     found = launch("mission.launch", "simulate:=false", "record:=true", f"robots:={robots}", "verdict:=/tmp/v")
     first, then = set(found.params), set(launch("mission.launch", "simulate:=false", "record:=true").params)
     left = {name.split("/")[1] for name in first - then}
-    assert {"controller_bot1", "controller_bot2", "UI"} <= left
-    assert left <= found.cleared and "recorder" in found.cleared
+    assert {"controller_bot1", "controller_bot2"} <= left
+    assert left <= found.cleared and {"UI", "recorder"} <= found.cleared
 
 
 def test_nodes_behave_as_those_of_the_thesis_where_that_is_asked_for(launch: Any) -> None:
@@ -184,6 +193,53 @@ def test_one_launch_line_for_real_robots_is_documented_everywhere(packages: Path
         assert bare == {"roslaunch  mission.launch simulate:=false"}, page
 
 
+READ: Dict[str, Callable[[List[str]], Any]] = {
+    "observer": lambda words: read_arguments("observer", settings.ARGUMENTS, words),
+    "recorder": lambda words: read_arguments("recorder", [CONFIG, BAG], words),
+    "UI": options.read_told,
+    "base/communication_manager": lambda words: read_arguments("", manager_node.ARGUMENTS, words),
+    "base/pursue_reader": lambda words: read_arguments("", [KEYS], words),
+}  # fmt: skip
+GIVEN = {
+    "planner": ("observer", "planner", "timeout 20 'my planner' --fast"),
+    "journal": ("observer", "journal", "/o'brien/a journal"),
+    "record": ("recorder", "file", "/o'brien/007"),
+    "trace": ("UI", "trace", "/a/trace.yaml"),
+    "verdict": ("UI", "verdict", "/a b/verdict"),
+    "token": ("UI", "token", "0012345678"),
+    "keys": ("base/pursue_reader", "keys", "/my keys"),
+    "certificate": ("base/communication_manager", "certificate", "/robot.pem"),
+    "private_key": ("base/communication_manager", "private_key", "-/robot.key"),
+    "forwardedtopics": ("base/communication_manager", "forwardedtopics", "/pursue/events,/pursue/system_state"),
+}
+
+
+@pytest.mark.parametrize("name", sorted(GIVEN))
+def test_programs_keys_files_and_addresses_are_arguments_of_the_process_and_no_parameters(
+    launch: Any, name: str
+) -> None:
+    node, argument, value = GIVEN[name]
+    file = ["robot.launch", "name:=base"] if "/" in node else ["mission.launch"]
+    found = launch(*file, f"{name}:={value}")
+    assert READ[node](shlex.split(found.nodes[node].args))[argument] == value
+    assert not [param for param in found.params if param.endswith(f"/{argument}")]
+
+
+def test_what_is_not_given_is_as_the_nodes_document_it(launch: Any) -> None:
+    found = {**launch("mission.launch", "record:=true").nodes, **launch("robot.launch", "name:=base").nodes}
+    for node, read in READ.items():
+        told, usual = read(shlex.split(found[node].args)), read([])
+        own = {"launch", "file"}  # the launch is named, and true means what is usual
+        assert {key: told[key] for key in set(told) - own} == {key: usual[key] for key in set(usual) - own}, node
+
+
+def test_an_observer_that_is_started_again_belongs_to_the_same_launch(launch: Any) -> None:
+    found = launch("mission.launch")
+    first, again = (found.told("observer")["launch"] for _ in range(2))
+    assert first == again and "$" not in first and first.startswith("mission_")
+    assert launch("mission.launch").told("observer")["launch"] != first, "each launch has a name of its own"
+
+
 @pytest.mark.parametrize("file", ["mission.launch", "robot.launch"])
 def test_a_node_that_is_not_there_is_an_error_that_lists_those_that_are(launch: Any, file: str) -> None:
     named = ["name:=bot1"] if file == "robot.launch" else []
@@ -237,9 +293,10 @@ def test_a_robot_takes_missions_and_plays_its_part_of_them(launch: Any) -> None:
     assert found.names == ["UI", "base/communication_manager", "base/pursue_reader", "observer"]
     params = found.params
     manager, reader = "/base/communication_manager", "/base/pursue_reader"
-    assert (params[f"{manager}/host"], params[f"{manager}/port"]) == ("10.0.0.2", 13100)
-    assert (params["/UI/host"], params["/UI/port"], params["/UI/web"]) == ("127.0.0.1", 81, True)
-    assert params[f"{manager}/keys"] == params[f"{reader}/keys"] == "/keys"
+    told = found.told("base/communication_manager")
+    assert (told["host"], told["port"]) == ("10.0.0.2", "13100")
+    assert (found.told("UI")["host"], found.told("UI")["port"], params["/UI/web"]) == ("127.0.0.1", "81", True)
+    assert told["keys"] == found.told("base/pursue_reader")["keys"] == "/keys"
     assert params[f"{manager}/robot"] == params[f"{reader}/robot"] == "base"
     assert (params[f"{reader}/keep"], params["/observer/time_unit"]) == (9, 2)
     assert params[f"{reader}/nodes"] == "observer UI", "the desk is told what runs here"
@@ -264,8 +321,10 @@ def test_parameters_of_the_nodes_that_take_missions_are_those_of_their_own_launc
 ) -> None:
     own = (packages / package / "launch" / f"{package}.launch").read_text()
     known = set(re.findall(r'<param [^>]*?\bname="(\w+)"', own))
-    ours = {name.split("/")[-1] for name in launch("robot.launch", "name:=bot1").params if f"/{package}/" in name}
+    robot = launch("robot.launch", "name:=bot1")
+    ours = {name.split("/")[-1] for name in robot.params if f"/{package}/" in name}
     assert ours and ours <= known
+    assert list(robot.told(f"bot1/{package}")) == re.findall(r"--(\w+)=", own)
 
 
 @pytest.mark.parametrize("file", ["mission.launch", "robot.launch"])

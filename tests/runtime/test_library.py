@@ -327,7 +327,7 @@ def test_data_is_found_in_the_source_and_in_the_install_space(tmp_path: Path) ->
         assert data_file(Package("bot", "example", str(script)), "model.yaml") == str(place / "model.yaml")
     package = Package("bot", "example", str(source))
     assert data_file(package, "model.yaml", str(places[1])) == str(places[1] / "model.yaml")
-    with pytest.raises(DataError, match="~config"):
+    with pytest.raises(DataError, match="--config"):
         data_file(package, "nothing.yaml")
 
 

@@ -9,6 +9,7 @@ from typing import Dict
 from worlds import REACTION, world
 
 from pursue_gen.workspace import Options, generate
+from pursue_runtime import arguments
 
 LOOPBACK = "127.0.0.1"
 OPENS = re.compile(r"\bbind(_sockets)?\(|\.listen\(|create_server\(")
@@ -38,10 +39,11 @@ def test_nodes_do_so_too_where_nobody_has_given_an_address() -> None:
     """As `rosrun` starts them. Nothing but these two listens, but for ROS itself."""
     found = {}
     for path, text in files().items():
-        for default in re.findall(r"""get_param\("~host", ([^)]*)\)|found\.get\("host"\) or ([^)]*)\)""", text):
-            found[path.rsplit("/", 1)[-1]] = "".join(default).strip('"')
+        for default in re.findall(r"""told\["host"\] or (\w+)""", text):
+            found[path.rsplit("/", 1)[-1]] = default
         if path.endswith("ui/options.py"):
             assert re.search(rf'^    host: str = "{LOOPBACK}"$', text, re.MULTILINE)
-    assert found == {"communication_manager.py": LOOPBACK, "options.py": LOOPBACK}
+    assert found == {"communication_manager.py": "LOOPBACK", "options.py": "LOOPBACK"}
+    assert arguments.LOOPBACK == LOOPBACK
     listening = {path.rsplit("/", 1)[-1] for path, text in files().items() if OPENS.search(text)}
     assert listening == {"communication_manager.py", "background.py", "web.py"}, listening

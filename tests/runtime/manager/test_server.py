@@ -397,7 +397,7 @@ def test_a_certificate_that_cannot_be_used_is_reported_with_what_to_do(tmp_path:
                   tuple(map(str, certificate(locked, b"secret")))):
         with pytest.raises(ServerError, match="PEM files"):
             tls(*files)
-    with pytest.raises(ServerError, match="~certificate"):
+    with pytest.raises(ServerError, match="--certificate"):
         tls("", str(key))
 
 

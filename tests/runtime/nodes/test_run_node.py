@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import signal
+import sys
 import threading
-from typing import Iterator, List
+from typing import Any, Iterator, List, Mapping
 
 import pytest
 
@@ -13,6 +14,7 @@ pytest.importorskip("rospy", reason="ROS is not installed")
 import rospy
 from rosgraph.xmlrpc import XmlRpcHandler, XmlRpcNode
 
+from pursue_runtime.arguments import CONFIG
 from pursue_runtime.data import DataError
 from pursue_runtime.nodes.node import init_node, run_node
 from tests.waiting import PATIENCE, until
@@ -29,6 +31,7 @@ def log(monkeypatch: pytest.MonkeyPatch) -> Iterator[List[str]]:
         lines.append(name)
 
     monkeypatch.setattr(rospy, "init_node", connect)
+    monkeypatch.setattr(sys, "argv", ["observer", "__name:=observer"])
     monkeypatch.setattr(rospy, "logfatal", lambda text, *parts: lines.append(text % parts))
     yield lines
     for sign, handler in handlers.items():
@@ -36,25 +39,43 @@ def log(monkeypatch: pytest.MonkeyPatch) -> Iterator[List[str]]:
 
 
 def test_its_exit_status_is_what_it_returns(log: List[str]) -> None:
-    assert run_node("observer", lambda: len(log)) == 1
+    assert run_node("observer", [], lambda _: len(log)) == 1
     assert log == ["observer"]
 
 
 @pytest.mark.parametrize("problem", [DataError("model.yaml: no 100%"), KeyError("a parameter")])
 def test_what_it_refuses_is_logged_and_its_status_is_3(log: List[str], problem: Exception) -> None:
-    def run() -> int:
+    def run(_: Mapping[str, str]) -> int:
         raise problem
 
-    assert run_node("observer", run, KeyError) == 3
+    assert run_node("observer", [], run, KeyError) == 3
     assert log == ["observer", str(problem)]
 
 
+def test_it_gets_the_arguments_of_its_process(log: List[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rospy, "get_param", lambda *_: {"config": "/elsewhere"})
+    monkeypatch.setattr(rospy, "logwarn", lambda text, *parts: log.append(text % parts))
+    monkeypatch.setattr(sys, "argv", ["observer", "--config", "/here", "__name:=observer", "_config:=/elsewhere"])
+    told: Any = {}
+    assert run_node("observer", [CONFIG], lambda given: told.update(given) or 0) == 0
+    assert told == {"config": "/here"}
+    assert len(log) == 2 and "ignored parameters: ~config" in log[1]
+
+
+def test_an_argument_that_is_not_known_is_refused_before_it_connects(
+    log: List[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["observer", "--plan", "x"])
+    assert run_node("observer", [CONFIG], lambda _: 0) == 3
+    assert log == [] and "unrecognized arguments: --plan x" in capsys.readouterr().err
+
+
 def test_another_exception_is_raised(log: List[str]) -> None:
-    def run() -> int:
+    def run(_: Mapping[str, str]) -> int:
         raise KeyError("a parameter")
 
     with pytest.raises(KeyError):
-        run_node("observer", run)
+        run_node("observer", [], run)
     assert log == ["observer"]
 
 

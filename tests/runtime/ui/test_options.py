@@ -29,7 +29,7 @@ def test_the_command_line_wins() -> None:
 
 def test_a_trace_says_its_mode() -> None:
     assert read(["--trace", "t.yaml"]).mode == "trace"
-    assert read(params={"trace": "", "mode": "still"}).mode == "still"
+    assert read(["--trace", ""], {"mode": "still"}).mode == "still"
 
 
 def test_flags_are_true_or_false() -> None:
@@ -42,7 +42,7 @@ def test_a_page_is_served_on_loopback_where_it_is_wanted() -> None:
     assert not read().web
     options = read(["--web"])
     assert (options.web, options.host, options.port, options.token) == (True, "127.0.0.1", 8080, "")
-    options = read(params={"web": True, "host": "0.0.0.0", "port": 0, "token": 123456789})
+    options = read(["--host", "0.0.0.0", "--port", "0", "--token", "123456789"], {"web": True})
     assert (options.web, options.host, options.port, options.token) == (True, "0.0.0.0", 0, "123456789")
 
 
@@ -60,12 +60,28 @@ def test_a_page_outlives_the_mission_where_a_person_at_a_terminal_starts_it() ->
     assert read(["--stay"], terminal=True).stay is False, "there is no page"
 
 
+@pytest.mark.parametrize("arguments, expected", [
+    (["--port", "65536"], "--port is '65536'; expected a whole number of at least 0, at most 65535"),
+    (["--port", "80.5"], "--port is '80.5'; expected a whole number"),
+    (["--port=-1"], "--port is '-1'; expected a whole number of at least 0"),
+    (["--port", "http"], "--port is 'http'; expected a whole number"),
+    (["--token", "short"], "--token has 5 characters; expected at least 8"),
+])
+def test_a_wrong_argument_is_refused(arguments: list, expected: str) -> None:
+    with pytest.raises(ParameterError) as caught:
+        read(arguments)
+    assert expected in str(caught.value)
+
+
+def test_what_is_for_the_one_who_starts_it_is_no_parameter() -> None:
+    others = {"trace": "/etc/passwd", "verdict": "/etc/passwd", "host": "0.0.0.0", "port": 80, "token": "known to all"}
+    options = read(params={**others, "web": True, "mode": "still"})
+    assert (options.trace, options.verdict, options.token) == ("", "", "")
+    assert (options.host, options.port) == ("127.0.0.1", 8080)
+    assert read(["--trace=none", "--verdict=none", "--token=none"]) == read(), "as launch files have it"
+
+
 @pytest.mark.parametrize("params, expected", [
-    ({"port": 65536}, "~port is 65536; expected a whole number of at least 0, at most 65535"),
-    ({"port": 80.5}, "~port is 80.5; expected a whole number"),
-    ({"port": -1}, "~port is -1; expected a whole number of at least 0"),
-    ({"port": "http"}, "~port is 'http'; expected a whole number"),
-    ({"token": "short"}, "token has 5 characters; expected at least 8"),
     ({"web": "perhaps"}, "web is 'perhaps'; expected true or false"),
     ({"mode": "quick"}, "mode is 'quick'; expected one of ask, still, random, trace"),
     ({"mode": "trace"}, "needs a trace file"),
