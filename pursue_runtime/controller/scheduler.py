@@ -34,10 +34,11 @@ class CommandScheduler:
         self._ordered: FrozenSet[Tuple[str, str, int]] = frozenset()  # the orders that were given, and still stand
         self._unanswered = 0
         self._patience: Optional[float] = None
+        self._waits = False  # a command is due, but its robot is not ready for it
 
     def next_wakeup(self) -> Tuple[Optional[float], Optional[float]]:
         """Return when to call `on_timer`: a time, or seconds of real time until a word counts as lost."""
-        return (self.planned[0] if self.planned else None), self._patience
+        return (self.planned[0] if self.planned and not self._waits else None), self._patience
 
     def add_plan(self, plan: int, strategy: Strategy, now: float) -> Word:
         """Add a plan for the states that name it; return the word that acknowledges it."""
@@ -71,10 +72,11 @@ class CommandScheduler:
         if before is not None and (before.seq, before.status) == (state.seq, state.status):
             # The answer to a ping, or a heartbeat; a robot that has acknowledged an order may get the next command.
             self.is_new = self.planned is not None and before.orders != state.orders
+            self._waits = self._waits and not self.is_new
             return orders
         self.is_new = self._look_for_what_stands(before, state)
         if self.is_new:
-            self.planned, self._patience, self._unanswered = None, None, 0
+            self.planned, self._patience, self._unanswered, self._waits = None, None, 0, False
         if self.is_new and state.status in LIVE:
             self._plan(now)
         if before is not None and self._is_by_hand(before, state):
@@ -91,7 +93,7 @@ class CommandScheduler:
         state = self.state
         if state is None or state.status != RUNNING:
             return None
-        self._patience = None
+        self._patience, self._waits = None, False
         strategy = self._plans.strategy_for(state)
         if strategy is None:
             return None
@@ -105,7 +107,7 @@ class CommandScheduler:
         command = self.planned[1]
         busy = {order.agent for order in parse_orders(state.orders) if order.at_once}
         if (command.agent in busy and command.origin != command.target) or not may_begin(command):
-            self._patience = UNREADY
+            self._patience, self._waits = UNREADY, True
             return None
         self.planned = None
         self._patience = resend_timeout(self._unanswered + 1, strategy.reaction * state.unit)

@@ -344,11 +344,13 @@ def test_a_late_node_sees_the_mission_and_a_stop_ends_all_nodes_with_status_1(
     """Nothing is started again here but by hand."""
     with launched(ros, scenario, tmp_path, required=False, respawn=False, time_unit=6) as run:
         before = run.until_step("bot2_c2a")
+        words = Path(f"/proc/{run.pid('observer')}/cmdline").read_bytes().decode().split("\0")
+        launch = next(word for word in words if word.startswith("--launch="))
         run.kill("observer")
         run.publish("Finish!")  # not the observer's
         time.sleep(2.5)
         known = len(run.states())
-        with run.node("observer", "observer") as observer, run.node("UI", "UI", "__name:=UI2") as late:
+        with run.node("observer", "observer", launch) as observer, run.node("UI", "UI", "__name:=UI2") as late:
             run.until(lambda: "the mission runs" in late.output())
             after = run.until(lambda: run.states()[known:])[-1]
             assert (after.seq, after.status) == (before.seq, "running")

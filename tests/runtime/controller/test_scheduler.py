@@ -190,8 +190,9 @@ def test_a_robot_does_not_leave_before_it_has_acknowledged_what_it_was_to_do_at_
     bot = player()
     waiting = state(4, 100.0, clock=5.5, orders=["bot:wave@4/c!"])
     bot.on_state(waiting, 100.0)
-    assert bot.on_timer(100.1) is None and bot.next_wakeup()[1] is not None
+    assert bot.on_timer(100.1) is None and bot.next_wakeup() == (None, UNREADY), "not at once again"
     assert bot.on_state(waiting._replace(stamp=100.2, orders=()), 100.2) == [] and bot.is_new
+    assert bot.next_wakeup()[0] <= 100.2
     assert bot.on_timer(100.2) == Word("bot", "bot_c2b", 4)
 
 
@@ -264,6 +265,6 @@ def test_a_command_waits_until_its_robot_may_begin() -> None:
         asked.append(command.event)
         return len(asked) > 2
 
-    assert bot.on_timer(100.0, may_begin) is None and bot.next_wakeup()[1] == UNREADY
+    assert bot.on_timer(100.0, may_begin) is None and bot.next_wakeup() == (None, UNREADY)
     assert bot.on_timer(100.01, may_begin) is None and bot.counts["sent"] == 0
     assert bot.on_timer(100.02, may_begin) == Word("bot", "catch", 1) and asked == ["catch"] * 3
