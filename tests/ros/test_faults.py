@@ -344,8 +344,8 @@ def test_a_late_node_sees_the_mission_and_a_stop_ends_all_nodes_with_status_1(
     """Nothing is started again here but by hand."""
     with launched(ros, scenario, tmp_path, required=False, respawn=False, time_unit=6) as run:
         before = run.until_step("bot2_c2a")
-        words = Path(f"/proc/{run.pid('observer')}/cmdline").read_bytes().decode().split("\0")
-        launch = next(word for word in words if word.startswith("--launch="))
+        (journal,) = (tmp_path / "home" / "pursue" / "scenario_1").glob("journal-*.jsonl")
+        launch = journal.stem.replace("journal-", "--launch=")
         run.kill("observer")
         run.publish("Finish!")  # not the observer's
         time.sleep(2.5)
