@@ -239,7 +239,7 @@ class Judge:
         elif is_under_way(target):
             here = self._before.locations.get(agent) if self._before is not None else None
             lost = self._before is not None and agent in self._before.lost  # what it did together does not wait for it
-            if here != target and not again and not lost:
+            if here != target and not again and not lost and not order.at_once:
                 self._problem(f"wrong order: {what}, which is over already")
         elif (agent, last.seq) in self._ordered and not again:
             self._problem(f"wrong order: {what}, for the second time")

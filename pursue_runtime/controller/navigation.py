@@ -22,7 +22,7 @@ from pursue_runtime.controller.reports import Report
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.trip import Trip
 from pursue_runtime.controller.whereabouts import Place, Position, Whereabouts
-from pursue_runtime.locations import is_action
+from pursue_runtime.locations import is_action, is_movement
 from pursue_runtime.orders import Order
 from pursue_runtime.words import (
     BACK,
@@ -284,7 +284,8 @@ class Navigation:
     def _enter(self, view: View, now: float) -> None:
         """Begin with another location: whatever belonged to the one before is over."""
         self._trip = Trip(view.way, now) if view.way else None  # also one that was begun by hand: its end counts
-        self._actions, self._given = [], []
+        self._actions = [order for order in self._actions if order.at_once and self._is_there(order, view)]
+        self._given = [(order, sent) for order, sent in self._given if order.at_once and self._is_there(order, view)]
         self._report = self._doubt = None
         self._was_sent_away = False
         self._as_of = view.seq
@@ -319,9 +320,17 @@ class Navigation:
 
     def _may_act(self, order: Order, now: float) -> bool:
         """Return True if the action may be sent: what is done at once has been decided, also if the mission holds."""
-        if order.location != self._view.location:
+        if not self._is_there(order, self._view):
             return False
         return self._is_known(now) and (order.at_once or (self._view.running and not self._view.held))
+
+    @staticmethod
+    def _is_there(order: Order, view: View) -> bool:
+        """Return True where the order can be carried out: at its location, or at the end of the way on which something
+        was to be done at once."""
+        if order.location == view.location:
+            return True
+        return order.at_once and is_movement(order.location) and order.location.endswith(f"_to_{view.location}")
 
     def _on_success(self, trip: Trip) -> None:
         poi = trip.movement.place.poi
