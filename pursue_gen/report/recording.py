@@ -106,10 +106,11 @@ def from_states(
     for state in sorted(states, key=lambda state: state.seq):
         if state.status == WAITING or seen.get(state.seq) == state.status:
             continue
+        led_by = ("", "") if state.seq in seen else (state.agent, state.event)  # won once all is acknowledged
         seen[state.seq] = state.status
         started = state.stamp if started is None else started
         at = max((state.stamp - started) / state.unit, steps[-1].at if steps else 0.0)
-        steps.append(Step(at, state.locations, state.values, state.agent, state.event, state.status, state.reason,
+        steps.append(Step(at, state.locations, state.values, *led_by, state.status, state.reason,
                           state.plan, state.lost))
     if not steps:
         return None
