@@ -25,7 +25,8 @@ WITH_THEM = ["MarkupSafe==1.1.1", "cryptography==2.8", "hypothesis==6.113.0", "p
 """MarkupSafe is what jinja2 2.10 works with; the others run the tests."""
 QUICK = [
     "tests/language/test_messages.py", "tests/language/test_parser.py", "tests/language/test_formatter.py",
-    "tests/runtime/test_bounded.py", "tests/tga/test_translate.py", "tests/workspace/test_mission_test.py",
+    "tests/runtime/controller", "tests/runtime/test_bounded.py", "tests/tga/test_translate.py",
+    "tests/workspace/test_mission_test.py",
 ]  # fmt: skip
 
 
