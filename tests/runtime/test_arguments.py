@@ -95,8 +95,9 @@ def read_in_the_run_time() -> Iterator[Tuple[str, str]]:
             if isinstance(node, ast.Call) and path.name not in ("parameters.py", "arguments.py"):
                 called = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
                 texts = [each.value for each in node.args if isinstance(each, ast.Constant)]
-                owner = ast.unparse(node.func.value) if isinstance(node.func, ast.Attribute) else ""
-                called = "text" if called == "get" and owner.split(".")[-1].strip("_") in OWNERS else called
+                owner = node.func.value if isinstance(node.func, ast.Attribute) else None
+                owned_by = owner.attr if isinstance(owner, ast.Attribute) else getattr(owner, "id", "")
+                called = "text" if called == "get" and owned_by.strip("_") in OWNERS else called
                 if called in READERS and texts and isinstance(texts[0], str):
                     name = texts[0]
                     if not called.endswith(("param", "cached")) or name.startswith("~"):
