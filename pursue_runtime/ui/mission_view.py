@@ -269,7 +269,7 @@ class MissionView:
 
     def _lines(self, state: SystemState, last: Optional[SystemState]) -> List[str]:
         lines = []
-        if state.event:
+        if state.event and (last is None or last.seq != state.seq):
             lines.append(f"{self.elapsed(state.stamp):8.1f}  {sentence(self._model, state, last)}")
         if state.status == HOLDING:
             lines.append(f"{self.elapsed(state.stamp):8.1f}  the mission holds: {in_labels(self._model, state.reason)}")

@@ -217,6 +217,14 @@ def test_a_state_that_is_published_again_is_reported_once() -> None:
     assert told.on_state(at(1, 102.0, event="_start_"), 102.0) == []
 
 
+def test_what_wins_the_mission_is_reported_once_although_it_is_won_later() -> None:
+    """The state keeps its number until the order is acknowledged."""
+    told = mission()
+    told.on_state(at(1, 100.0, event="_start_"), 100.0)
+    assert len(told.on_state(at(2, 103.0, event="screwDONE", agent="nurse"), 103.0)) == 1
+    assert told.on_state(at(2, 103.2, event="screwDONE", agent="nurse", status="won"), 103.2) == []
+
+
 def test_nothing_runs_before_the_start() -> None:
     told = mission(orders=orders({**SCREW, "when": ["always"]}))
     told.on_state(at(0, 99.0, status="waiting"), 99.0)
