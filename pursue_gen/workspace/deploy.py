@@ -178,13 +178,16 @@ def _mission(values: Mapping[str, Any], robots: bool) -> List[Service]:
         without,
         Setting("also", "", "PURSUE_ALSO", text=True),
     )
-    simulated = Setting("simulated", _bool(not robots), "PURSUE_SIMULATE")
+    either = (
+        Setting("simulated", _bool(not robots), "PURSUE_SIMULATE"),
+        Setting("orders", "numbered", "PURSUE_ORDERS", text=True),
+    )
     real = (
         Setting("goals", "action", "PURSUE_GOALS", text=True),
         Setting("ends", "result", "PURSUE_ENDS", text=True),
         Setting("on_stop", "cancel", "PURSUE_ON_STOP", text=True),
     )
-    robot = (simulated, *(real if robots else ()))
+    robot = (*either, *(real if robots else ()))
     planner = Setting("planner", "off", "PURSUE_PLANNER", text=True)
     page = ("127.0.0.1:${PURSUE_PAGE_PORT:-8080}:8080",)
     bag = (Setting("file", "true"), without)

@@ -200,6 +200,14 @@ def test_every_variable_is_explained(generated: Dict[str, bytes]) -> None:
     assert set(re.findall(r"^(PURSUE_\w+)=", generated["docker/lab.env"].decode(), re.MULTILINE)) <= asked
 
 
+def test_how_robots_get_their_orders_is_set_from_outside(compose: Dict[str, Any]) -> None:
+    """As a node of the thesis needs it, which cannot acknowledge them."""
+    for variables, wanted in ({}, "numbered"), ({"PURSUE_ORDERS": "plain"}, "plain"):
+        services = interpolated(compose["services"], variables)
+        told = {name for name, service in services.items() if f"_orders:='{wanted}'" in service["command"]}
+        assert told == {"controller-polbot1", "controller-polbot2", "controllerobj"}
+
+
 def test_debian_12_has_every_package() -> None:
     tools = ("catkin", "g++", "make")
     words = [tool("apt-cache"), "show", "--no-all-versions", *tools, *DEBIAN_PACKAGES]
@@ -289,7 +297,7 @@ def test_every_variable_of_a_unit_has_a_value(generated: Dict[str, bytes]) -> No
 
 def test_on_robots_nothing_is_simulated_and_nothing_starts_by_itself(generated: Dict[str, bytes]) -> None:
     told = generated["systemd/pursue.env"].decode()
-    real = 'PURSUE_GOALS="action"', 'PURSUE_ENDS="result"', 'PURSUE_ON_STOP="cancel"'
+    real = 'PURSUE_GOALS="action"', 'PURSUE_ENDS="result"', 'PURSUE_ON_STOP="cancel"', 'PURSUE_ORDERS="numbered"'
     for line in ('PURSUE_SIMULATE="false"', 'PURSUE_AUTOSTART="false"', 'PURSUE_PAGE_HOST="127.0.0.1"', *real):
         assert f"\n{line}\n" in told
     assert '\nPURSUE_NODES="all"\n' in told
