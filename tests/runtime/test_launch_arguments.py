@@ -126,14 +126,19 @@ def test_what_an_earlier_launch_has_set_on_the_same_master_does_not_count(launch
     assert left <= found.cleared and {"UI", "recorder"} <= found.cleared
 
 
-def test_nodes_behave_as_those_of_the_thesis_where_that_is_asked_for(launch: Any) -> None:
-    usual = launch("mission.launch", "record:=true", "markers:=true")
+@pytest.mark.parametrize("file", [["mission.launch"], ["robot.launch", "name:=base"]])
+def test_nodes_behave_as_those_of_the_thesis_where_that_is_asked_for(launch: Any, file: List[str]) -> None:
+    usual = launch(*file, "simulate:=true", "record:=true")
     asked = ("print_state:=true", "plain_words:=true", "show:=e")
-    found = launch("mission.launch", "record:=true", "markers:=true", *asked)
-    for node in (*MISSION, "recorder", "markers"):
+    found = launch(*file, "simulate:=true", "record:=true", *asked)
+    for node in (*MISSION, "recorder"):
         assert (usual.params[f"/{node}/print_state"], found.params[f"/{node}/print_state"]) == (False, True)
     assert (usual.params["/observer/plain_words"], found.params["/observer/plain_words"]) == (False, True)
     assert (usual.params["/UI/show"], found.params["/UI/show"]) == ("words", "e")
+
+
+def test_markers_print_states_too(launch: Any) -> None:
+    assert launch("mission.launch", "markers:=true", "print_state:=true").params["/markers/print_state"] is True
 
 
 def test_the_monitor_groups_the_diagnostics_of_every_node(launch: Any) -> None:
@@ -312,7 +317,8 @@ def test_a_robot_passes_on_what_it_is_reported(packages: Path) -> None:
     own = set(re.findall(r"\$\(arg (\w+)\)", robot))
     declared = set(re.findall(r'<arg name="(\w+)" (?:default|doc)=', robot))
     known = set(re.findall(r'<arg name="(\w+)" default=', mission))
-    assert declared - own <= known and {"goals", "ends", "planner", "seed"} <= declared - own
+    passed = {"goals", "ends", "planner", "seed", "print_state", "show", "plain_words"}
+    assert declared - own <= known and passed <= declared - own
 
 
 @pytest.mark.parametrize("package", ["communication_manager", "pursue_reader"])
