@@ -1,7 +1,7 @@
 """Missions on a real ROS master whose nodes are killed at random moments: `python -m benchmarks.kills`.
 
 Each mission is recorded twice (see second_recorder), and judged afterwards by `pursue_gen.replay` from what either
-recorder has and the workspace's strategy alone.
+recorder has, what the observer has heard beside that, and the workspace's strategy alone.
 `--out docs` writes what was found to docs/benchmarks/kills.json and docs/kills.md; with `--first 240` it adds the
 missions from 240 on to the 240 that are there. The kills of a mission follow from its number and the seed; the moments
 at which they hit the nodes do not.
@@ -17,6 +17,7 @@ import http.client
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -26,18 +27,20 @@ import xmlrpc.client
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Sequence, Tuple
+from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 from benchmarks.ros_world import ROOT, World, generated, world
-from benchmarks.second_recorder import merged, read_second, topics_of
+from benchmarks.second_recorder import NAME, bag_of, command, heard_in, merged, topics_of, with_heard
 from benchmarks.synthesis import machine, version
+from pursue_gen.diagnostics import PursueError
 from pursue_gen.replay import Findings, check, game_of, read_recording
-from pursue_gen.replay.finding import FAULT
+from pursue_gen.replay.finding import FAULT, UNRECORDED
 from pursue_gen.replay.game import Game, from_workspace
 from pursue_gen.replay.journal import Journal
 from pursue_gen.solving.rules import Rules
+from pursue_runtime.observer.mark import MARK
 
-SCENARIOS = ("thesis/scenario_1", "thesis/scenario_4", "thesis/catch_the_thief")
+SCENARIOS = ("thesis/scenario_1", "thesis/scenario_4", "thesis/catch_the_thief", "patterns/strict_ordered_visit")
 RULES = Rules(reaction=Fraction(1, 2))
 """Commands may come half a time unit late: what a message and a busy machine need, at half a second per time unit."""
 
@@ -53,13 +56,15 @@ class Kill(NamedTuple):
 
 
 class Mission(NamedTuple):
-    """What became of one mission: a word of OUTCOMES, the reason or the first fault, and who was killed."""
+    """What became of one mission: a word of OUTCOMES, the reason or the first fault, and who was killed; `missed`: the
+    messages that both recorders have missed, and that were published for certain."""
 
     number: int
     scenario: str
     outcome: str
     why: str
     kills: Tuple[str, ...]
+    missed: Tuple[str, ...] = ()
 
 
 HEAD = ("seed", "unit", "machine", "recorders")
@@ -70,6 +75,9 @@ RECORDERS = 2
 
 READY = 60.0
 """Seconds within which the second recorder has to be there."""
+
+BAD = ("wrong", "no end")
+"""The words of OUTCOMES that must not be."""
 
 OUTCOMES = {
     "goal": "the goal was reached, and each step was the strategy's or the world's",
@@ -102,12 +110,19 @@ def process_of(uri: str, node: str) -> int:
     return 0
 
 
+def subscribed(uri: str, node: str) -> Set[str]:
+    """Return the topics to which a node has subscribed, as the master has them."""
+    with xmlrpc.client.ServerProxy(uri) as master:
+        state: Any = master.getSystemState("/kills")
+    return {topic for topic, nodes in state[2][1] if f"/{node}" in nodes}
+
+
 def start_second(there: World, file: Path, game: Game) -> None:
     """Start the second recorder; return when it has subscribed. Raises SystemExit where it does not come up."""
     topics = topics_of(agent.name for agent in game.scenario.agents if agent.is_robot)
-    second = there.start("second", [sys.executable, "-m", "benchmarks.second_recorder", str(file), *topics])
+    second = there.start("second", command(file, topics))
     deadline = time.monotonic() + READY
-    while not (file.is_file() and file.stat().st_size):
+    while not set(topics) <= subscribed(there.variables["ROS_MASTER_URI"], NAME):
         if second.poll() is not None or time.monotonic() > deadline:
             raise SystemExit(f"the second recorder does not come up: {there.log('second')}")
         time.sleep(0.05)
@@ -136,22 +151,25 @@ def play(there: World, workspace: Path, kills: Sequence[Kill], bag: Path, unit: 
     there.stop("roslaunch")
 
 
-def judge(bag: Path, second: Path, game: Game) -> Tuple[str, str]:
-    """Return a word of OUTCOMES and why, from what either recorder has and the workspace's strategy alone."""
-    found = next((path for path in (bag, Path(f"{bag}.active")) if path.is_file()), None)
-    if found is None:
-        return "no end", "nothing was recorded"
-    record, other = read_recording(found), read_second(second)
-    assert not isinstance(record, Journal)
-    if not other.states:
-        return "no end", "the second recorder has received nothing"
-    return outcome(check(merged(record, other), game))
+def judge(bag: Path, second: Path, journals: Iterable[Path], game: Game) -> Tuple[str, str, Tuple[str, ...]]:
+    """Return a word of OUTCOMES and why, and what both recorders have missed: from what either of them has, the words
+    that the observer has heard, and the workspace's strategy alone."""
+    try:
+        record, other = (read_recording(bag_of(path)) for path in (bag, second))
+    except PursueError as problem:
+        return "no end", f"a recorder has nothing: {problem}", ()
+    assert not isinstance(record, Journal) and not isinstance(other, Journal)
+    whole, gaps = with_heard(merged(record, other), heard_in(journals))
+    findings = check(whole, game)
+    missed = [f"the word {word.text}" for word in gaps]
+    missed += [f"state {each.seq}: {each.text}" for each in findings.findings if each.kind == "acknowledged"]
+    return (*outcome(findings), tuple(missed))
 
 
 def outcome(findings: Findings) -> Tuple[str, str]:
-    """Return a word of OUTCOMES for what was found in the recordings, and why. Every fault counts: that no recorder has
-    an order means that no robot had it."""
-    faults = [each for each in findings.findings if each.level == FAULT]
+    """Return a word of OUTCOMES for what was found in the recordings, and why. Every fault counts, and so does what was
+    not recorded: an order that nobody has recorded or acknowledged reached no robot."""
+    faults = [each for each in findings.findings if each.level in (FAULT, UNRECORDED)]
     if faults:
         return "wrong", f"state {faults[0].seq}: {faults[0].text}"
     if findings.won:
@@ -161,22 +179,31 @@ def outcome(findings: Findings) -> Tuple[str, str]:
     return ("wrong", "the mission was lost") if findings.status == "lost" else ("no end", findings.status)
 
 
-def mission(number: int, seed: int, workspaces: Sequence[Tuple[str, Path, Game]], unit: float) -> Mission:
-    """Play and judge one mission on a master of its own."""
+def mission(
+    number: int, seed: int, workspaces: Sequence[Tuple[str, Path, Game]], unit: float, keep: Optional[Path]
+) -> Mission:
+    """Play and judge one mission on a master of its own; one that is BAD leaves its files in `keep`."""
     scenario, workspace, game = workspaces[number % len(workspaces)]
     nodes = ["observer", "UI", "simulator", *(folder.name for folder in (workspace / "src").glob("controller*"))]
     kills = draw(seed, number, sorted(nodes), 20.0 * unit)
     with tempfile.TemporaryDirectory(prefix="kills_") as home, world(Path(home)) as there:
-        bag, second = Path(home) / "mission.bag", Path(home) / "second.jsonl"
+        bag, second = Path(home) / "mission.bag", Path(home) / "second.bag"
         start_second(there, second, game)
         play(there, workspace, kills, bag, unit, number)
-        found, why = judge(bag, second, game)
-        if found in ("wrong", "no end"):
+        there.stop("second")
+        journals = sorted(path for path in Path(home).glob("pursue/*/journal-*") if path.suffix != MARK)
+        found, why, missed = judge(bag, second, journals, game)
+        if found in BAD:
             print(there.log("roslaunch")[-6000:], flush=True)
-    return Mission(number, scenario, found, why, tuple(f"{kill.node} after {kill.after:.2f} s" for kill in kills))
+            if keep:
+                shutil.copytree(home, keep / f"mission_{number}", dirs_exist_ok=True)
+    killed = tuple(f"{kill.node} after {kill.after:.2f} s" for kill in kills)
+    return Mission(number, scenario, found, why, killed, missed)
 
 
-def measure(numbers: Sequence[int], seed: int, jobs: int, unit: float, names: Sequence[str]) -> List[Mission]:
+def measure(
+    numbers: Sequence[int], seed: int, jobs: int, unit: float, names: Sequence[str], keep: Optional[Path] = None
+) -> List[Mission]:
     """Play and judge the missions with these numbers, `jobs` at a time."""
     with tempfile.TemporaryDirectory(prefix="kills_ws_") as home, ThreadPoolExecutor(jobs) as pool:
         workspaces = []
@@ -185,10 +212,12 @@ def measure(numbers: Sequence[int], seed: int, jobs: int, unit: float, names: Se
             workspace = generated(text, Path(name).name, Path(home) / Path(name).name, RULES)
             workspaces.append((name, workspace, game_of(from_workspace(workspace))))
         done: List[Mission] = []
-        for each in pool.map(lambda number: mission(number, seed, workspaces, unit), numbers):
+        for each in pool.map(lambda number: mission(number, seed, workspaces, unit, keep), numbers):
             done.append(each)
             kills = ", ".join(each.kills)
-            print(f"{each.number:4} {each.scenario:24} {each.outcome:8} {each.why} [{kills}]", flush=True)
+            print(f"{each.number:4} {each.scenario:30} {each.outcome:8} {each.why} [{kills}]", flush=True)
+            for what in each.missed:
+                print(f"     both recorders have missed: {what}", flush=True)
     return done
 
 
@@ -200,13 +229,15 @@ def results(done: Sequence[Mission]) -> Dict[str, Any]:
         row[each.outcome] += 1
     reasons = collections.Counter(each.why for each in done if each.outcome == "stopped")
     kills = sum(len(each.kills) for each in done)
-    bad = [each._asdict() for each in done if each.outcome in ("wrong", "no end")]
+    bad = [each._asdict() for each in done if each.outcome in BAD]
+    missed = [{"number": each.number, "missed": each.missed} for each in done if each.missed]
     return {
         "missions": len(done),
         "kills": kills,
         "table": table,
         "reasons": dict(reasons.most_common()),
         "bad": bad,
+        "missed": missed,
     }
 
 
@@ -228,15 +259,18 @@ def together(before: Dict[str, Any], found: Dict[str, Any]) -> Dict[str, Any]:
     reasons = collections.Counter(before["reasons"]) + collections.Counter(found["reasons"])
     return {
         **before,
-        **{key: before[key] + found[key] for key in ("missions", "kills", "bad", "parts")},
+        **{key: before[key] + found[key] for key in ("missions", "kills", "bad", "missed", "parts")},
         "table": {name: {head: old[head] + new[head] for head in OUTCOMES} for name, (old, new) in rows.items()},
         "reasons": dict(reasons.most_common()),
     }
 
 
 TWO = (
-    "Two recorders that share nothing record each mission: the workspace's own, and a process that is there before all",
-    "nodes. What either has was published. An order or a word that neither has makes a mission wrong.",
+    "Two recorders that share nothing record each mission: the workspace's own, and `rosbag record`, which is there",
+    "before all nodes. What either has was published. A word that both have missed was published if the observer's",
+    "journal has it as heard; the judge then does not know who published it. An order that both have missed was given",
+    "if the robot's side has acknowledged its number. Any other order or word that is missing is wrong, and so",
+    "is an order without acknowledgement in a mission that was won, where one was needed.",
 )
 ONE = (
     "These missions had one recorder, which may miss what a node publishes that is killed at once or has just started.",
@@ -249,6 +283,13 @@ ONE = (
 def _part_line(part: Dict[str, Any]) -> str:
     commit = f" with commit {part['commit']}" if part["commit"] else ""
     return f"- missions {part['first']} to {part['first'] + part['missions'] - 1}: played {part['date']}{commit}"
+
+
+def _missed_lines(missed: Sequence[Dict[str, Any]]) -> List[str]:
+    if not missed:
+        return []
+    count = sum(len(each["missed"]) for each in missed)
+    return [f"Both recorders have missed {count} messages that were published, in {len(missed)} missions.", ""]
 
 
 def page(found: Dict[str, Any]) -> str:
@@ -270,6 +311,7 @@ def page(found: Dict[str, Any]) -> str:
         *(_part_line(part) for part in found["parts"]),
         "",
         *([found["remark"], ""] if found.get("remark") else []),
+        *_missed_lines(found.get("missed", ())),
         "| scenario | " + " | ".join(heads) + " |",
         "| --- |" + " --- |" * len(heads),
         *(f"| {name} | " + " | ".join(str(row[head]) for head in heads) + " |" for name, row in found["table"].items()),
@@ -291,6 +333,7 @@ def options() -> argparse.ArgumentParser:
     parser.add_argument("--jobs", type=int, default=2, help="missions at a time (2)")
     parser.add_argument("--unit", type=float, default=0.5, help="seconds per time unit (0.5)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write kills.md and benchmarks/kills.json there")
+    parser.add_argument("--keep", type=Path, metavar="DIR", help="copy bags and logs of wrong missions there")
     parser.add_argument("--machine", default=machine(), help="how the results name the machine")
     parser.add_argument("--date", default=datetime.date.today().isoformat(), help="how they give the date (today)")
     parser.add_argument("scenarios", nargs="*", default=SCENARIOS, metavar="SCENARIO", help="as thesis/scenario_1")
@@ -310,7 +353,7 @@ def main() -> int:
     if before and mismatch(before, head):
         options().error(mismatch(before, head))
     numbers = range(given.first, given.first + given.missions)
-    found = {**results(measure(numbers, given.seed, given.jobs, given.unit, given.scenarios)), **head}
+    found = {**results(measure(numbers, given.seed, given.jobs, given.unit, given.scenarios, given.keep)), **head}
     found = together(before, found) if before else found
     text = page(found)
     print(text)

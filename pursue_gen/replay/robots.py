@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import bisect
-from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.drawing.layout import poses
 from pursue_gen.language.network_names import going, is_doing, is_going
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.replay.finding import FAULT, UNRECORDED, WORLD, Finding
+from pursue_gen.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
 from pursue_gen.replay.game import Game
 from pursue_gen.replay.orders import Orders
+from pursue_gen.replay.receipts import receipts_in, without_receipt
 from pursue_gen.replay.record import MissionRecord, RobotOrder
 from pursue_runtime.state import SystemState
 
@@ -75,12 +76,31 @@ def check_robots(
             found += [Finding(FAULT, "goal", state.seq, f"{robot} is sent {problem}")] if problem else []
     if not record.problems:
         commanded = {state.seq for _, state, _, is_command in steps if is_command}
-        for place, (state, _, robot, location) in enumerate(activities):
+        receipts = receipts_in(record, controllers)
+        for place, (state, _, robot, _) in enumerate(activities):
             if place not in ordered and state.seq in commanded:
-                text = f"{robot} got no order to begin {state.event} ({location or 'an action'})"
-                level = UNRECORDED if state.stamp <= record.whole_from else FAULT
-                found.append(Finding(level, "untold", state.seq, text))
+                found.append(_untold(record, activities[place], (robot, state.seq) in receipts))
+        found += without_receipt(record, _at_once(activities, commanded), receipts)
     return found
+
+
+def _untold(record: MissionRecord, activity: Activity, has_receipt: bool) -> Finding:
+    """What is to say of an activity without a recorded order: nobody was ordered, unless the robot's side has
+    acknowledged it."""
+    state, _, robot, location = activity
+    if has_receipt:
+        text = f"the order to begin {state.event} was not recorded, but {robot}'s side has acknowledged it"
+        return Finding(NOTE, "acknowledged", state.seq, text)
+    text = f"{robot} got no order to begin {state.event} ({location or 'an action'})"
+    return Finding(UNRECORDED if state.stamp <= record.whole_from else FAULT, "untold", state.seq, text)
+
+
+def _at_once(activities: Sequence[Activity], commanded: AbstractSet[int]) -> List[Tuple[str, SystemState]]:
+    """Return the robots that were commanded to do something at once, and the states that follow from it."""
+    return [
+        (robot, state) for state, end, robot, location in activities
+        if not location and end == state.stamp and state.agent == robot and state.seq in commanded
+    ]
 
 
 def _uncommanded(scenario: Scenario, steps: Sequence[Done], record: MissionRecord) -> Set[int]:

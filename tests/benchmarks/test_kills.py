@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Dict, Sequence
+from pathlib import Path
+from typing import Any, Dict, List, Sequence, Tuple
 
 import pytest
 
-from benchmarks.kills import OUTCOMES, Mission, draw, mismatch, outcome, page, results, together
+from benchmarks.kills import OUTCOMES, Mission, draw, judge, mismatch, outcome, page, results, together
 from pursue_gen.replay import Findings
-from pursue_gen.replay.finding import FAULT, NOTE, WORLD, Finding
+from pursue_gen.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
+from tests.replay.recordings import PLAY, game, mission, write_bag, write_journal
 
 NODES = ("UI", "controller_bot1", "observer", "simulator")
 
@@ -48,10 +50,55 @@ def test_a_mission_is_wrong_where_a_node_did_what_it_must_not(
     assert outcome(findings(status, *levels))[0] == expected
 
 
-@pytest.mark.parametrize("kind", ["unsaid", "untold", "command", "gap"])
-def test_no_kind_of_fault_is_passed_over(kind: str) -> None:
-    missed = Finding(FAULT, kind, 3, "bot1 got no order to begin bot1_inb (an action)")
+@pytest.mark.parametrize("level", [FAULT, UNRECORDED])
+@pytest.mark.parametrize("kind", ["unsaid", "untold", "command", "gap", "unacknowledged"])
+def test_no_kind_of_fault_is_passed_over(kind: str, level: str) -> None:
+    missed = Finding(level, kind, 3, "bot1 got no order to begin bot1_inb (an action)")
     assert outcome(replace(findings("won"), findings=(missed,))) == ("wrong", f"state 3: {missed.text}")
+
+
+def judged(folder: Path, *missing: str, more: Sequence[str] = (), journal: bool = True) -> Tuple[str, str, List[str]]:
+    """How a won mission is judged that has two bags, in which these words and orders are missing, and a journal."""
+    recorded = mission()
+    for text in more:
+        recorded.say(recorded.states[-1].stamp - 0.5, text, "simulator")
+    recorded.heard = [message for message in recorded.heard if message[3] not in missing]
+    bags = [write_bag(recorded, folder / name) for name in ("mission.bag", "second.bag")]
+    journals = [write_journal(PLAY, folder / "journal-1.jsonl")] if journal else []
+    found, why, missed = judge(bags[0], bags[1], journals, game())
+    return found, why, list(missed)
+
+
+def test_a_word_that_the_observer_has_heard_is_a_gap_of_the_recorders(tmp_path: Path) -> None:
+    assert judged(tmp_path, "bot1:bot1_inb@6", "bot1_inbDONE") == (
+        "goal", "", ["the word bot1:bot1_inb@6", "the word bot1_inbDONE"]
+    )
+
+
+def test_a_word_that_nobody_has_heard_is_a_fault(tmp_path: Path) -> None:
+    found, why, _ = judged(tmp_path, "bot1:bot1_inb@6", journal=False)
+    assert (found, why) == ("wrong", "state 7: no word for bot1_inb was recorded")
+
+
+def test_an_order_that_the_robots_side_has_acknowledged_is_a_gap_of_the_recorders(tmp_path: Path) -> None:
+    found, why, missed = judged(tmp_path, "bot1_inb", more=["bot1:_order_@7"])
+    assert (found, why) == ("goal", "")
+    assert missed == ["state 7: the order to begin bot1_inb was not recorded, but bot1's side has acknowledged it"]
+
+
+@pytest.mark.parametrize("more", [[], ["bot1:_order_@6"], ["bot2:_order_@7"]])
+def test_an_order_that_nobody_has_recorded_or_acknowledged_is_a_fault(tmp_path: Path, more: Sequence[str]) -> None:
+    found, why, _ = judged(tmp_path, "bot1_inb", more=more)
+    assert (found, why) == ("wrong", "state 7: bot1 got no order to begin bot1_inb (an action)")
+
+
+def test_what_one_recorder_alone_has_is_no_gap_and_without_a_second_there_is_no_verdict(tmp_path: Path) -> None:
+    whole, holed = mission(), mission()
+    holed.heard = [message for message in holed.heard if message[3] not in ("bot1_inb", "bot1:bot1_inb@6")]
+    first, second = write_bag(holed, tmp_path / "mission.bag"), write_bag(whole, tmp_path / "second.bag")
+    assert judge(first, second, [], game()) == ("goal", "", ())
+    second.unlink()
+    assert judge(first, second, [], game())[0] == "no end"
 
 
 def made(first: int, done: Sequence[Mission], seed: int = 7) -> Dict[str, Any]:
@@ -77,6 +124,12 @@ def test_missions_that_one_recorder_has_recorded_are_not_counted_with_others() -
     before = {key: value for key, value in made(0, done).items() if key != "recorders"}
     assert "recorders 1" in mismatch(before, made(1, done))
     assert "had one recorder" in page(before) and "had one recorder" not in page(made(0, done))
+
+
+def test_the_page_says_how_much_both_recorders_have_missed() -> None:
+    one, two = [Mission(0, "one", "goal", "", ())], [Mission(1, "one", "goal", "", (), ("the word e", "the word f"))]
+    assert "have missed 2 messages that were published, in 1 missions" in page(together(made(0, one), made(1, two)))
+    assert "that were published, in" not in page(made(0, one))
 
 
 def test_the_page_counts_each_outcome_and_names_the_reasons_of_stops() -> None:

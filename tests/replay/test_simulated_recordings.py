@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import functools
 import json
+from dataclasses import replace
 from typing import Any, Dict, List, Sequence, Tuple
 
 import pytest
@@ -25,7 +26,7 @@ from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.workspace import Options
 from pursue_runtime.orders import Order
 from pursue_runtime.state import SystemState
-from pursue_runtime.words import Word, format_word
+from pursue_runtime.words import ORDERED, Word, format_word
 from tests.assumptions import AWAY, CAFE, GOODBYE, LEAVES, MUSEUM, ONCE
 
 CARTS = """\
@@ -86,7 +87,8 @@ class Recorded(SimulatedMission):
         pose = poses(self.game.scenario)[0].get(order.location.rpartition("_to_")[2])
         goes = order.location.startswith("going_") and pose is not None
         goal = (pose.x, pose.y, pose.z) if goes and pose is not None else None
-        self.orders.append(RobotOrder(self.events.now, order.agent, node, goal, "" if goes else order.event))
+        action, number = ("", None) if goes else (order.event, order.seq)
+        self.orders.append(RobotOrder(self.events.now, order.agent, node, goal, action, number))
         super().command_robot(node, order, seq, newest, again)
 
     def _choose_move(self, state: SystemState) -> None:
@@ -126,6 +128,46 @@ def test_conditions_and_own_turns_are_steps_of_the_model(seed: int) -> None:
     found = mission.found()
     assert kinds(found, FAULT, WORLD) == [] and found.won, found.findings
     assert {"open", "load", "unload"} <= {step.state.event for step in found.steps}
+
+
+def acknowledges(word: RecordedWord, event: str, mission: Recorded) -> bool:
+    """Return True for the word that acknowledges the order that follows from this event."""
+    return word.event == ORDERED and word.seq in {state.seq for state in mission.states if state.event == event}
+
+
+@pytest.mark.parametrize("event", ["load", "unload"])
+def test_an_order_that_was_not_recorded_was_given_if_the_robots_side_has_acknowledged_it(event: str) -> None:
+    mission = Recorded(CARTS, 1)
+    mission.run()
+    mission.orders = [order for order in mission.orders if order.action != event]
+    words = mission.words
+    assert "acknowledged" in kinds(mission.found(), NOTE) and kinds(mission.found(), FAULT) == []
+    mission.words = [word for word in words if not acknowledges(word, event, mission)]
+    assert "untold" in kinds(mission.found(), FAULT)
+    # who gives orders does not acknowledge them
+    doer = next(state.agent for state in mission.states if state.event == event)
+    controller = f"controller_{doer}"
+    mission.words = [replace(w, node=controller) if acknowledges(w, event, mission) else w for w in words]
+    assert "untold" in kinds(mission.found(), FAULT)
+
+
+def test_a_mission_is_not_won_with_an_order_that_nobody_has_acknowledged() -> None:
+    mission = Recorded(CARTS, 1)
+    mission.run()
+    assert mission.states[-1].status == "won"
+    mission.words = [word for word in mission.words if not acknowledges(word, "unload", mission)]
+    (finding,) = [finding for finding in mission.found().findings if finding.kind == "unacknowledged"]
+    assert finding.level == FAULT and finding.text.endswith("'s side has not acknowledged unload")
+    mission.states = [state for state in mission.states if state.status != "won"]
+    assert "unacknowledged" not in kinds(mission.found(), FAULT)  # it was not won yet
+
+
+def test_an_order_without_a_number_is_acknowledged_by_nobody() -> None:
+    mission = Recorded(CARTS, 1)
+    mission.run()
+    mission.words = [word for word in mission.words if not acknowledges(word, "unload", mission)]
+    mission.orders = [replace(order, seq=None) for order in mission.orders]
+    assert "unacknowledged" not in kinds(mission.found(), FAULT)
 
 
 def test_who_unloads_without_having_loaded_is_a_fault() -> None:
