@@ -13,7 +13,7 @@ from pursue_runtime.strategy import Cover
 from pursue_runtime.zones import INFINITY
 
 SHOWN = 4
-"""So many agents are named."""
+"""So many agents are named, or one more where that names them all."""
 
 
 def uncovered_reason(
@@ -44,9 +44,10 @@ def _where(model: Model, cover: Cover, position: Position) -> str:
     """Where the agents are of which the plan speaks."""
     acting = model.of_kind(*ACTING)
     named = [automaton for automaton in acting if automaton.name in cover.names] or acting
-    parts = [f"{each.name} is {_doing(each, position)}" for each in named[:SHOWN]]
-    more = len(named) - len(parts)
-    return _joined([*parts, f"{more} others are elsewhere"] if more > 1 else parts)
+    shown = named[:SHOWN] if len(named) > SHOWN + 1 else named
+    parts = [f"{each.name} is {_doing(each, position)}" for each in shown]
+    more = len(named) - len(shown)
+    return _joined([*parts, f"{more} others are elsewhere"] if more else parts)
 
 
 def _doing(automaton: Automaton, position: Position) -> str:

@@ -13,6 +13,7 @@ from pursue_runtime.model import Model, Position
 from pursue_runtime.observer.uncovered import uncovered_reason
 from pursue_runtime.strategy import read_cover
 from pursue_runtime.ui.phrases import in_labels
+from tests.runtime.models import model_data, worker
 from tests.runtime.observer.test_mission import CHASE, Journey
 from tests.runtime.texts import read
 
@@ -67,6 +68,17 @@ def test_where_nobody_is_late_it_says_what_is_unexpected_and_where_everybody_is(
     while state is None or state.status == "running":
         moment, state = made.tick_from(moment)
     assert state.reason == f"{reason}; looking for another plan"
+
+
+@pytest.mark.parametrize(("agents", "rest"), [
+    (3, "a1 is at s and a2 is at s"),
+    (5, "a1 is at s, a2 is at s, a3 is at s and a4 is at s"),
+    (6, "a1 is at s, a2 is at s, a3 is at s and 2 others are elsewhere"),
+])
+def test_of_many_agents_the_first_are_named(agents: int, rest: str) -> None:
+    model = Model(model_data(*(worker(f"a{number}", "robot") for number in range(agents))))
+    reason = uncovered_reason(model, read_cover({"format": 1, "cover": []}), model.initial(), 0.1, set())
+    assert reason == f"the strategy does not say what to do now that a0 is at s, {rest}"
 
 
 def test_the_names_of_automata_and_clocks_are_in_the_log() -> None:
