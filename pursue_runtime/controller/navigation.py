@@ -297,7 +297,7 @@ class Navigation:
     def _may_go(self, trip: Trip) -> bool:
         """Return True if the robot may get a goal for this trip."""
         wanted = self._view.returning if trip.is_return else self._view.running
-        return wanted and not (self._view.held or trip.waits or trip.is_over)
+        return wanted and not (self._view.held or trip.waits or trip.has_arrived)
 
     def _goal_due_at(self, trip: Trip) -> float:
         """Return when the goal is due: a robot that is being moved is sent back when it stands."""
@@ -359,7 +359,6 @@ class Navigation:
         else:
             self.trouble = f"{what}; given up after {trip.attempts} goal{'s' * (trip.attempts > 1)}"
             self._log("err", f"{self.name} {self.trouble}")
-            trip.has_failed = True
             is_blocked = how == FAILURES[ABORTED] and not trip.is_return
             self._report = Report(self._word(BLOCKED if is_blocked else FAILED, self.trouble), self.reaction)
 

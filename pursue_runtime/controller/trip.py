@@ -25,16 +25,10 @@ class Trip:
     goal_at: Optional[float] = None
     attempts: int = 0
     has_arrived: bool = False
-    has_failed: bool = False
     is_held: bool = False  # it waits for a person
     cancelled: Optional[Answer] = None
     decided_at: float = 0.0
     replaced: int = 0
-
-    @property
-    def is_over(self) -> bool:
-        """Return True if no further goal is due."""
-        return self.has_arrived or self.has_failed
 
     @property
     def waits(self) -> bool:
