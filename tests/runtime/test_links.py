@@ -56,20 +56,35 @@ def test_only_the_silent_one_is_due() -> None:
     assert peers.due() == ["/bot2"] and len(peers) == 2
 
 
+def tries(peers: Any, since: int, until: int, count: int) -> List[float]:
+    """The moments at which the silent publisher gets new connections."""
+    found: List[float] = []
+    for now in range(since, until):
+        peers.update({"/bot": 0 if found else count}, float(now))
+        if peers.due():
+            found.append(float(now))
+            peers.on_renewed("/bot", float(now))
+    return found
+
+
 def test_who_stays_silent_on_new_connections_is_tried_ever_more_rarely() -> None:
     peers = Peers()
     peers.update({"/bot": 7}, 0.0)
-    tries: List[float] = []
-    for now in range(1, 600):
-        peers.update({"/bot": 0 if tries else 7}, float(now))
-        if peers.due():
-            tries.append(float(now))
-            peers.on_renewed("/bot", float(now))
-    pauses = [later - earlier for earlier, later in zip(tries, tries[1:])]
+    moments = tries(peers, 1, 600, count=7)
+    pauses = [later - earlier for earlier, later in zip(moments, moments[1:])]
     assert pauses == sorted(pauses) and pauses[0] == FIRST_WAIT and pauses[-1] == LAST_WAIT
     peers.update({"/bot": 1}, 600.0)
     again = next(now for now in range(601, 700) if peers.update({"/bot": 1}, float(now)) or peers.due())
     assert again <= 604 + LAST_WAIT, "once heard, it is not forgotten"
+
+
+def test_who_has_spoken_since_its_last_new_connections_is_tried_soon_again() -> None:
+    peers = Peers()
+    peers.update({"/bot": 7}, 0.0)
+    tries(peers, 1, 600, count=7)
+    count = spoken(peers, since=600.0, until=700.0)
+    first, second = tries(peers, 700, 800, count)[:2]
+    assert first < 710.0 and second - first == FIRST_WAIT
 
 
 def test_connections_that_rospy_itself_made_anew_count_from_zero() -> None:

@@ -127,6 +127,21 @@ def test_results_in_the_status_count_where_the_result_itself_was_missed(robot: W
     assert robot.words == [END]
 
 
+def test_a_goal_that_has_ended_before_is_not_taken_for_the_one_that_is_missing() -> None:
+    """What the robot is doing may be ours, whatever its clock says; what it has done before the goal is not."""
+    robot = World(ends="pose", goals="simple")
+    robot.go()
+    for _ in range(8):
+        robot.status(Answer("/rviz-1", robot.now - 50.0, SUCCEEDED))
+        robot.wait(1.0)
+    assert len(robot.goals) > 1
+    sent = len(robot.goals)
+    for _ in range(60):
+        robot.status(Answer("/move_base-1", robot.now - 500.0, ACTIVE))
+        robot.wait(1.0)
+    assert len(robot.goals) == sent
+
+
 def test_the_status_shows_failures_of_simple_goals_too() -> None:
     robot = World(ends="pose", retries=0)
     robot.go()

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from pursue_runtime.controller.goal import Answer
 from pursue_runtime.controller.trip import STATUS_WAIT
-from pursue_runtime.controller.whereabouts import place_of, turned
+from pursue_runtime.controller.whereabouts import place_of, turned, yaw_of
 from tests.runtime.controller.robot_world import (
     ABORTED,
     ACTIVE,
@@ -278,12 +280,30 @@ def test_noise_of_the_position_is_no_motion(seen: World) -> None:
     assert seen.wait(1.0)[:1] == [pytest.approx(0.1)]
 
 
+def test_a_robot_stands_where_it_moves_by_no_more_than_it_may() -> None:
+    for moved, told in ((0.5, [1.0]), (0.75, [])):
+        world = World(ends="pose", end_tolerance=2.0, end_settle=1.0, still_distance=0.5)
+        world.go()
+        world.at(3.0, 4.0)
+        world.wait(0.75)
+        world.at(3.0 + moved, 4.0)
+        assert [0.75 + moment for moment in world.wait(0.5)][:1] == told
+
+
 @pytest.mark.parametrize("yaw", [3.12, -3.12, 0.8, -1.0])
 def test_a_robot_that_looks_the_wrong_way_is_not_there(seen: World, yaw: float) -> None:
     seen.at(3.0, 4.0, yaw)
     assert seen.wait(20.0) == []
     seen.at(3.0, 4.0, 0.4)
     assert seen.wait(1.0)[:1] == [0.5]
+
+
+@pytest.mark.parametrize(("x", "yaw", "is_there"), [(4.0, 0.5, True), (4.001, 0.5, False), (4.0, 0.501, False)])
+def test_a_robot_is_there_up_to_its_tolerances(x: float, yaw: float, is_there: bool) -> None:
+    world = World(ends="pose", end_tolerance=1.0, end_yaw_tolerance=0.5)
+    world.go()
+    world.at(x, 4.0, yaw)
+    assert bool(world.wait(1.0)) == is_there
 
 
 def test_a_robot_has_arrived_though_amcl_has_not_published_its_last_motion() -> None:
@@ -312,6 +332,13 @@ def test_a_place_without_orientation_demands_none() -> None:
     world.go(BACK)
     world.at(0.0, 0.0, 3.1)
     assert world.wait(1.0)[:1] == [0.5]
+
+
+@given(heading=st.floats(-3.0, 3.0), roll=st.floats(-0.3, 0.3))
+def test_a_heading_is_the_turn_about_the_vertical_axis(heading: float, roll: float) -> None:
+    z, w = math.sin(heading / 2), math.cos(heading / 2)
+    x, c = math.sin(roll / 2), math.cos(roll / 2)
+    assert yaw_of(w * x, z * x, z * c, w * c) == pytest.approx(heading, abs=1e-6)
 
 
 def test_headings_are_compared_across_half_a_turn() -> None:

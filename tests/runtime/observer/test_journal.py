@@ -513,6 +513,14 @@ def test_where_the_journal_is_whole_a_later_state_is_added_to_it(path: Path) -> 
     assert Life(path).state() == other.state()
 
 
+def test_where_time_was_set_back_a_state_is_adopted_at_its_own_time(path: Path) -> None:
+    state, other = seen(path, *PLAY[:2])
+    life = Life(path)
+    (published,) = life.journal.adopt(state, state.stamp - 60.0)
+    assert life.journal.last == published.stamp == state.stamp
+    assert life.mission.position(2000.0) == other.mission.position(2000.0)
+
+
 def test_where_there_is_still_no_room_the_mark_stays(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     state, _ = seen(path, *PLAY[:2])
     Life(path).play(*PLAY[:1])
