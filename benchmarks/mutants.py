@@ -3,29 +3,29 @@
     python -m benchmarks.mutants [--count 300] [--seed 1] [--jobs 2] [--only pursue_gen/proof]
 
 Each mutant is one change in one file: a comparison, a number, a truth value, an arithmetic sign, min and max, a
-condition, a statement that goes. It is killed where the tests of the folder that mirrors its own fail, or take many
-times the processor time that they usually take. All that happens in copies, in build/mutants. The exit status is 0
-where at least GOAL of them are killed.
+condition, a statement that goes. Texts, annotations and what is written to logs stay as they are. A mutant is killed
+where the tests of the folder that mirrors its own fail, or take many times the processor time that they usually take.
+Each file of these tests is run once without a mutant; then a mutant gets those alone that execute its line. All that
+happens in copies, in build/mutants. The exit status is 0 where at least GOAL of them are killed.
 """
 
 from __future__ import annotations
 
 import argparse
 import ast
+import collections
 import concurrent.futures
-import contextlib
+import hashlib
 import os
 import queue
-import random
-import resource
 import shutil
-import signal
-import subprocess
 import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, Iterator, List, Optional, Sequence, Tuple
+from typing import Callable, Dict, Iterator, List, Sequence, Tuple, TypeVar
+
+from benchmarks.mutant_tests import Measured, measured, outcome
 
 ROOT = Path(__file__).parents[1]
 PARTS = {
@@ -35,13 +35,14 @@ PARTS = {
 }
 """Where mutants are drawn from, and the folders of tests that mirror these."""
 
-GOAL = 0.95
-_LEFT_OUT = shutil.ignore_patterns(".*", "build", "workspace_out", "__pycache__", "node_modules")
-_TIMES, _MORE = 5.0, 20.0
-"""A mutant may take so many times the processor time of its tests, and so many seconds more."""
+_ON_ROS = {"tests/runtime/nodes": "tests/ros"}
+"""What is tested on a ROS master, too."""
 
-_WALL = 20.0
-"""By the clock it may take so many times that: it may wait for ever without computing."""
+GOAL = 0.95
+_SURVIVED = {"passed": "survived", "not executed": "survived (not executed)"}
+_LEFT_OUT = shutil.ignore_patterns(".*", "build", "workspace_out", "__pycache__", "node_modules")
+_Given = TypeVar("_Given")
+_Made = TypeVar("_Made")
 
 _COMPARISONS: Dict[type, type] = {
     ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
@@ -53,10 +54,12 @@ _NAMES = {"min": "max", "max": "min", "any": "all", "all": "any"}
 
 @dataclass(frozen=True)
 class Mutant:
-    """A change of a file, whose name counts from the root: the text between two offsets (in bytes) becomes another."""
+    """A change of a file, whose name counts from the root: the text between two offsets (in bytes) becomes another.
+    `lines` are those of the statement that it is in; of one with a body, the lines before that."""
 
     file: str
     line: int
+    lines: range
     start: int
     end: int
     before: str
@@ -77,27 +80,46 @@ def mutants_of(file: str, text: str) -> Iterator[Mutant]:
     for line in text.encode().splitlines(keepends=True):
         lines.append(lines[-1] + len(line))
     data = text.encode()
-    for node in _nodes(ast.parse(text)):
+    for node, around in _nodes(ast.parse(text), range(0)):
         start, end = (
             lines[node.lineno - 1] + node.col_offset,  # type: ignore[attr-defined]
             lines[node.end_lineno - 1] + node.end_col_offset,  # type: ignore[attr-defined]
         )
         before = data[start:end].decode()
         for after in _changed(node):
-            yield Mutant(file, node.lineno, start, end, before, after)  # type: ignore[attr-defined]
+            yield Mutant(file, node.lineno, around, start, end, before, after)  # type: ignore[attr-defined]
 
 
-def _nodes(tree: ast.AST) -> Iterator[ast.AST]:
-    """The expressions and statements in which something may be changed, in order."""
+def _nodes(tree: ast.AST, around: range) -> Iterator[Tuple[ast.AST, range]]:
+    """The expressions and statements in which something may be changed, in order, with the lines of the statements."""
     for name, value in ast.iter_fields(tree):
         if name in ("annotation", "returns", "decorator_list", "names"):
             continue
         for node in value if isinstance(value, list) else [value]:
-            if isinstance(node, (ast.JoinedStr, ast.Import, ast.ImportFrom)) or not isinstance(node, ast.AST):
+            if not isinstance(node, ast.AST) or _only_says(node):
                 continue
+            lines = _lines(node) if isinstance(node, (ast.stmt, ast.ExceptHandler)) else around
             if hasattr(node, "lineno"):
-                yield node
-            yield from _nodes(node)
+                yield node, lines
+            yield from _nodes(node, lines)
+
+
+def _only_says(node: ast.AST) -> bool:
+    """Whether it is a text, an import, or writes to a log."""
+    if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
+        called = node.value.func
+        name = called.attr if isinstance(called, ast.Attribute) else called.id if isinstance(called, ast.Name) else ""
+        return name.lstrip("_").startswith("log")
+    is_representation = isinstance(node, ast.FunctionDef) and node.name == "__repr__"
+    return is_representation or isinstance(node, (ast.JoinedStr, ast.Import, ast.ImportFrom))
+
+
+def _lines(node: ast.AST) -> range:
+    """The lines of a statement; of one with a body, the lines before that."""
+    first: int = node.lineno  # type: ignore[attr-defined]
+    body = getattr(node, "body", None)
+    last: int = max(first, body[0].lineno - 1) if body else node.end_lineno  # type: ignore[attr-defined]
+    return range(first, last + 1)
 
 
 def _changed(node: ast.AST) -> Iterator[str]:
@@ -140,47 +162,35 @@ def _text(node: ast.expr) -> str:
     return f"({ast.unparse(ast.fix_missing_locations(node))})"
 
 
-def folder_of(file: str, root: Path = ROOT) -> str:
-    """The folder of tests that mirrors the file's own, or the nearest one above it that there is."""
+def folders_of(file: str, root: Path = ROOT) -> List[str]:
+    """The folder of tests that mirrors the file's own, or the nearest one above it that there is; and, of nodes, the
+    tests on ROS."""
     part = next(part for part in PARTS if file.startswith(f"{part}/"))
     rest = Path(file).parent.relative_to(part)
     found = root / PARTS[part] / rest
     while not found.is_dir():
         found = found.parent
-    return found.relative_to(root).as_posix()
+    name = found.relative_to(root).as_posix()
+    return [name, *([_ON_ROS[name]] if name in _ON_ROS else [])]
+
+
+def files_of(folder: str, root: Path = ROOT) -> List[str]:
+    """The files of tests of a folder."""
+    return sorted(path.relative_to(root).as_posix() for path in (root / folder).rglob("test_*.py"))
 
 
 def drawn(count: int, seed: int, only: Sequence[str] = tuple(PARTS), root: Path = ROOT) -> List[Mutant]:
-    """So many mutants of these folders or files; the same ones for the same seed and code."""
+    """So many mutants of these folders or files. For one seed they stay the same where other lines are changed."""
     files = [file for part in only for file in (root / part, *(root / part).rglob("*.py"))]
-    names = sorted({file.relative_to(root).as_posix() for file in files if file.is_file()})
-    every = [each for name in names for each in mutants_of(name, (root / name).read_text(encoding="utf-8"))]
-    return sorted(random.Random(seed).sample(every, min(count, len(every))), key=lambda each: (each.file, each.start))
-
-
-def ran(folder: Path, tests: str, cpu: Optional[float] = None) -> Tuple[str, float]:
-    """How the tests end in a copy ("passed", "failed", "too long", or what pytest says), and their processor time."""
-    most = resource.RLIM_INFINITY if cpu is None else int(cpu) + 1
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    environment = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
-    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", tests]
-    process = subprocess.Popen(
-        command, cwd=folder, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        start_new_session=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (most, most)),
-    )  # fmt: skip
-    try:
-        status: Optional[int] = process.wait(None if cpu is None else _WALL * cpu)
-    except subprocess.TimeoutExpired:
-        status = None
-    finally:
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    taken = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    ends = {0: "passed", 1: "failed", 2: "failed", 4: "failed", None: "too long", -signal.SIGKILL: "too long"}
-    ends[-signal.SIGXCPU] = "too long"
-    return ends.get(status, f"pytest ended with {status}"), taken
+    found: List[Tuple[bytes, Mutant]] = []
+    for name in sorted({file.relative_to(root).as_posix() for file in files if file.is_file()}):
+        seen: "collections.Counter[str]" = collections.Counter()
+        for each in mutants_of(name, (root / name).read_text(encoding="utf-8")):
+            change = f"{seed}\n{name}\n{each.before}\n{each.after}"
+            found.append((hashlib.sha256(f"{change}\n{seen[change]}".encode()).digest(), each))
+            seen[change] += 1
+    first = sorted(found, key=lambda each: each[0])[:count]
+    return sorted((each for _, each in first), key=lambda each: (each.file, each.start))
 
 
 def copied(folder: Path) -> Path:
@@ -190,8 +200,7 @@ def copied(folder: Path) -> Path:
     return folder
 
 
-def main() -> int:
-    """Prints a line for each mutant, then the survivors; 1 where less than GOAL are killed, 2 where the tests fail."""
+def _asked() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="./run mutants", description="Do the tests notice small changes?")
     parser.add_argument("--count", type=int, default=300, help="how many are drawn (300)")
     parser.add_argument("--seed", type=int, default=1, help="which ones are drawn (1)")
@@ -201,36 +210,62 @@ def main() -> int:
     wrong = [path for path in given.only or () if not any(f"{path}/".startswith(f"{part}/") for part in PARTS)]
     if wrong or given.count < 1 or given.jobs < 1:
         parser.error(f"--only takes what is in {', '.join(PARTS)}" if wrong else "--count and --jobs: 1 or more")
-    mutants = drawn(given.count, given.seed, given.only or tuple(PARTS))
-    folders: "queue.Queue[Path]" = queue.Queue()
-    for number in range(min(given.jobs, len(mutants))):
-        folders.put(copied(ROOT / "build" / "mutants" / str(number)))
-    first, usual = folders.get(), {}
-    for tests in sorted({folder_of(each.file) for each in mutants}):
-        end, usual[tests] = ran(first, tests)
-        if end != "passed":
-            print(f"{tests} without a mutant: {end}", file=sys.stderr)
-            return 2
-    folders.put(first)
+    return given
 
-    def outcome(mutant: Mutant) -> str:
-        folder, tests = folders.get(), folder_of(mutant.file)
-        file = folder / mutant.file
-        original = file.read_bytes()
-        try:
-            file.write_bytes(mutant.applied(original))
-            end, _ = ran(folder, tests, _TIMES * usual[tests] + _MORE)
-        finally:
-            file.write_bytes(original)
-            folders.put(folder)
-        line = f"{'survived' if end == 'passed' else 'killed' if end == 'failed' else end}  {mutant}"
-        print(line, flush=True)
-        return end
 
+class Copies:
+    """Copies of the project, in which so many jobs at a time work."""
+
+    def __init__(self, jobs: int) -> None:
+        self._jobs = jobs
+        self._free: "queue.Queue[Path]" = queue.Queue()
+        for number in range(jobs):
+            self._free.put(copied(ROOT / "build" / "mutants" / str(number)))
+
+    def each(self, job: Callable[[Path, _Given], _Made], given: Sequence[_Given]) -> List[_Made]:
+        """What the job makes of each of these, in a copy that nobody else uses meanwhile."""
+
+        def in_a_copy(one: _Given) -> _Made:
+            folder = self._free.get()
+            try:
+                return job(folder, one)
+            finally:
+                self._free.put(folder)
+
+        with concurrent.futures.ThreadPoolExecutor(self._jobs) as pool:
+            return list(pool.map(in_a_copy, given))
+
+
+def tried(folder: Path, mutant: Mutant, tests: Sequence[Measured]) -> str:
+    """How the tests of a mutant end in a copy; "not executed" where none of them executes its lines. Prints it."""
+    own = [f"{name}/" for name in folders_of(mutant.file)]
+    chosen = [each for each in tests if each.name.startswith(tuple(own)) and each.executes(mutant.file, mutant.lines)]
+    file = folder / mutant.file
+    original = file.read_bytes()
+    try:
+        file.write_bytes(mutant.applied(original))
+        end = outcome(folder, chosen, mutant.file) if chosen else "not executed"
+    finally:
+        file.write_bytes(original)
+    print(f"{_SURVIVED.get(end, 'killed' if end == 'failed' else end)}  {mutant}", flush=True)
+    return end
+
+
+def main() -> int:
+    """Prints a line for each mutant, then the survivors; 1 where less than GOAL are killed, 2 where the tests fail."""
+    given = _asked()
     start = time.monotonic()
-    with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
-        ends = list(pool.map(outcome, mutants))
-    survivors = [mutant for mutant, end in zip(mutants, ends) if end == "passed"]
+    mutants = drawn(given.count, given.seed, given.only or tuple(PARTS))
+    copies = Copies(given.jobs)
+    names = sorted({name for each in mutants for folder in folders_of(each.file) for name in files_of(folder)})
+    tests = copies.each(measured, names)
+    wrong = [f"{each.name} without a mutant: {each.end}" for each in tests if each.end != "passed"]
+    if wrong:
+        print("\n".join(wrong), file=sys.stderr)
+        return 2
+    print(f"{len(tests)} files of tests, {time.monotonic() - start:.0f} s", flush=True)
+    ends = copies.each(lambda folder, mutant: tried(folder, mutant, tests), mutants)
+    survivors = [mutant for mutant, end in zip(mutants, ends) if end in _SURVIVED]
     killed = len(mutants) - len(survivors)
     share = killed / max(1, len(mutants))
     print(f"{killed} of {len(mutants)} killed ({share:.1%}), seed {given.seed}, {time.monotonic() - start:.0f} s")

@@ -251,6 +251,8 @@ def become(program: Program, end: End) -> None:
     sys.argv[:] = program.arguments  # rosmaster has kept the list
     first = os.path.dirname(os.path.realpath(program.arguments[0]))
     sys.path[:0] = [first, *filter(None, program.variables.get("PYTHONPATH", "").split(":"))]
+    if "COVERAGE_PROCESS_START" in os.environ:
+        importlib.import_module("coverage").process_startup()
     random.seed()
     names = sys.modules.get("rospy.names")
     if names is not None:

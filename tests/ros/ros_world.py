@@ -65,6 +65,9 @@ def _environment(home: Path) -> Dict[str, str]:
     if sys.version_info < (3, 12):
         # roslaunch imports distutils, of which setuptools has one that takes long to import.
         found["SETUPTOOLS_USE_DISTUTILS"] = "stdlib"
+    measuring = os.environ.get("COVERAGE_PROCESS_START")  # ./run mutants looks what is executed
+    if measuring:
+        found.update(COVERAGE_PROCESS_START=measuring, PYTHONPATH=os.path.dirname(measuring))
     return {**found, "ROS_LOG_DIR": str(home / "log"), "ROS_IP": "127.0.0.1"}
 
 
