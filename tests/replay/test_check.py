@@ -402,6 +402,18 @@ def test_an_end_whose_first_message_is_missing_was_when_its_clocks_stopped() -> 
     assert findings.length == pytest.approx(21.3)
 
 
+@pytest.mark.parametrize("again", [0.0, 4.0])
+@pytest.mark.parametrize("passed", [0.0025, 0.6])
+def test_an_end_that_came_with_an_acknowledgement_began_where_its_clocks_say(passed: float, again: float) -> None:
+    made = mission()
+    last = made.states[10]
+    clocks = {clock: value + passed for clock, value in last.clocks.items()}
+    made.change(10, stamp=last.stamp + passed + again, clocks=clocks)
+    findings = found(made)
+    assert findings.kept and findings.won and kinds(findings, NOTE) == [("recorded late", 10)]
+    assert findings.length == pytest.approx(21.3 + passed)
+
+
 def test_clocks_that_do_not_fit_an_earlier_beginning_are_a_fault() -> None:
     made = mission()
     state = next(state for state in made.states if state.seq == 3)
