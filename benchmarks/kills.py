@@ -67,14 +67,14 @@ class Mission(NamedTuple):
     missed: Tuple[str, ...] = ()
 
 
-HEAD = ("seed", "unit", "machine", "recorders")
+HEAD = ("seed", "unit", "machine")
 """What missions have in common that are counted together."""
-
-RECORDERS = 2
-"""How many record a mission."""
 
 READY = 60.0
 """Seconds within which the second recorder has to be there."""
+
+WORD = "the word"
+"""How what was missed begins where it is no order."""
 
 BAD = ("wrong", "no end")
 """The words of OUTCOMES that must not be."""
@@ -161,7 +161,7 @@ def judge(bag: Path, second: Path, journals: Iterable[Path], game: Game) -> Tupl
     assert not isinstance(record, Journal) and not isinstance(other, Journal)
     whole, gaps = with_heard(merged(record, other), heard_in(journals))
     findings = check(whole, game)
-    missed = [f"the word {word.text}" for word in gaps]
+    missed = [f"{WORD} {word.text}" for word in gaps]
     missed += [f"state {each.seq}: {each.text}" for each in findings.findings if each.kind == "acknowledged"]
     return (*outcome(findings), tuple(missed))
 
@@ -244,7 +244,6 @@ def results(done: Sequence[Mission]) -> Dict[str, Any]:
 def mismatch(before: Dict[str, Any], head: Dict[str, Any]) -> str:
     """Return why missions of this seed, unit, machine and first number cannot be added to what was found before; ""
     if they can."""
-    before = {"recorders": 1, **before}
     if head["parts"][0]["first"] == before["missions"] and all(head[key] == before[key] for key in HEAD):
         return ""
     there = f"{before['missions']} missions, " + ", ".join(f"{key} {before[key]}" for key in HEAD)
@@ -265,17 +264,12 @@ def together(before: Dict[str, Any], found: Dict[str, Any]) -> Dict[str, Any]:
     }
 
 
-TWO = (
+RECORDERS = (
     "Two recorders that share nothing record each mission: the workspace's own, and `rosbag record`, which is there",
     "before all nodes. What either has was published. A word that both have missed was published if the observer's",
     "journal has it as heard; the judge then does not know who published it. An order that both have missed was given",
     "if the robot's side has acknowledged its number. Any other order or word that is missing is wrong, and so",
     "is an order without acknowledgement in a mission that was won, where one was needed.",
-)
-ONE = (
-    "These missions had one recorder, which may miss what a node publishes that is killed at once or has just started.",
-    "The judge of that day did not count a word or an order that was missing in the recording: an order that reached",
-    "no robot is not found here.",
 )
 """What the page says of the recorders."""
 
@@ -285,11 +279,11 @@ def _part_line(part: Dict[str, Any]) -> str:
     return f"- missions {part['first']} to {part['first'] + part['missions'] - 1}: played {part['date']}{commit}"
 
 
-def _missed_lines(missed: Sequence[Dict[str, Any]]) -> List[str]:
-    if not missed:
-        return []
-    count = sum(len(each["missed"]) for each in missed)
-    return [f"Both recorders have missed {count} messages that were published, in {len(missed)} missions.", ""]
+def _missed_line(missed: Sequence[Dict[str, Any]]) -> str:
+    found = [what for each in missed for what in each["missed"]]
+    words = sum(what.startswith(WORD) for what in found)
+    counts = f"words {words}, orders {len(found) - words}"
+    return f"both recorders have missed what was published in {len(missed)} of them: {counts}."
 
 
 def page(found: Dict[str, Any]) -> str:
@@ -303,15 +297,15 @@ def page(found: Dict[str, Any]) -> str:
         "after a second. The mission is recorded, and judged from the recording and the workspace's strategy alone, by",
         "what `pursue-gen replay` does.",
         "",
-        *(TWO if found.get("recorders") == RECORDERS else ONE),
+        *RECORDERS,
         "",
         f"{found['missions']} missions with {found['kills']} kills, seed {found['seed']}, {found['unit']} s per time",
-        f"unit, reaction {float(RULES.reaction)}; {found['machine']}.",
+        f"unit, reaction {float(RULES.reaction)}; {found['machine']};",
+        _missed_line(found["missed"]),
         "",
         *(_part_line(part) for part in found["parts"]),
         "",
         *([found["remark"], ""] if found.get("remark") else []),
-        *_missed_lines(found.get("missed", ())),
         "| scenario | " + " | ".join(heads) + " |",
         "| --- |" + " --- |" * len(heads),
         *(f"| {name} | " + " | ".join(str(row[head]) for head in heads) + " |" for name, row in found["table"].items()),
@@ -349,7 +343,7 @@ def main() -> int:
     kept = given.out / "benchmarks" / "kills.json" if given.out else None
     before = json.loads(kept.read_text(encoding="utf-8")) if kept and given.first else None
     part = {"first": given.first, "missions": given.missions, "date": given.date, "commit": version()}
-    head = {"seed": given.seed, "unit": given.unit, "machine": given.machine, "recorders": RECORDERS, "parts": [part]}
+    head = {"seed": given.seed, "unit": given.unit, "machine": given.machine, "parts": [part]}
     if before and mismatch(before, head):
         options().error(mismatch(before, head))
     numbers = range(given.first, given.first + given.missions)
