@@ -113,6 +113,14 @@ def reference_dir() -> Path:
     return folder
 
 
+@pytest.fixture(scope="session")
+def python38() -> str:
+    """A Python 3.8 with the oldest packages that do; the test is skipped where there is none."""
+    from tests.python38 import oldest_python
+
+    return oldest_python()
+
+
 def thesis_scenario(number: str) -> Path:
     """The path of one of the thesis's five scenarios: '1' to '4' or 'catch_the_thief'."""
     stem = number if number.startswith("catch") else f"scenario_{number}"
