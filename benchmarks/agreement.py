@@ -1,9 +1,9 @@
 """Do all who can tell who wins say the same? `python -m benchmarks.agreement --games 10000 --scenarios 3000 --out docs`
 
 So many random games, and games of random scenarios, a kind and a game after the other; what differs is printed at once.
-`--out docs` writes the counts into docs/benchmarks.md. The same numbers give the same games and the same outcome on
-every machine: all limits are on work. What is compared is in opinions.py, what is drawn in random_games.py and
-random_stories.py.
+`--labs` adds small lab scenarios. `--out docs` writes the counts into docs/benchmarks.md. The same numbers give the
+same games and the same outcome on every machine: all limits are on work. What is compared is in opinions.py, what is
+drawn in random_games.py, random_stories.py and lab_scenarios.py.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ import random
 import sys
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence
+from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence
 
+from benchmarks.lab_scenarios import Size, lab_scenario
 from benchmarks.measure import Row
 from benchmarks.opinions import Opinions, on_game, on_scenario
 from benchmarks.random_games import random_game
@@ -34,12 +35,15 @@ LEAST = 3
 GAMES = {"ideal": IDEAL, "default": DEFAULT, "late": Rules(reaction=Fraction(1))}
 """Random games are played as these; in the last one commands take effect up to one time unit late."""
 
-SCENARIO = "scenario"
-"""How a group of random scenarios is called; others are called as their kind of objective."""
+SCENARIO, LAB = "scenario", "lab scenario"
+"""How groups of random scenarios are called; others are called as their kind of objective."""
+
+SMALL_LAB = Size(places=3, robots=2, people=1, promises=2)
+"""Of lab scenarios of this size about half are decided in one piece within the limits."""
 
 
 class Job(NamedTuple):
-    """A game: its group's name (a kind of objective, or SCENARIO), a key of GAMES, its number."""
+    """A game: its group's name (a kind of objective, or a key of DRAWN), a key of GAMES, its number."""
 
     name: str
     game: str
@@ -49,11 +53,11 @@ class Job(NamedTuple):
 def opinions_of(job: Job) -> Optional[Opinions]:
     """Everybody's verdict; None for a game of the wrong size, or a scenario with errors."""
     rules = GAMES[job.game]
-    if job.name != SCENARIO:
+    if job.name not in DRAWN:
         network, objective = random_game(job.number, Kind(job.name))
         return on_game(network, objective, rules, LEAST)
     try:
-        scenario = parse(story(job.number), "story.pur", "story")
+        scenario = parse(DRAWN[job.name](job.number), "story.pur", "story")
         network, objective = translate(scenario), scenario_objective(scenario)
     except PursueError:
         return None
@@ -63,6 +67,15 @@ def opinions_of(job: Job) -> Optional[Opinions]:
 def story(number: int) -> str:
     """The text of the random scenario of this number."""
     return random_story(random.Random(f"story {number}"))
+
+
+def lab(number: int) -> str:
+    """The text of the small lab scenario of this number."""
+    return lab_scenario(number, SMALL_LAB)
+
+
+DRAWN: Dict[str, Callable[[int], str]] = {SCENARIO: story, LAB: lab}
+"""The text of a random scenario by its number, by how its group is called."""
 
 
 def compared(name: str, game: str, count: int, processes: int) -> Row:
@@ -98,13 +111,14 @@ def add(row: Row, number: int, found: Opinions) -> None:
         print(f"{row['name']}, {row['game']}, number {number}: {found.verdicts} {found.faults}", flush=True)
 
 
-def groups(games: int, scenarios: int) -> Iterator[Any]:
+def groups(games: int, scenarios: int, labs: int = 0) -> Iterator[Any]:
     """(name, game, count) of each group."""
     for kind in Kind:
         for game in GAMES:
             yield kind.value, game, -(-games // (len(Kind) * len(GAMES)))
-    for game in ("ideal", "default"):
-        yield SCENARIO, game, -(-scenarios // 2)
+    for name, count in ((SCENARIO, scenarios), (LAB, labs)):
+        for game in ("ideal", "default"):
+            yield name, game, -(-count // 2)
 
 
 def main(arguments: Optional[Sequence[str]] = None) -> int:
@@ -112,11 +126,12 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--games", type=int, default=900, help="random games (900)")
     parser.add_argument("--scenarios", type=int, default=100, help="games of random scenarios (100)")
+    parser.add_argument("--labs", type=int, default=0, help="games of small random lab scenarios (0)")
     parser.add_argument("--processes", type=int, default=1, help="that work at the same time (1)")
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="write the counts to benchmarks.md there")
     given = parser.parse_args(arguments)
     rows: List[Row] = []
-    for name, game, count in groups(given.games, given.scenarios):
+    for name, game, count in groups(given.games, given.scenarios, given.labs):
         if count:
             rows.append(compared(name, game, count, given.processes))
             print(json.dumps(rows[-1]), flush=True)

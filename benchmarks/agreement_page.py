@@ -30,7 +30,7 @@ def table(results: Mapping[str, Any]) -> str:
 def _split(rows: Iterable[Row]) -> Dict[str, List[Row]]:
     kinds: Dict[str, List[Row]] = {"random games": [], "games of random scenarios": []}
     for row in rows:
-        kinds["games of random scenarios" if row["name"] == "scenario" else "random games"].append(row)
+        kinds["games of random scenarios" if row["name"].endswith("scenario") else "random games"].append(row)
     return kinds
 
 

@@ -7,6 +7,7 @@ is given to the command changes what it does. What counts is processor time, use
 from __future__ import annotations
 
 import json
+import re
 import sys
 import tempfile
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ from typing import Any, Dict, Iterable, Iterator, List, Optional, Tuple
 
 from benchmarks.families import FAMILIES
 from benchmarks.measure import GAMES, ROOT, Bounds, Row
+from benchmarks.ordinary_families import ORDINARY
 from benchmarks.process import Ran, run
 from benchmarks.tables import markdown, number, seconds, verdict
 from pursue_gen.outcomes import LimitHit, Lost
@@ -25,6 +27,9 @@ MEMORY_GOAL = 2048
 
 _QUICK_COMMAND = 5.0
 """Seconds of the processor: what takes less is measured twice, and the better figure counts."""
+
+_BY_THE_CLOCK = 40
+"""On a machine that many share a command may take so many times its processor time."""
 
 _STORIES = "stories/"
 
@@ -96,8 +101,8 @@ QUICK = ("thesis/scenario_1", "bystanders")
 def files_of(goal: Goal, published: Path, folder: Path) -> List[Path]:
     """The files of the command; a member of a family is written into the folder. Empty where they are not at hand."""
     if goal.size is not None:
-        family = next(family for family in FAMILIES if family.name == goal.name)
-        member = folder / f"{goal.name.replace(' ', '_')}_{goal.size}.pur"
+        family = next(family for family in (*FAMILIES, *ORDINARY) if family.name == goal.name)
+        member = folder / f"{re.sub('[^a-z]+', '_', goal.name)}_{goal.size}.pur"
         member.write_text(family.text(goal.size))
         return [member]
     if "/" not in goal.name:
@@ -120,13 +125,18 @@ def commands_measured(goals: Iterable[Goal], published: Path, bounds: Bounds) ->
                 yield row
 
 
-def command_measured(goal: Goal, files: List[Path], folder: Path, bounds: Bounds) -> Row:
-    """What the command takes. Keys: as of `measured`, and cpu (processor seconds), goal (the same, as it should be),
-    worst (time units, what the strategy guarantees) and least (of the game, where it is known)."""
+def command_measured(goal: Goal, files: List[Path], folder: Path, bounds: Bounds, memory: int = 0) -> Row:
+    """What the command takes; with `memory`, so many MiB are its own limit, and addresses end not far above it.
+
+    Keys: as of `measured`, and cpu (processor seconds), goal (the same, as it should be), worst (time units, what the
+    strategy guarantees) and least (of the game, where it is known).
+    """
     ends, reaction = GAMES[goal.game]
     rules = ["--ends", ends, "--reaction", str(reaction)] if goal.game != "default" else []
     command = [sys.executable, "-m", "pursue_gen", "solve", *map(str, files), *rules, "--json"]
-    ran = run([*command, "-o", str(folder / "plan.txt")], 2 * bounds.seconds, ROOT)
+    command += ["--memory", str(memory)] if memory else []
+    addresses = memory + 1024 if memory else 0  # as in measure.py: libraries need some too
+    ran = run([*command, "-o", str(folder / "plan.txt")], 2 * bounds.seconds, ROOT, addresses, _BY_THE_CLOCK)
     row: Row = {"group": "command", "name": goal.title, "size": goal.size, "game": goal.game, "outcome": ""}
     row.update(cpu=round(ran.cpu, 3), memory=round(ran.memory, 1), goal=goal.seconds, least=goal.least)
     row.update(_outcome(ran))

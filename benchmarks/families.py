@@ -32,7 +32,7 @@ def deliver_by_robots(robots: int) -> str:
     """Each robot brings a parcel from the depot to one of three rooms; the first one reports when all are there."""
     rooms = ("room1", "room2", "room3")
     numbers = range(1, robots + 1)
-    return _text(
+    return statements(
         ("depot", "hub", *rooms),
         [("depot", "hub", 4), *(("hub", room, 3 + 2 * place) for place, room in enumerate(rooms))],
         {
@@ -41,7 +41,7 @@ def deliver_by_robots(robots: int) -> str:
             "report": "",
         },
         [f"(load{i} before unload{i}) before report" for i in numbers],
-        [_bot(f"bot{i}", "depot", [f"load{i}", f"unload{i}"] + ["report"] * (i == 1)) for i in numbers],
+        [robot(f"bot{i}", "depot", [f"load{i}", f"unload{i}"] + ["report"] * (i == 1)) for i in numbers],
         "reach_objective: do report after 0",
     )
 
@@ -55,7 +55,7 @@ def clean_by_robots(robots: int) -> str:
     """A clerk calls; within 46 a robot has wiped the office and says so. A robot that has wiped rinses its mop before
     it wipes again."""
     numbers = range(1, robots + 1)
-    return _text(
+    return statements(
         ("office", "base", "hallway", "washroom"),
         [("office", "hallway", 5), ("base", "hallway", 2), ("washroom", "hallway", 7)],
         {
@@ -71,7 +71,7 @@ def clean_by_robots(robots: int) -> str:
             *(f"wipe{i} before rinse{i}" for i in numbers),
         ],
         [
-            *(_bot(f"bot{i}", "base", [f"wipe{i}", f"rinse{i}", "clean"]) for i in numbers),
+            *(robot(f"bot{i}", "base", [f"wipe{i}", f"rinse{i}", "clean"]) for i in numbers),
             'agent "clerk" location office can_do call, pause',
         ],
         "objective: if call then clean within 46",
@@ -83,7 +83,7 @@ def deliver_by_places(places: int) -> str:
     middle."""
     corridors = places // 2
     half = (corridors + 1) // 2
-    return _text(
+    return statements(
         (*(f"corridor{i}" for i in range(1, corridors + 1)), *(f"room{i}" for i in range(1, places - corridors + 1))),
         [
             *((f"corridor{i}", f"corridor{i + 1}", 3) for i in range(1, corridors)),
@@ -95,7 +95,7 @@ def deliver_by_places(places: int) -> str:
             "report": "",
         },
         ["luggage before report", "breakfast before report"],
-        [_bot("porter", "corridor1", ["luggage", "report"]), _bot("waiter", "corridor1", ["breakfast"])],
+        [robot("porter", "corridor1", ["luggage", "report"]), robot("waiter", "corridor1", ["breakfast"])],
         "reach_objective: do report after 0",
     )
 
@@ -118,7 +118,7 @@ def catch_by_one_distance(distance: int) -> str:
 def deliver_by_distance(distance: int) -> str:
     """Two robots work together: one fetches from the store what the other builds in at the site, and they meet in the
     yard. The way from the yard to the store has this length, the one to the site 3."""
-    return _text(
+    return statements(
         ("yard", "store", "site"),
         [("yard", "store", distance), ("yard", "site", 3)],
         {
@@ -127,7 +127,7 @@ def deliver_by_distance(distance: int) -> str:
             "build": "location site duration 5",
         },
         ["fetch before hand", "hand before build"],
-        [_bot("carrier", "yard", ["fetch", "hand"]), _bot("builder", "site", ["build"], reacts=["hand"])],
+        [robot("carrier", "yard", ["fetch", "hand"]), robot("builder", "site", ["build"], reacts=["hand"])],
         "reach_objective: do build after 0",
     )
 
@@ -148,13 +148,13 @@ def hand_to_visitors(visitors: int) -> str:
     """A robot hands a leaflet to each of the visitors, who walk about in three rooms at half its speed."""
     numbers = range(1, visitors + 1)
     rooms = ("room1", "room2", "room3")
-    return _text(
+    return statements(
         rooms,
         [("room1", "room2", 5), ("room2", "room3", 5), ("room3", "room1", 5)],
         {**{f"hand{i}": "collaborative" for i in numbers}, "report": ""},
         [f"hand{i} before report" for i in numbers],
         [
-            _bot("bot", "room1", [*(f"hand{i}" for i in numbers), "report"]),
+            robot("bot", "room1", [*(f"hand{i}" for i in numbers), "report"]),
             *(f'agent "visitor{i}" mobile 2 location {rooms[i % 3]} reacts_to hand{i}' for i in numbers),
         ],
         "reach_objective: do report after 0",
@@ -186,7 +186,7 @@ FAMILIES: Tuple[Family, ...] = tuple(
 )
 
 
-def _text(
+def statements(
     places: Iterable[str],
     ways: Iterable[Way],
     events: Mapping[str, str],
@@ -202,7 +202,7 @@ def _text(
     return "\n".join([*lines, *agents, objective, ""])
 
 
-def _bot(name: str, place: str, can_do: Sequence[str], reacts: Sequence[str] = ()) -> str:
+def robot(name: str, place: str, can_do: Sequence[str], reacts: Sequence[str] = ()) -> str:
     """A robot that needs one unit of time per unit of distance."""
     reaction = f" reacts_to {', '.join(reacts)}" if reacts else ""
     return f'agent "{name}" controllable mobile 1 location {place} can_do {", ".join(can_do)}{reaction}'
@@ -224,13 +224,13 @@ def _ring(places: int, distances: Sequence[int]) -> Tuple[Way, ...]:
 
 def _chase(ways: Sequence[Way], places: int, officers: int) -> str:
     """Officers start in the first place, the thief in the one opposite."""
-    return _text(
+    return statements(
         (f"p{i}" for i in range(1, places + 1)),
         ways,
         {"catch": "collaborative"},
         (),
         [
-            *(_bot(f"officer{i}", "p1", ["catch"]) for i in range(1, officers + 1)),
+            *(robot(f"officer{i}", "p1", ["catch"]) for i in range(1, officers + 1)),
             f'agent "thief" mobile 2 location p{places // 2 + 1} reacts_to catch',
         ],
         "reach_objective: do catch after 0",
@@ -239,7 +239,7 @@ def _chase(ways: Sequence[Way], places: int, officers: int) -> str:
 
 def _inspection(checks: Sequence[str], rules: Sequence[str]) -> str:
     rooms = ("room1", "room2", "room3", "room4")
-    return _text(
+    return statements(
         ("hall", *rooms),
         [("hall", room, 2 + place) for place, room in enumerate(rooms)],
         {
@@ -247,6 +247,6 @@ def _inspection(checks: Sequence[str], rules: Sequence[str]) -> str:
             "report": "location hall",
         },
         rules,
-        [_bot("bot1", "hall", [*checks, "report"]), _bot("bot2", "hall", [*checks, "report"])],
+        [robot("bot1", "hall", [*checks, "report"]), robot("bot2", "hall", [*checks, "report"])],
         "reach_objective: do report after 0",
     )

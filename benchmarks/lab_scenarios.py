@@ -121,7 +121,7 @@ def lab_scenario(seed: int, size: Size = SMALL) -> str:
 def _cast(draw: Random, size: Size) -> Cast:
     floor = _floor(draw, size.places)
     robots_at = draw.sample(floor.places, size.robots)
-    robots = [Agent(f"bot{n}", home, draw.choice((1, 1, 2))) for n, home in enumerate(robots_at, 1)]
+    robots = [Agent(f"bot{n}", home, draw.choice((1, 1, 1, 2))) for n, home in enumerate(robots_at, 1)]
     free = [place for place in floor.places if place not in robots_at]
     people = []
     for n in range(1, size.people + 1):
@@ -135,16 +135,16 @@ def _floor(draw: Random, places: int) -> Floor:
     """A corridor with rooms on both sides, of which some have a second door; in some the corridor is a ring."""
     halls = tuple(f"hall{n}" for n in range(1, max(1, places * 2 // 5) + 1))
     rooms = tuple(f"room{n}" for n in range(1, places - len(halls) + 1))
-    ways = [(a, b, draw.randint(2, 6)) for a, b in zip(halls, halls[1:])]
+    ways = [(a, b, draw.randint(2, 5)) for a, b in zip(halls, halls[1:])]
     doors = {room: draw.choice(halls) for room in rooms}
-    ways += [(hall, room, draw.randint(2, 5)) for room, hall in doors.items()]
+    ways += [(hall, room, draw.randint(1, 3)) for room, hall in doors.items()]
     if len(halls) > 2 and draw.random() < 0.3:
-        ways.append((halls[-1], halls[0], draw.randint(3, 8)))
+        ways.append((halls[-1], halls[0], draw.randint(3, 6)))
     for room in draw.sample(rooms, places // 10):
         others = [place for place in (*halls, *rooms) if place not in (room, doors[room])]
         other = draw.choice([place for place in others if doors.get(place) != doors[room]] or others)
         if {room, other} not in [{a, b} for a, b, _ in ways]:
-            ways.append((room, other, draw.randint(2, 6)))
+            ways.append((room, other, draw.randint(2, 5)))
     return Floor(halls, rooms, tuple(ways))
 
 
@@ -161,7 +161,7 @@ def _promise(draw: Random, cast: Cast, number: int) -> Promise:
 def _respond(draw: Random, cast: Cast, number: int) -> Promise:
     """A person calls, and one of one or two robots answers in a room."""
     caller, room = draw.choice(cast.people), draw.choice(cast.floor.rooms)
-    able = draw.sample(cast.robots, min(len(cast.robots), draw.choice((1, 1, 2))))
+    able = draw.sample(cast.robots, min(len(cast.robots), draw.choice((1, 1, 1, 2))))
     return _answered(draw, cast, number, caller, room, able)
 
 
@@ -191,7 +191,7 @@ def _answered(draw: Random, cast: Cast, number: int, caller: Agent, place: str, 
 def _deliver(draw: Random, cast: Cast, number: int) -> Promise:
     """A person orders; a robot picks it up in one place and drops it in another."""
     store, room = draw.sample(cast.floor.rooms, 2)
-    able = draw.sample(cast.robots, min(len(cast.robots), draw.choice((1, 1, 2))))
+    able = draw.sample(cast.robots, min(len(cast.robots), draw.choice((1, 1, 1, 2))))
     lasts = draw.randint(1, 3), draw.randint(1, 3)
     ways = [cast.floor.time(robot, start, store, room) for robot in able for start in (robot.home, room)]
     order, pick, drop = f"order{number}", f"pick{number}", f"drop{number}"

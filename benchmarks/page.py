@@ -6,7 +6,7 @@ import re
 import textwrap
 from typing import Any, Callable, Dict, Mapping, Optional
 
-from benchmarks import agreement_page, command, random_page, tables, tchecker
+from benchmarks import agreement_page, command, ordinary_page, random_page, tables, tchecker
 
 Results = Dict[str, Any]
 
@@ -71,6 +71,8 @@ PARTS: Dict[str, Callable[[Results], str]] = {
     "growth": lambda results: tables.growths(results["rows"]),
     "whole commands": lambda results: command.table(results["rows"]),
     "guaranteed times": lambda results: command.times_table(results["rows"]),
+    "ordinary work": ordinary_page.families,
+    "lab scenarios": ordinary_page.labs,
     "random games": lambda results: random_page.table(results["rows"]),
     "agreement": agreement_page.table,
     "tchecker": lambda results: tchecker.table(results["rows"]),

@@ -254,13 +254,14 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     if given.out:
         file = given.out / "benchmarks" / "results.json"
         old: Dict[str, Any] = json.loads(file.read_text()) if file.is_file() else {}
-        agreement = {key: old[key] for key in old if key == "agreement"}  # benchmarks.agreement measures that
+        # The programs of these names measure them.
+        others = {key: old[key] for key in old if key in ("agreement", "ordinary")}
         old = {} if is_complete(given) else old
         results = {"machine": given.machine, "date": given.date, "seconds": given.seconds, "memory": given.memory}
         results["load"] = round(load, 1)
         if given.render:
             results = {key: old[key] for key in results}
-        write(given.out, {**results, **agreement, "rows": merged(old.get("rows", []), new)}, not given.no_plots)
+        write(given.out, {**results, **others, "rows": merged(old.get("rows", []), new)}, not given.no_plots)
     return 0
 
 

@@ -13,7 +13,7 @@ from unittest import mock
 import pytest
 
 from benchmarks import agreement, agreement_page, opinions
-from benchmarks.agreement import SCENARIO, Job, add, compared, groups, opinions_of, story
+from benchmarks.agreement import LAB, SCENARIO, Job, add, compared, groups, lab, opinions_of, story
 from benchmarks.opinions import Opinions
 from benchmarks.random_games import random_game
 from pursue_gen.diagnostics import PursueError, error
@@ -50,6 +50,17 @@ def test_scenarios_are_solved_as_a_whole_and_composed() -> None:
     lost = opinions_of(Job(SCENARIO, "default", 3))
     assert lost is not None and lost.won is False and lost.verdicts["composed"] is None
     assert story(3) == story(3) != story(6)
+
+
+def test_small_lab_scenarios_are_compared_with_the_game_in_one_piece() -> None:
+    for number in range(100):
+        found = opinions_of(Job(LAB, "default", number))
+        assert found is not None and found.agreed
+        if found.verdicts["whole"] and found.verdicts["command"]:
+            break
+    else:
+        raise AssertionError("none of them is decided by both")
+    assert found.proven and lab(number) != lab(number + 1)
 
 
 @pytest.mark.parametrize(
@@ -116,8 +127,9 @@ def test_games_are_counted_and_what_differs_is_printed(capsys: pytest.CaptureFix
 
 def test_the_groups_are_as_many_as_wanted() -> None:
     wanted = list(groups(10_000, 3_000))
-    assert sum(count for name, _, count in wanted if name != SCENARIO) >= 10_000
+    assert sum(count for name, _, count in wanted if name not in (SCENARIO, LAB)) >= 10_000
     assert sum(count for name, _, count in wanted if name == SCENARIO) == 3_000
+    assert sum(count for name, _, count in groups(10_000, 3_000, 500) if name == LAB) == 500
     assert {game for _, game, _ in wanted} == set(agreement.GAMES) and agreement.GAMES["late"].reaction == Fraction(1)
 
 

@@ -1,0 +1,62 @@
+"""The figures of benchmarks/ordinary.py as tables and sentences."""
+
+from __future__ import annotations
+
+import statistics
+from typing import Any, List, Mapping
+
+from benchmarks import command
+from benchmarks.measure import Row
+from benchmarks.ordinary import LABS
+from benchmarks.tables import DASH, markdown, number, seconds
+
+_NONE = "Not measured yet: `python -m benchmarks.ordinary --out docs`.\n"
+
+
+def families(results: Mapping[str, Any]) -> str:
+    """What `solve` takes for members of the families of ordinary work, beside what it should."""
+    rows = [row for row in results.get("ordinary", ()) if not _lab(row)]
+    return f"{_measured(rows)}\n{command.table(rows)}" if rows else _NONE
+
+
+def labs(results: Mapping[str, Any]) -> str:
+    """How many random lab scenarios are decided, and in which time: a line for each size."""
+    lines: List[List[str]] = []
+    undecided: List[str] = []
+    rows: List[Row] = []
+    for name, (size, limit, goal) in LABS.items():
+        mine = [row for row in results.get("ordinary", ()) if _lab(row) == name]
+        if not mine:
+            continue
+        rows += mine
+        decided = sorted(row["cpu"] for row in mine if row.get("verdict"))
+        counts = [sum(row.get("verdict") == verdict for row in mine) for verdict in ("won", "lost", None)]
+        times = sorted(row["cpu"] for row in mine)
+        lines.append(
+            [f"{size.places} places, {size.robots} robots, {size.people} people, {size.promises} promises"]
+            + [number(len(mine)), *map(number, counts), f"{limit:g}"]
+            + [f"{len(decided) / len(mine):.0%}", f"{goal:.0%}", seconds(statistics.median(times))]
+            + [seconds(statistics.median(decided)) if decided else DASH]
+            + [number(max(row["memory"] for row in mine))]
+        )
+        seeds = ", ".join(str(row["size"]) for row in mine if not row.get("verdict"))
+        undecided += [f"Not decided, of {size.places} places: {seeds}."] if seeds else []
+    if not rows:
+        return _NONE
+    head = (
+        "size", "seeds", "won", "lost", "not decided", "within, s", "decided", "goal", "median of all, s",
+        "of those decided, s", "MiB, most",
+    )  # fmt: skip
+    return f"{_measured(rows)}\n{markdown(head, lines, left=1)}\n" + "\n\n".join(undecided) + "\n" * bool(undecided)
+
+
+def _lab(row: Row) -> str:
+    """The key of LABS that a row is of; "" for one of a family."""
+    name: str = row["name"].rsplit(" ", 1)[0]
+    return name if name in LABS else ""
+
+
+def _measured(rows: List[Row]) -> str:
+    """When, and on which versions."""
+    found = sorted({(row["date"], row["version"]) for row in rows})
+    return "Measured " + ", ".join(f"{date} (version {version})" for date, version in found) + ".\n"
