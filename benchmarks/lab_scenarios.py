@@ -152,9 +152,7 @@ def _floor(draw: Random, places: int) -> Floor:
 
 
 def _promise(draw: Random, cast: Cast, number: int) -> Promise:
-    kinds = [kind for kind, weight in _KINDS for _ in range(weight)]
-    if len(cast.robots) < 2:
-        kinds = [kind for kind in kinds if kind is not _keep_apart]
+    kinds = [kind for kind in _KINDS if kind is not _keep_apart or len(cast.robots) > 1]
     return draw.choice(kinds)(draw, cast, number)
 
 
@@ -258,16 +256,15 @@ def _near(draw: Random, cast: Cast, number: int) -> Promise:
     return Promise(f"always not {person.name} at {room} or {who} at {near}")
 
 
-_KINDS: Tuple[Tuple[Callable[[Random, Cast, int], Promise], int], ...] = (
-    (_respond, 3),
-    (_deliver, 2),
-    (_meet, 2),
-    (_patrol, 2),
-    (_keep_apart, 1),
-    (_avoid, 1),
-    (_near, 1),
+_KINDS: Tuple[Callable[[Random, Cast, int], Promise], ...] = (
+    _respond,
+    _deliver,
+    _meet,
+    _patrol,
+    _keep_apart,
+    _avoid,
+    _near,
 )
-"""The kinds of promises, and how often each comes in twelve."""
 
 
 def _deadline(draw: Random, longest: int) -> int:
