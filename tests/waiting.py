@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import socket
+import threading
 import time
 from typing import Any, Callable, Iterator
 
@@ -29,9 +30,39 @@ def until(done: Callable[[], Any], what: str) -> Any:
         time.sleep(0.01)
 
 
-def connected(port: int) -> socket.socket:
-    """A connection with a server on this machine."""
-    return socket.create_connection(("127.0.0.1", port), timeout=PATIENCE)
+def connected(port: int, address: str = "127.0.0.1") -> socket.socket:
+    """A connection with a server on this machine, from this address."""
+    return socket.create_connection(("127.0.0.1", port), PATIENCE, (address, 0))
+
+
+@contextlib.contextmanager
+def flooded(port: int, address: str) -> Iterator[None]:
+    """Meanwhile 100 connections from this address are there, of which each has begun a request."""
+    with contextlib.ExitStack() as held:
+        for _ in range(100):
+            there = held.enter_context(connected(port, address))
+            with may_close():
+                there.sendall(b"GET / HTTP/1.1\r\n")
+        yield
+
+
+@contextlib.contextmanager
+def dripping(there: socket.socket, drop: bytes) -> Iterator[None]:
+    """Sends these bytes again and again meanwhile, in a thread, as long as the other side takes them."""
+    over = threading.Event()
+
+    def drip() -> None:
+        with may_close():
+            while not over.wait(0.02):
+                there.sendall(drop)
+
+    thread = threading.Thread(target=drip)
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join()
 
 
 @contextlib.contextmanager

@@ -7,10 +7,14 @@ of the machine can read or change the scenario.
 
 from __future__ import annotations
 
+import contextlib
 import hmac
+import io
 import json
 import secrets
+import socket
 import threading
+import time
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any, Dict, Mapping, Optional, Tuple
@@ -18,12 +22,13 @@ from typing import Any, Dict, Mapping, Optional, Tuple
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.draw.page import DrawPage
 from pursue_runtime.bounded import BadText, read_json
+from pursue_runtime.slots import Slots
 
 HOST = "127.0.0.1"
 MOST_BYTES = 8 << 20
 """Bytes of a request: a text of a million letters, each as long as JSON writes it."""
 MOST_CONNECTIONS = 32
-REQUEST_TIMEOUT = 30.0  # seconds that a browser may take for a request
+REQUEST_TIMEOUT = 30.0  # seconds that a browser may take for a whole request, and for the answer
 _STATIC = Path(__file__).parent / "static"
 _KINDS = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}
 _POLICY = (
@@ -38,11 +43,14 @@ class DrawServer(ThreadingHTTPServer):
     """The server of one page, bound to its address; `serve_forever` serves."""
 
     daemon_threads = True
+    request_queue_size = 128
 
     def __init__(self, page: DrawPage, port: int = 0) -> None:
         """`port`: 0 for any that is free. Raises PursueError (exit status 2) where it cannot be had."""
         self.page = page
         self.token = secrets.token_urlsafe(16)
+        self._slots: Slots[Any] = Slots(MOST_CONNECTIONS)
+        self._lock = threading.Lock()
         self._free = threading.BoundedSemaphore(MOST_CONNECTIONS)
         try:
             super().__init__((HOST, port), _Handler)
@@ -63,21 +71,54 @@ class DrawServer(ThreadingHTTPServer):
         return f"http://{self.hosts[0]}/{self.token}/"
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        """Serves a connection in a thread of its own, or closes it where there are too many."""
-        if not self._free.acquire(blocking=False):
-            self.shutdown_request(request)
-            return
-        super().process_request(request, client_address)
+        """Serves a connection in a thread of its own; where there are too many, another one is closed for it."""
+        with self._lock:
+            victim = self._slots.take(request, client_address[0])
+        if victim is not None:
+            with contextlib.suppress(OSError):  # it has just ended
+                victim.shutdown(socket.SHUT_RDWR)
+        self._free.acquire()  # where there are too many, the thread of the other one ends first
+        try:
+            super().process_request(request, client_address)
+        except Exception:  # the system has no thread left
+            self._forget(request)
+            raise
+
+    def trust(self, request: Any) -> None:
+        """Keep a connection that knows the random word, as long as others can go instead."""
+        with self._lock:
+            self._slots.trust(request)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
         """As of the base class."""
         try:
             super().process_request_thread(request, client_address)
         finally:
-            self._free.release()
+            self._forget(request)
+
+    def _forget(self, request: Any) -> None:
+        with self._lock:
+            self._slots.free(request)
+        self._free.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """A browser that goes away is no error, and clients must not write to the terminal."""
+
+
+class _Arriving(io.RawIOBase):
+    """What a client sends, until a deadline that no drip puts off."""
+
+    def __init__(self, connection: socket.socket) -> None:
+        self._connection, self.deadline = connection, 0.0
+
+    def readable(self) -> bool:
+        """As of the base class."""
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        """As of the base class. Raises socket.timeout."""
+        self._connection.settimeout(max(self.deadline - time.monotonic(), 0.001))
+        return self._connection.recv_into(buffer)
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -86,7 +127,17 @@ class _Handler(BaseHTTPRequestHandler):
     server: DrawServer
     protocol_version = "HTTP/1.1"
     server_version, sys_version = "pursue-gen", ""
-    timeout = REQUEST_TIMEOUT
+
+    def setup(self) -> None:
+        """As of the base class; reads with a deadline."""
+        super().setup()
+        self._arriving = _Arriving(self.connection)
+        self.rfile = io.BufferedReader(self._arriving)
+
+    def handle_one_request(self) -> None:
+        """As of the base class, which closes the connection at a socket.timeout."""
+        self._arriving.deadline = time.monotonic() + REQUEST_TIMEOUT
+        super().handle_one_request()
 
     def do_GET(self) -> None:
         """A file of the page, the floor plan, or the report."""
@@ -132,6 +183,7 @@ class _Handler(BaseHTTPRequestHandler):
         if not hmac.compare_digest(token.encode("latin-1", "replace"), self.server.token.encode()) or not slash:
             self._refuse(403, "Open the whole address that pursue-gen draw has printed.")
             return None
+        self.server.trust(self.connection)
         return path
 
     def _body(self) -> Optional[Mapping[str, Any]]:
@@ -170,6 +222,7 @@ class _Handler(BaseHTTPRequestHandler):
             "Cross-Origin-Resource-Policy": "same-origin",
             "Cache-Control": "no-store",
         }
+        self.connection.settimeout(REQUEST_TIMEOUT)
         self.send_response(status)
         for name, value in headers.items():
             self.send_header(name, value)

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import base64
 import hashlib
-import ipaddress
 import json
 import re
 import time
@@ -58,14 +57,6 @@ class RequestRefused(Exception):
     def __init__(self, code: str, message: str) -> None:
         super().__init__(message)
         self.answer = HttpAnswer(HTTP[code], code, message)
-
-
-def is_loopback(host: str) -> bool:
-    """True for an address that only this machine reaches."""
-    try:
-        return host == "localhost" or ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False
 
 
 # What comes -----------------------------------------------------------------------------------------------------------

@@ -141,6 +141,11 @@ class Server(Service):
         finally:
             self._waiting = None
 
+    def trust(self, request: Any) -> None:
+        """Keep the connection of an order that was checked, as long as others can go instead."""
+        if self._server is not None:
+            self._server.trust(request)
+
     def _on_refused(self) -> None:
         self.record.count("turned away", "too many connections: one was closed")
 
@@ -215,6 +220,7 @@ class _Request(RequestHandler):
         if self.server.busy:
             raise RequestRefused("busy", "another order is under way: try again")
         self.order, self.server.busy = order, True
+        self.server.trust(self.request)
         loop, limits = asyncio.get_running_loop(), self.server.limits
         self.timers = [loop.call_later(limits.upload, self._too_slow), loop.call_later(limits.window, self._check_rate)]
 

@@ -21,11 +21,12 @@ from pursue_runtime.data import Package
 from pursue_runtime.folders import keys_folder
 from pursue_runtime.manager.background import Background, ServerError, Service, bind
 from pursue_runtime.manager.forwarder import Forwarder
-from pursue_runtime.manager.manager import LOCAL_MISSION, MISSION_STATUS, Manager, RequestLog, is_loopback, topic_names
+from pursue_runtime.manager.manager import LOCAL_MISSION, MISSION_STATUS, Manager, RequestLog, topic_names
 from pursue_runtime.manager.server import Limits, Server, tls
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, Report, lower_priority, run_node, subscribe
 from pursue_runtime.parameters import number, whole
+from pursue_runtime.slots import is_loopback
 from pursue_runtime.trusted_keys import KeyFolder
 
 ARGUMENTS = (

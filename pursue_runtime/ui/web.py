@@ -19,7 +19,7 @@ import secrets
 import socket
 import threading
 from types import MappingProxyType
-from typing import Any, Callable, List, Mapping, Optional, Set, Tuple
+from typing import Any, Callable, List, Mapping, Optional, Tuple
 from urllib.parse import urlsplit
 
 from tornado.iostream import StreamBufferFullError
@@ -28,6 +28,7 @@ from tornado.web import Application, HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from pursue_runtime.http_server import LimitedServer, drop_chunks
+from pursue_runtime.slots import Slots, is_loopback
 
 SCRIPTS = ("agents", "confirm", "connection", "missions", "objectives", "page", "plan", "timeline")
 FILES = {
@@ -58,14 +59,6 @@ ERROR_TEXTS = {
 
 class WebError(Exception):
     """The page cannot be served; the message says why, and what to do."""
-
-
-def is_loopback(host: str) -> bool:
-    """True for an address that only this machine reaches."""
-    try:
-        return host == "localhost" or ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False
 
 
 def is_address(host: str) -> bool:
@@ -99,7 +92,7 @@ class Web:
         self.generated = not token and not is_loopback(host)
         self.token = secrets.token_urlsafe(16) if self.generated else token
         self.first_message, self.on_message, self._present = first_message, on_message, present
-        self._pages: Set[PageSocket] = set()
+        self._pages: Slots[PageSocket] = Slots(MAX_PAGES)
         try:
             self._files = {path: (_read(folder, name), kind) for path, (name, kind) in FILES.items()}
             self._files.update(pictures)
@@ -111,6 +104,7 @@ class Web:
         self._loop = asyncio.new_event_loop()
         self._closing, self._why = False, ""
         self._closed: Optional[asyncio.Event] = None  # belongs to the loop, and is made there
+        self._server: Optional[LimitedServer] = None  # likewise
         self._thread = threading.Thread(target=self._run, name="web", daemon=True)
 
     @property
@@ -161,7 +155,7 @@ class Web:
             default_handler_class=NotFound, default_handler_args={"web": self}, log_function=lambda _: None,
             websocket_max_message_size=MAX_MESSAGE, websocket_ping_interval=10, websocket_ping_timeout=30,
         )
-        server = LimitedServer(
+        self._server = server = LimitedServer(
             application, max_header_size=4 * MAX_MESSAGE, max_body_size=MAX_MESSAGE, max_buffer_size=16 * MAX_MESSAGE,
             idle_connection_timeout=REQUEST_TIMEOUT, body_timeout=REQUEST_TIMEOUT,
         )
@@ -194,15 +188,21 @@ class Web:
         return self._files[path]
 
     def add_page(self, page: "PageSocket") -> bool:
-        """Add a page that has connected; return False if there are too many."""
-        if len(self._pages) >= MAX_PAGES:
+        """Add a page that has connected; return False if there are too many: none goes for it, it would come back."""
+        address = str(page.request.remote_ip)
+        if self._pages.victim(address) is not None:
             return False
-        self._pages.add(page)
+        self._pages.take(page, address)
         return True
 
     def remove_page(self, page: "PageSocket") -> None:
         """Remove a page that has disconnected."""
-        self._pages.discard(page)
+        self._pages.free(page)
+
+    def trust(self, request: Any) -> None:
+        """Keep the connection of somebody who knows the token, as long as others can go instead."""
+        if self._server is not None:
+            self._server.trust(request)
 
     def key(self) -> str:
         """What the cookie holds: not the token itself, and the same after a restart with the same token."""
@@ -273,7 +273,7 @@ class Guarded(RequestHandler):
         """Who may."""
         if not self.web.serves(self.request.host):
             raise HTTPError(403)
-        if not self.web.token:
+        if not self.web.token:  # nobody has shown anything: the oldest goes first, so that whoever comes gets in
             return
         given = self.get_query_argument("token", None)
         if given is not None:
@@ -281,6 +281,7 @@ class Guarded(RequestHandler):
                 raise HTTPError(403)
         elif not _same(self.get_cookie(self.web.cookie) or "", self.web.key()):
             raise HTTPError(401)
+        self.web.trust(self.request)
 
     def write_error(self, status_code: int, **_: Any) -> None:
         """A page that says why."""

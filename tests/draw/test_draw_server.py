@@ -5,15 +5,16 @@ from __future__ import annotations
 import http.client
 import json
 import os
-import socket
 import stat
 import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, Dict, Iterator, Optional, Tuple
 
 import pytest
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.draw import server as draw_server
 from pursue_gen.draw import storage
 from pursue_gen.draw.jobs import Jobs
 from pursue_gen.draw.page import DrawPage, file_for
@@ -22,7 +23,7 @@ from pursue_gen.drawing.ground import read_ground
 from pursue_gen.language.formatter import format_text
 from tests.conftest import ROOT
 from tests.large_scenarios import many_walkers
-from tests.waiting import PATIENCE, until
+from tests.waiting import PATIENCE, connected, dripping, flooded, rest, until
 
 TEXT = 'poi "a" //[0, 0, 0, 0, 0, 0, 1]\n'
 WON = """poi "a"
@@ -317,6 +318,42 @@ def test_a_game_is_played_beside_the_page_and_writes_nothing(served: DrawServer,
     assert done["verdict"] == "errors"
 
 
-def test_a_connection_that_says_nothing_does_not_keep_others_out(served: DrawServer) -> None:
-    with socket.create_connection(("127.0.0.1", served.server_address[1]), timeout=PATIENCE):
+@pytest.mark.parametrize("address", ["127.0.0.1", "127.0.0.2"])
+def test_a_flood_keeps_nobody_off_the_page_and_takes_no_threads(served: DrawServer, address: str) -> None:
+    before = set(threading.enumerate())
+    with flooded(served.server_address[1], address):
         assert request(served, "GET", f"/{served.token}/")[0] == 200
+        assert asked(served, "open")["text"] == TEXT
+        until(lambda: len(set(threading.enumerate()) - before) <= draw_server.MOST_CONNECTIONS, "few threads")
+
+
+def test_a_request_under_way_is_not_ended_by_a_flood(served: DrawServer, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun, go_on = threading.Event(), threading.Event()
+
+    def slow() -> Dict[str, Any]:
+        begun.set()
+        return {"waited": go_on.wait(PATIENCE)}
+
+    monkeypatch.setattr(served.page.jobs, "state", slow)
+    with ThreadPoolExecutor(1) as pool:
+        answer = pool.submit(asked, served, "job")
+        assert begun.wait(PATIENCE)
+        with flooded(served.server_address[1], "127.0.0.1"):
+            assert request(served, "GET", f"/{served.token}/")[0] == 200, "all of them have been accepted"
+            go_on.set()
+            assert answer.result() == {"waited": True}
+
+
+@pytest.mark.parametrize("start", [
+    "GET /{token}/ HTTP/1.1\r\nA: ",
+    "POST /{token}/job HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nContent-Type: application/json\r\n"
+    "Content-Length: 9000\r\n\r\n",
+])
+def test_a_request_that_drips_is_closed_in_time(
+    served: DrawServer, monkeypatch: pytest.MonkeyPatch, start: str
+) -> None:
+    monkeypatch.setattr(draw_server, "REQUEST_TIMEOUT", 1.0)
+    with connected(served.server_address[1]) as there:
+        there.sendall(start.format(token=served.token, host=served.hosts[0]).encode())
+        with dripping(there, b"x"):
+            assert rest(there) == b""

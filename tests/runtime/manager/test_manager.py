@@ -19,7 +19,6 @@ from pursue_runtime.manager.manager import (
     RequestLog,
     RequestRefused,
     check_bundle,
-    is_loopback,
     mission_message,
     parse_length,
     topic_names,
@@ -231,13 +230,6 @@ def test_topics_are_named_with_commas_between() -> None:
     for wrong in ("a b", "1a", "a,ü", "a;b", "//"):
         with pytest.raises(ValueError, match="not the name of a topic"):
             topic_names(wrong)
-
-
-@pytest.mark.parametrize("host, loopback", [
-    ("127.0.0.1", True), ("localhost", True), ("::1", True), ("0.0.0.0", False), ("", False), ("robot", False),
-])
-def test_loopback_is_distinguished_from_other_addresses(host: str, loopback: bool) -> None:
-    assert is_loopback(host) is loopback
 
 
 def test_every_word_has_a_status_of_http() -> None:

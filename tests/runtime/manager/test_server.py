@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import base64
-import contextlib
 import datetime
 import ipaddress
 import json
-import socket
 import ssl
-import threading
 import time
 from pathlib import Path
 from typing import Any, Callable, Iterator, List, Optional, Tuple
@@ -25,7 +22,7 @@ from pursue_runtime.manager.background import ServerError, bind
 from pursue_runtime.manager.manager import LONGEST_HEADER
 from pursue_runtime.manager.server import Limits, tls
 from tests.runtime.manager_stage import ROBOT, Desk, Robot, ask, exchange, head, parse, send
-from tests.waiting import connected, may_close, rest, until
+from tests.waiting import connected, dripping, flooded, rest, until
 
 Serve = Callable[..., Robot]
 
@@ -43,25 +40,6 @@ def serve(tmp_path: Path) -> Iterator[Serve]:
     yield start
     for robot in started:
         robot.close()
-
-
-@contextlib.contextmanager
-def dripping(there: socket.socket, drop: bytes) -> Iterator[None]:
-    """Sends these bytes again and again meanwhile, in a thread, as long as the other side takes them."""
-    over = threading.Event()
-
-    def drip() -> None:
-        with may_close():
-            while not over.wait(0.02):
-                there.sendall(drop)
-
-    thread = threading.Thread(target=drip)
-    thread.start()
-    try:
-        yield
-    finally:
-        over.set()
-        thread.join()
 
 
 # What it is for
@@ -297,19 +275,31 @@ def test_a_body_that_is_fast_enough_but_too_long_under_way_ends_too(serve: Serve
 
 
 def test_a_head_that_drips_is_closed(serve: Serve) -> None:
-    assert exchange(serve(header=0.3).port, b"GET /health HTTP/1.1\r\nA: ") == b""
+    with connected(serve(header=0.3).port) as there:
+        there.sendall(b"GET /health HTTP/1.1\r\nA: ")
+        with dripping(there, b"x"):
+            assert rest(there) == b""
 
 
-def test_there_is_room_for_so_many_connections(serve: Serve) -> None:
-    robot = serve(connections=5)
-    held = [connected(robot.port) for _ in range(5)]
-    try:
-        until(lambda: ask(robot).http == 0, "there is no room")
-        assert robot.record.counts()["turned away"] >= 1
-    finally:
-        for there in held:
-            there.close()
-    until(lambda: ask(robot).http == 200, "who goes leaves room")
+@pytest.mark.parametrize("address", ["127.0.0.1", "127.0.0.2"])
+def test_a_flood_keeps_no_order_out(serve: Serve, address: str) -> None:
+    robot, desk = serve(), Desk()
+    with flooded(robot.port, address):
+        assert ask(robot).http == 200
+        assert send(robot, desk.order(robot.reader.ticket, "commit", "a" * 64)).http == 200
+        assert robot.record.counts()["turned away"] >= 100 - robot.server.limits.connections // 2
+
+
+def test_an_upload_that_has_begun_is_not_ended_by_a_flood(serve: Serve) -> None:
+    robot = serve()
+    order = Desk().order(robot.reader.ticket, body=b"abc")
+    with connected(robot.port) as there:
+        there.sendall(head(Content_Length=3, Pursue_Order=order) + b"ab")
+        until(lambda: robot.server.busy, "the upload has begun")
+        with flooded(robot.port, "127.0.0.1"):
+            assert ask(robot).http == 200, "all of them have been accepted"
+            there.sendall(b"c")
+            assert there.recv(1000).startswith(b"HTTP/1.1 200 ")
 
 
 def test_a_reader_that_does_not_answer_is_reported_in_time(serve: Serve) -> None:

@@ -17,7 +17,8 @@ from typing import Any, Iterator, List, Tuple
 import pytest
 
 from pursue_runtime.ui.page_server import STATIC
-from tests.waiting import PATIENCE, connected, may_close, rest, until
+from pursue_runtime.ui.web import MAX_PAGES
+from tests.waiting import PATIENCE, connected, dripping, flooded, may_close, rest, until
 
 pytest.importorskip("tornado", reason="tornado is not installed")
 
@@ -101,6 +102,14 @@ def test_a_body_that_never_comes_or_a_head_that_drips_is_given_up() -> None:
             there.close()
 
 
+@pytest.mark.parametrize("start", [b"GET / HTTP/1.1\r\nA: ", b"POST / HTTP/1.1\r\nContent-Length: 4000\r\n\r\n"])
+def test_a_request_that_drips_gets_no_more_time_than_one_that_stands_still(start: bytes) -> None:
+    with serving(longest=1.0) as (port, _), connected(port) as there:
+        there.sendall(start)
+        with dripping(there, b"x"):
+            assert rest(there) == b""
+
+
 def test_who_does_not_read_an_answer_is_given_up() -> None:
     many = b"GET /page.js HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n" * 20000
     with serving(longest=1.0) as (port, process):
@@ -122,6 +131,58 @@ def test_many_connections_take_neither_files_nor_the_server_away() -> None:
                 there.sendall(b"GET / HTTP/1.1\r\n")
         assert connections(process.pid) < 150, "the node has files left for itself"
         until(lambda: serves(port), "who does nothing makes room in time")
+
+
+@pytest.mark.parametrize("address", ["127.0.0.1", "127.0.0.2"])
+def test_a_flood_keeps_nobody_off_the_stop_button(address: str) -> None:
+    with serving(longest=PATIENCE) as (port, process), flooded(port, address):
+        cookie = enter(port)
+        assert b" 200 " in ask(port, PAGE % cookie)
+        stop(port, cookie)
+        assert connections(process.pid) < 80
+
+
+def test_pages_of_one_address_leave_room_for_others() -> None:
+    with serving(longest=PATIENCE) as (port, _), contextlib.ExitStack() as held:
+        cookie = enter(port)
+        for _ in range(MAX_PAGES):
+            page = held.enter_context(connected(port, "127.0.0.2"))
+            page.sendall(LIVE % (port, cookie, port))
+            hear(page, b" 101 ")
+        stop(port, cookie)
+
+
+def enter(port: int) -> bytes:
+    """The cookie of somebody who opens the page with its token."""
+    answer = ask(port, b"GET /?token=a%20token HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
+    return answer.partition(b"Set-Cookie: ")[2].partition(b";")[0]
+
+
+def stop(port: int, cookie: bytes) -> None:
+    """Opens a page, whose Stop button is pressed and answered."""
+    with connected(port) as page:
+        page.sendall(LIVE % (port, cookie, port))
+        hear(page, b" 101 ", b"{}")
+        page.sendall(STOP)
+        hear(page, b'"stop"')
+
+
+def hear(there: socket.socket, *words: bytes) -> None:
+    """Reads until all of the words have come."""
+    said = b""
+    while not all(word in said for word in words):
+        part = there.recv(4096)
+        assert part, said
+        said += part
+
+
+PAGE = b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nCookie: %s\r\nConnection: close\r\n\r\n"
+LIVE = (
+    b"GET /live HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nCookie: %s\r\nOrigin: http://127.0.0.1:%d\r\nUpgrade: websocket\r\n"
+    b"Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+)
+STOP = bytes([0x81, 0x84, 0, 0, 0, 0]) + b"stop"
+"""A frame with a text, masked with zeros; the server of these tests remarks what it gets."""
 
 
 def connections(pid: int) -> int:

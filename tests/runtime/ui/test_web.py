@@ -15,7 +15,7 @@ import pytest
 
 from pursue_runtime.ui import web as ui_web
 from pursue_runtime.ui.requests import read_request
-from pursue_runtime.ui.web import MAX_INVALID, MAX_MESSAGE, Web, WebError, is_loopback
+from pursue_runtime.ui.web import MAX_INVALID, MAX_MESSAGE, Web, WebError
 
 pytest.importorskip("tornado", reason="tornado is not installed")
 from tornado.httpclient import HTTPClientError, HTTPRequest
@@ -373,11 +373,3 @@ def test_an_address_that_is_not_ours_is_reported(serve: Serve, host: str) -> Non
         return
     with pytest.raises(WebError, match="choose another"):
         serve(host)
-
-
-@pytest.mark.parametrize("host, loopback", [
-    ("127.0.0.1", True), ("localhost", True), ("::1", True), ("127.9.9.9", True), ("0.0.0.0", False), ("::", False),
-    ("", False), ("10.0.0.1", False), ("robot", False), ("localhost.example", False),
-])
-def test_loopback_is_distinguished_from_other_addresses(host: str, loopback: bool) -> None:
-    assert is_loopback(host) is loopback
