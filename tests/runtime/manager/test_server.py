@@ -331,7 +331,7 @@ def test_a_client_that_leaves_while_the_reader_works_harms_nobody(serve: Serve) 
 def test_an_internal_error_is_reported_without_details(serve: Serve) -> None:
     robot = serve(there=lambda: 1 // 0)
     told = ask(robot)
-    assert (told.http, told.facts["message"]) == (500, "something went wrong here")
+    assert (told.http, told.facts["code"], told.facts["message"]) == (500, "internal", "something went wrong here")
     assert any("ZeroDivisionError" in line for line in robot.lines)
 
 

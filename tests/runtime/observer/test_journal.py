@@ -220,6 +220,30 @@ def test_whatever_was_read_within_bounds_can_be_read_as_a_record() -> None:
     assert records.parse_record(format_record(4, record)) == (4, record)
 
 
+def test_a_record_may_be_as_long_as_the_limit(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    line = format_record(1, {"call": "hear", "args": ["word"]})
+    monkeypatch.setattr(records, "MAX_RECORD", len(line))
+    assert format_record(1, {"call": "hear", "args": ["word"]}) == line
+    path.parent.mkdir(parents=True)
+    path.write_bytes(format_record(0, {}) + line)
+    assert [record.get("call") for record in read_records(str(path)).records] == [None, "hear"]
+    with pytest.raises(OSError, match="longer than"):
+        format_record(1, {"call": "hear", "args": ["words"]})
+
+
+def test_a_journal_is_on_the_disk_before_it_has_its_name_and_its_name_before_it_counts(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done: List[str] = []
+    sync, rename = os.fsync, os.rename
+    inodes = lambda: {each.stat().st_ino: each.name for each in (path.parent, *path.parent.iterdir())}
+    monkeypatch.setattr(os, "fsync", lambda file: (done.append(inodes()[os.fstat(file).st_ino]), sync(file)))
+    monkeypatch.setattr(os, "rename", lambda old, new: (done.append("rename"), rename(old, new)))
+    path.parent.mkdir(parents=True)
+    records.RecordFile.create(str(path), [{}, {"call": "hear"}])
+    assert done == [f"{path.name}.new", "rename", path.parent.name]
+
+
 def test_a_record_that_is_longer_than_the_limit_is_none(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Life(path).play(*PLAY)
     monkeypatch.setattr(records, "MAX_RECORD", 200)
@@ -560,7 +584,7 @@ def test_robots_that_wait_are_as_they_were_seen(path: Path) -> None:
     state, _ = seen(path, *PLAY[:2], ("hear", "bot:_held_"))
     assert (state.status, state.held) == ("holding", ("bot",))
     life = Life(path)
-    assert life.journal.adopt(state, 1004.0)[-1].held == ("bot",)
+    assert [each.held for each in life.journal.adopt(state, 1004.0)] == [("bot",)], "nothing has changed since"
     assert life.play(("hear", "bot:_resume_"), first=4)[-1].status == "running"
     assert Life(path).state() == life.state()
 

@@ -47,6 +47,13 @@ def test_a_trigger_leads_where_it_may_and_is_refused_elsewhere(status: str, trig
         assert (life.state, life.reason) == (status, before)
 
 
+@pytest.mark.parametrize("status", STATUSES)
+def test_no_trigger_leads_to_a_status_past_its_conditions(status: str) -> None:
+    """The library can make one for each status, which any status could take."""
+    with pytest.raises(KeyError):
+        life_in(RUNNING).may(f"to_{status}")
+
+
 @pytest.mark.parametrize(
     ("trigger", "may_win", "is_broken", "reason"),
     [

@@ -145,6 +145,21 @@ def test_a_second_start_changes_nothing(chase: Journey) -> None:
     assert "ignored" in chase.logs[-1][1]
 
 
+def test_time_alone_does_nothing_before_the_start_and_after_the_end() -> None:
+    journey = Journey()
+    assert journey.mission.on_time(500.0) == [], "it waits"
+    journey.hear("_start_", 1000.0)
+    assert journey.hear("_stop_", 1001.0).status == "stopped"
+    assert journey.mission.on_time(5000.0) == [], "it is over"
+
+
+def test_nothing_was_commanded_in_a_state_that_ends_the_mission() -> None:
+    journey = Journey(cover=COVER)
+    journey.hear("_start_", 1000.0)
+    assert journey.hear("bot:bot_a2b@1", 1002.0).commanded
+    assert not journey.hear("_stop_", 1003.0).commanded
+
+
 def test_a_ping_shows_the_clocks_of_now_under_the_same_number(chase: Journey) -> None:
     state = chase.hear("_ping_", 102.5)
     assert (state.seq, state.clocks["Cbot"]) == (1, 2.5)
