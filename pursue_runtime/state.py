@@ -9,6 +9,7 @@ import re
 from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bounded import whole
+from pursue_runtime.sentences import in_words, quoted
 
 WAITING, RUNNING, HOLDING, WON, LOST, STOPPED = "waiting", "running", "holding", "won", "lost", "stopped"
 LIVE, ENDED = (RUNNING, HOLDING), (WON, LOST, STOPPED)
@@ -29,6 +30,7 @@ _DECIMAL = re.compile(r"-?\d{1,18}(\.\d{1,30})?", re.ASCII)
 class SystemState(NamedTuple):
     """One state of the mission: where every automaton is, variables, clocks (at `stamp`), and what led here.
 
+    `reason` says why it holds or has ended: a sentence (sentences.py).
     `unit` is how many seconds a time unit lasts, `plan` the number of the plan in force (0: the workspace's own),
     `mission` the id of the mission whose state this is, "" for the one of the workspace. `late` names the agents that
     should have finished by now, `lost` those that nothing is expected of any more, `held` those that wait for a person.
@@ -98,7 +100,7 @@ def rewinds(state: SystemState, known: SystemState) -> bool:
 
 
 def format_state(state: SystemState) -> str:
-    """The text on pursue/system_state: the thesis's, with a first line for us."""
+    """The text on pursue/system_state, for people: the thesis's, with a first line for us."""
     head = [f"seq={state.seq} stamp={state.stamp:.6f} unit={state.unit!r}"]
     agents = tuple((key, ",".join(getattr(state, key))) for key in LISTS)
     led_by = ("event", state.event), ("agent", state.agent), *agents
@@ -106,7 +108,7 @@ def format_state(state: SystemState) -> str:
     head += [f"{key}={value}" for key, value in facts if value]
     head.append("status=" + state.status)
     if state.reason:
-        head.append("reason=" + " ".join(state.reason.split()))
+        head.append("reason=" + " ".join(in_words(state.reason).split()))
     lines = [" ".join(head)]
     lines += [f"{name}={location}" for name, location in state.locations.items()]
     lines += [f"{name}={value}" for name, value in state.values.items()]
@@ -124,7 +126,7 @@ def state_lines(state: SystemState, node: str) -> List[str]:
 
 
 def parse_state(text: str) -> Optional[SystemState]:
-    """Reads what format_state writes, skipping lines that it does not know.
+    """Reads what format_state writes, skipping lines that it does not know; no name is marked in the reason.
 
     None where the first line is not ours, or has numbers that no state has: seq < 0, unit <= 0, a stamp of infinity.
     """
@@ -149,7 +151,7 @@ def parse_state(text: str) -> Optional[SystemState]:
     clocks = {name: float(value) for name, value in _pairs(continuous) if _DECIMAL.fullmatch(value)}
     event, agent, status = facts.get("event", ""), facts.get("agent", ""), facts.get("status", RUNNING)
     lists: Dict[str, Any] = {key: tuple(filter(None, facts.get(key, "").split(","))) for key in LISTS}
-    led_by = event, agent, status, reason, unit, plan
+    led_by = event, agent, status, quoted(reason), unit, plan
     state = SystemState(seq, stamp, locations, values, clocks, *led_by, mission=facts.get("mission", ""))
     return state._replace(commanded=facts.get("commanded") == "1", **lists)
 

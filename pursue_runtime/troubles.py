@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Dict, List, Mapping
 
+from pursue_runtime.sentences import as_sentence, marked
+
 PREFIX = "robot "
 """Before the name of a robot: the key of what is wrong with it among a controller's values."""
 
@@ -22,6 +24,7 @@ class Troubles:
     def take(self, node: str, values: Mapping[str, str], reason: str) -> List[str]:
         """Return a sentence for each robot with which something is wrong that the values of this node did not say
         before, and that is not in the `reason` of the state."""
-        found = {key[len(PREFIX) :]: text for key, text in values.items() if key.startswith(PREFIX) and text}
+        found = {key[len(PREFIX) :]: as_sentence(text) for key, text in values.items() if key.startswith(PREFIX)}
         known, self._known[node] = self._known.get(node, {}), found
-        return [f"{robot} {text}" for robot, text in found.items() if known.get(robot) != text and text not in reason]
+        news = {robot: text for robot, text in found.items() if text and known.get(robot) != text}
+        return [f"{marked(robot)} {text}" for robot, text in news.items() if text not in reason]

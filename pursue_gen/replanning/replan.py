@@ -30,6 +30,7 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.pauses import pauses
+from pursue_runtime.sentences import marked, quoted
 
 _LITTLE = 100_000_000
 """The work of a search that is not for the game as it is alone: some five seconds."""
@@ -78,9 +79,10 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
             otherwise=verdict.cautious,
         )  # fmt: skip
     except NotProven as problem:
-        return _lost(f"the plan that was found is not proven: {problem}")
+        return _lost(f"the plan that was found is not proven: {quoted(str(problem))}")
     except PursueError as problem:
-        return _lost(f"no plan was found{_at_limit(limits.since(start)) or f': {problem.diagnostics[0].message}'}")
+        why = _at_limit(limits.since(start)) or f": {problem.diagnostics[0].message}"
+        return _lost(f"no plan was found{quoted(why)}")
     return _won(strategy, network, request, None if states else objective)
 
 
@@ -156,8 +158,8 @@ def _cannot_be_met(game: Network, request: Request) -> str:
             what = _objectives(request.scenario, [missed] if missed else None)
             return f"{what} cannot be met any more: its time is over"
     absent = [name for name in agents if name in request.excused or name in over]
-    without = [f"without relying on {' and '.join(absent)}"] if absent else []
-    without += [f"without the way between {a} and {b}" for a, b in sorted(request.blocked) if a < b]
+    without = [f"without relying on {' and '.join(map(marked, absent))}"] if absent else []
+    without += [f"without the way between {marked(a)} and {marked(b)}" for a, b in sorted(request.blocked) if a < b]
     return " ".join([f"{_objectives(request.scenario)} cannot be guaranteed from here", " and ".join(without)]).strip()
 
 
@@ -165,4 +167,4 @@ def _objectives(scenario: Scenario, some: Optional[Sequence[StatedObjective]] = 
     """What is to be met, or these of it, in the author's words."""
     lines = scenario.text.split("\n")
     found = [part.span.line for part in some or (*scenario.reach, *scenario.safety)]
-    return " and ".join(f"'{lines[line - 1].split('//')[0].strip()}'" for line in found)
+    return " and ".join(f"'{quoted(lines[line - 1].split('//')[0].strip())}'" for line in found)

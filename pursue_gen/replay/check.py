@@ -19,6 +19,7 @@ from pursue_gen.replay.steps import ReplayedStep, aged, delays, zones_of
 from pursue_gen.replay.word_matches import WordMatches, match_words, unmatched_words
 from pursue_gen.tga.network import Edge
 from pursue_runtime.locations import is_end, is_movement
+from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, RUNNING, WAITING, WON, SystemState
 
 
@@ -88,7 +89,7 @@ def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings
     findings.sort(key=lambda finding: finding.seq)
     length = (last.stamp - start) / last.unit
     how_late = delays(steps, orders), max((known.reaction for known in orders.values()), default=0.0)
-    return Findings(tuple(steps), tuple(findings), last.status, last.reason, start, length, counts, *how_late)
+    return Findings(tuple(steps), tuple(findings), last.status, in_words(last.reason), start, length, counts, *how_late)
 
 
 def _orders_in(record: MissionRecord, game: Game) -> Tuple[Dict[int, Orders], List[Finding]]:
@@ -270,7 +271,7 @@ class _Checker:
                 self._report(FAULT, "plan", state, f"plan {state.plan} is not in the recording")
         if state.status == HOLDING and before.status != HOLDING:
             self.holds += 1
-            self._report(NOTE, "hold", state, f"the mission holds: {state.reason or 'no reason is given'}")
+            self._report(NOTE, "hold", state, f"the mission holds: {in_words(state.reason) or 'no reason is given'}")
         elif before.status == HOLDING and state.status == RUNNING:
             self._report(NOTE, "hold", state, "the mission goes on")
 

@@ -9,7 +9,7 @@ from pursue_gen.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
 from pursue_gen.replay.record import MissionRecord
 from pursue_gen.replay.steps import ReplayedStep
 from pursue_runtime.model import Model
-from pursue_runtime.ui.phrases import sentence
+from pursue_runtime.phrases import sentence
 
 _MARKS = {NOTE: "", WORLD: "WORLD: ", FAULT: "FAULT: ", UNRECORDED: "NOT RECORDED: "}
 

@@ -9,6 +9,7 @@ from typing import Dict, FrozenSet, List, Mapping, Optional, Sequence, Set, Tupl
 from pursue_gen.replay.finding import NOTE, WORLD, Finding
 from pursue_gen.replay.moves import DiscreteState, Moves, place_of
 from pursue_gen.replay.record import MissionRecord, RecordedWord
+from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, WAITING, SystemState
 from pursue_runtime.words import (
     BACK,
@@ -127,7 +128,7 @@ def unmatched_words(record: MissionRecord, said: WordMatches, moves: Moves) -> L
             found.append(Finding(NOTE, "stop", now(word).seq, f"{_sender(word)} published {STOP}"))
         elif word.event in REPORTS:
             kind = "way" if word.event in (BLOCKED, FREE) else "robot"
-            text = f"{_sender(word)} published {word.text}"
+            text = f"{_sender(word)} published {in_words(word.text)}"
             found.append(Finding(REPORTS[word.event], kind, now(word).seq, text))
         elif word.event == FAILED:
             found.append(Finding(WORLD, "failed", now(word).seq, f"{word.agent} cannot carry out its order"))

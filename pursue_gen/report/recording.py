@@ -13,6 +13,7 @@ from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.runs import Case
 from pursue_gen.simulation.stage import Stage, stage_of
 from pursue_gen.tga.network import Network
+from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 
 
@@ -110,8 +111,8 @@ def from_states(
         seen[state.seq] = state.status
         started = state.stamp if started is None else started
         at = max((state.stamp - started) / state.unit, steps[-1].at if steps else 0.0)
-        steps.append(Step(at, state.locations, state.values, *led_by, state.status, state.reason,
-                          state.plan, state.lost))
+        reason = in_words(state.reason, scenario.shown)
+        steps.append(Step(at, state.locations, state.values, *led_by, state.status, reason, state.plan, state.lost))
     if not steps:
         return None
     end = steps[-1].at if steps[-1].status in ENDED else max(steps[-1].at, until)

@@ -24,6 +24,7 @@ from pursue_runtime.observer.assumptions import without
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planning import PlanRequest
 from pursue_runtime.orders import Order
+from pursue_runtime.sentences import in_words
 from pursue_runtime.state import (
     ENDED,
     HOLDING,
@@ -147,7 +148,7 @@ class SimulatedMission:
             causes.append(f"{judge.latest} was due for {judge.lateness:.3f} time units, the margin is {margin:g}")
         causes += [f"{step} came outside the model's window" for step in judge.overdue[:1]]
         causes += [f"{name} is late" for name in sorted(mission.late - set(mission.lost))]
-        causes += [f"{name} {why}" for name, why in sorted(mission.lost.items())]
+        causes += [f"{name} {in_words(why)}" for name, why in sorted(mission.lost.items())]
         return "; ".join(causes)
 
     def _end(self, mission: Mission) -> Tuple[str, str]:
@@ -157,12 +158,12 @@ class SimulatedMission:
         if mission.status == WON:
             return GOAL, ""
         if mission.status in ends and self.fault_plan.voids_guarantees:
-            return ends[mission.status], mission.reason
+            return ends[mission.status], in_words(mission.reason)
         if mission.status == RUNNING and safety:
             return SAFE, ""
         if mission.status == RUNNING:
             return FAILED, "it neither reached the goal nor stopped"
-        return FAILED, f"the mission is {mission.status}: {mission.reason}"
+        return FAILED, f"the mission is {mission.status}: {in_words(mission.reason)}"
 
     # What the nodes do (Outside) --------------------------------------------------------------------------------------
 
@@ -366,4 +367,4 @@ def _described(state: SystemState) -> str:
     """A state as a line of a play."""
     what = f"{state.event} by {state.agent}" if state.event else state.status
     more = f" ({state.status})" if state.event and state.status != "running" else ""
-    return f"state {state.seq}: {what}{more}" + (f": {state.reason}" if state.reason else "")
+    return f"state {state.seq}: {what}{more}" + (f": {in_words(state.reason)}" if state.reason else "")

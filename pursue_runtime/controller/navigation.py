@@ -24,6 +24,7 @@ from pursue_runtime.controller.trip import Trip
 from pursue_runtime.controller.whereabouts import Place, Position, Whereabouts
 from pursue_runtime.locations import is_action, is_movement
 from pursue_runtime.orders import Order
+from pursue_runtime.sentences import in_words, marked
 from pursue_runtime.words import (
     BACK,
     BLOCKED,
@@ -79,7 +80,7 @@ class Navigation:
 
     def __init__(self, name: str, settings: Settings, log: Log) -> None:
         self.name, self.settings = name, settings
-        self.trouble = ""  # what an operator should know
+        self.trouble = ""  # what an operator should know, as part of a sentence
         self._log = log
         self._view = View()
         self._as_of = 0  # the number of the first state that has the robot at its location
@@ -252,9 +253,9 @@ class Navigation:
             return
         self.trouble = self._at.describe(post)
         if self._was_sent_away and self._at.position is None:
-            self.trouble = f"was sent away from {post.poi} by another node"
+            self.trouble = f"was sent away from {marked(post.poi)} by another node"
         if not self._view.displaced and not self._reports(DISPLACED):
-            self._log("warn", f"{self.name} {self.trouble}, where the state has it")
+            self._log("warn", f"{self.name} {in_words(self.trouble)}, where the state has it")
             self._report = Report(self._word(DISPLACED, self.trouble), self.reaction)
 
     @property
@@ -354,11 +355,11 @@ class Navigation:
         what = trip.describe(how, text)
         if trip.attempts <= self.settings.retries:
             self.trouble = f"{what}; trying again"
-            self._log("warn", f"{self.name} {self.trouble}")
+            self._log("warn", f"{self.name} {in_words(self.trouble)}")
             trip.goal_at = now + self.settings.retry_delay
         else:
             self.trouble = f"{what}; given up after {trip.attempts} goal{'s' * (trip.attempts > 1)}"
-            self._log("err", f"{self.name} {self.trouble}")
+            self._log("err", f"{self.name} {in_words(self.trouble)}")
             is_blocked = how == FAILURES[ABORTED] and not trip.is_return
             self._report = Report(self._word(BLOCKED if is_blocked else FAILED, self.trouble), self.reaction)
 
@@ -374,14 +375,14 @@ class Navigation:
             self._hold(trip, answer)
             return
         self.trouble = f"{trip.describe('sent elsewhere by another node')}; its goal is sent again"
-        self._log("warn", f"{self.name} {self.trouble}")
+        self._log("warn", f"{self.name} {in_words(self.trouble)}")
         trip.cancelled, trip.goal_at = None, now
 
     def _hold(self, trip: Trip, answer: Answer) -> None:
         """Wait for a person: the goal was cancelled, or another node insists on goals of its own."""
         often = f" {trip.replaced} times" if trip.replaced > 1 else ""
         self.trouble = trip.describe(f"{CANCELLED[answer.status]} by another node{often}", answer.text)
-        self._log("warn", f"{self.name} {self.trouble}; it is held until {self.name}:{RESUME} is published")
+        self._log("warn", f"{self.name} {in_words(self.trouble)}; it is held until {self.name}:{RESUME} is published")
         trip.cancelled, trip.is_held = None, True
         self._report = Report(self._word(HELD, self.trouble), self.reaction)
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Optional
 
 from pursue_runtime.controller.goal import Answer, Movement
+from pursue_runtime.sentences import marked, quoted
 
 STATUS_WAIT = 2.0
 """Seconds after a goal was cancelled for the status that shows whether a goal of another node has replaced it."""
@@ -44,6 +45,6 @@ class Trip:
         self.is_held, self.cancelled, self.replaced, self.goal_at = False, None, 0, now
 
     def describe(self, how: str, text: str = "") -> str:
-        """Return what has become of it, in words; `text` is move_base's own."""
+        """Return what has become of it, as part of a sentence; `text` is move_base's own."""
         way = "on its way back to" if self.is_return else "on its way to"
-        return f"{way} {self.movement.place.poi}: {how}" + (f": {text}" if text else "")
+        return f"{way} {marked(self.movement.place.poi)}: {how}" + (f": {quoted(text)}" if text else "")

@@ -9,6 +9,7 @@ import math
 from typing import NamedTuple, Optional, Sequence
 
 from pursue_runtime.controller.settings import Settings
+from pursue_runtime.sentences import marked
 
 
 class Position(NamedTuple):
@@ -95,16 +96,16 @@ class Whereabouts:
         return self.is_near(place) and now >= self.stands_at()
 
     def describe(self, place: Place) -> str:
-        """Return why the robot is not known to be at the place, in words."""
-        at = self.position
+        """Return why the robot is not known to be at the place, as part of a sentence."""
+        at, poi = self.position, marked(place.poi)
         if at is None:
-            return f"is not known to be at {place.poi}: no position, and no arrival there"
+            return f"is not known to be at {poi}: no position, and no arrival there"
         distance = math.hypot(at.x - place.x, at.y - place.y)
         if distance > self._settings.end_tolerance:
-            return f"is {distance:.1f} m from {place.poi}"
+            return f"is {distance:.1f} m from {poi}"
         if place.yaw is not None and turned(at.yaw, place.yaw) > self._settings.end_yaw_tolerance:
-            return f"is at {place.poi}, but turned by {math.degrees(turned(at.yaw, place.yaw)):.0f} degrees"
-        return f"does not stand still at {place.poi}"
+            return f"is at {poi}, but turned by {math.degrees(turned(at.yaw, place.yaw)):.0f} degrees"
+        return f"does not stand still at {poi}"
 
     def _has_moved(self) -> bool:
         """Return True if the robot may have moved since its arrival, by more than an arrival may be off."""

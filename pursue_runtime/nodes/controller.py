@@ -25,6 +25,7 @@ from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.nodes.state_printer import StatePrinter
 from pursue_runtime.nodes.witness import Witness
 from pursue_runtime.parameters import flag
+from pursue_runtime.sentences import in_words
 from pursue_runtime.state import LOST, STOPPED, WON, SystemState
 from pursue_runtime.state_filter import OLD, OURS, REFUSED
 from pursue_runtime.strategy import parse_plan
@@ -108,7 +109,7 @@ class Controller:
             self.ending.end(0)
         elif state.status in (LOST, STOPPED):
             if not self.ending.called:  # states come several times
-                rospy.logerr("the mission is %s: %s", state.status, state.reason)
+                rospy.logerr("the mission is %s: %s", state.status, in_words(state.reason))
             self.ending.end(1)
 
     def wake(self) -> None:
@@ -181,7 +182,7 @@ class Controller:
         if state.status in (LOST, STOPPED):
             return Report(True, ERROR, state.status, values)
         troubles = self.exegg.troubles()
-        sentences = [f"{robot} {text}" for robot, text in troubles.items()]
+        sentences = [f"{robot} {in_words(text)}" for robot, text in troubles.items()]
         values.update(trouble_values(troubles))
         return Report(True, WARN if troubles else OK, "; ".join([state.status, *sentences]), values)
 

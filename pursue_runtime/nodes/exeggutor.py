@@ -22,6 +22,7 @@ from pursue_runtime.nodes.publishing import Newcomers, ServedFirst, listeners
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.orders import Order, parse_orders
 from pursue_runtime.poses import Table
+from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, LIVE, RUNNING, WON, SystemState
 from pursue_runtime.strategy import Command
 from pursue_runtime.words import EVENTS, ORDERED, Word, format_word
@@ -152,7 +153,7 @@ class Exeggutor:
             return moves or is_under_way(command.origin) or robot.is_placed(rospy.get_time())
 
     def troubles(self) -> Dict[str, str]:
-        """Return what an operator should know about robots, by their names."""
+        """Return what an operator should know about robots, by their names, as parts of sentences."""
         with self._lock:
             found = {name: robot.trouble or self._unreachable.get(name, "") for name, robot in self._robots.items()}
             return {name: trouble for name, trouble in found.items() if trouble}
@@ -219,7 +220,7 @@ class Exeggutor:
                     self.announce(format_word(Word(name, ORDERED, order.seq)))
             if word is not None:
                 self.announce(word)
-                self._log("info", f"reports {word}")
+                self._log("info", f"reports {in_words(word)}")
             moment, repeat = robot.next_moments()
             moments += [] if moment is None else [moment]
             patience += [] if repeat is None else [repeat - real]

@@ -53,6 +53,7 @@ from pursue_runtime.observer.returning import Returning
 from pursue_runtime.observer.settings import ARGUMENTS, read_settings
 from pursue_runtime.observer.witnesses import contradicts, find_state, mission_seen, unknown_state
 from pursue_runtime.resend import StateRepeats
+from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, STOPPED, WAITING, WON, SystemState, format_state
 from pursue_runtime.strategy import read_cover
 from pursue_runtime.words import EVENTS, FINISH, PLAN, REPORTED, STATE, STOP, SYSTEM_STATE
@@ -376,7 +377,7 @@ class Observer:
             robots["finished"] = dict.fromkeys(mission.shared_ends.finished, "")
             values.update({key: " ".join(sorted(names)) for key, names in robots.items()})
             values.update({"journal": self.journal.is_open, **mission.counts})
-            message = mission.status + (f": {mission.reason}" if mission.reason else "")
+            message = mission.status + (f": {in_words(mission.reason)}" if mission.reason else "")
             warns = mission.late or mission.lost or mission.ways.blocked or mission.status == HOLDING
             level = ERROR if mission.status in (LOST, STOPPED) else WARN if warns else OK
         return Report(self.words.get_num_connections() > 0, level, message, values)

@@ -10,6 +10,7 @@ from itertools import chain
 from typing import AbstractSet, NamedTuple, Optional, Tuple
 
 from pursue_runtime.model import Assumption, Model, Move, Position
+from pursue_runtime.sentences import quoted
 from pursue_runtime.words import Word
 from pursue_runtime.zones import EPSILON
 
@@ -28,7 +29,7 @@ def broken_reason(model: Model, position: Position, not_assumed: AbstractSet[str
     """
     broken = (each for each in model.assumptions if position.values[each.variable] == 0)
     says = [each.says for each in broken if each.variable not in not_assumed]
-    return f"what was assumed is broken: {'; '.join(says)}" if says else ""
+    return f"what was assumed is broken: {quoted('; '.join(says))}" if says else ""
 
 
 def breach(model: Model, position: Position, word: Word, timed: bool) -> Optional[Breach]:

@@ -12,6 +12,8 @@ from pursue_runtime.observer.mission_status import MissionStatus
 from pursue_runtime.observer.orders import first_overdue
 from pursue_runtime.observer.planning import stays
 from pursue_runtime.orders import Order
+from pursue_runtime.phrases import phrase
+from pursue_runtime.sentences import MARKED, as_sentence, in_words, marked, quoted
 from pursue_runtime.state import ENDED, HOLDING, LIVE, RUNNING, SystemState
 from pursue_runtime.state_checks import adoptable
 from pursue_runtime.words import (
@@ -34,6 +36,8 @@ from pursue_runtime.zones import EPSILON, INFINITY, due, was_reached
 
 UNACKNOWLEDGED = "has not acknowledged"
 """How the reason begins why a robot counts as lost whose side has not acknowledged an order."""
+
+BEGUN, DEADLINE = "the mission has begun", "a deadline has passed"
 
 MAX_WORD_LENGTH = 1000
 """The most characters of a word; longer texts are dropped."""
@@ -104,11 +108,11 @@ class Mission(MissionStatus):
             if self._automata.is_won():
                 return self.stop(self.orders.awaited(), now)
             for order, _ in self._unanswered():
-                self._mark_lost(order.agent, f"{UNACKNOWLEDGED} {order.event}")
+                self._mark_lost(order.agent, f"{UNACKNOWLEDGED} {marked(order.event)}")
         position = self.position(now)
         moves = self._automata.internal_move(position)
         if moves:
-            return self._take(moves, now)
+            return self._take(moves, now, DEADLINE)
         moves = self._due_command(position, now)
         if moves:
             return self._take_command(moves, now)
@@ -120,7 +124,7 @@ class Mission(MissionStatus):
             own = [edge for edge in automaton.edges_from(place) if edge.sync == "own" and edge.allowed(position.values)]
             lost = [edge for edge in own if (name, edge.target) in self.model.bad]
             if lost:
-                return self._take((Move(name, lost[0]),), now, "a deadline has passed")
+                return self._take((Move(name, lost[0]),), now, DEADLINE)
             overstays = overstayed(self.model, position, name, self._tolerance)
             if overstays:
                 self._note_broken(overstays)
@@ -135,8 +139,8 @@ class Mission(MissionStatus):
         return states or (self._new_state(now) if has_broken else [])  # no two states have one number
 
     def stop(self, why: str, now: float) -> List[SystemState]:
-        """Stop the mission safely: no further commands are taken."""
-        return self._end(life.STOP, why, now) if self._life.may(life.STOP) else []
+        """Stop the mission safely: no further commands are taken. `why`: a sentence, or any text."""
+        return self._end(life.STOP, as_sentence(why), now) if self._life.may(life.STOP) else []
 
     def adopt(self, found: Mapping[str, Any], now: float) -> List[SystemState]:
         """Continue from a state (its fields by name) that other nodes have seen. Raises DataError."""
@@ -170,8 +174,8 @@ class Mission(MissionStatus):
         self._automata.start(now)
         self._life.take(life.START)
         self.seq = 1
-        moves = self._evaluate(now)
-        return [self.state(now), *self._take(moves, now)]
+        moves = self._evaluate(now, BEGUN)
+        return [self.state(now), *self._take(moves, now, BEGUN)]
 
     def _ping(self, now: float) -> List[SystemState]:
         return [self.state(now)]
@@ -264,15 +268,19 @@ class Mission(MissionStatus):
     def _take_command(self, moves: Tuple[Move, ...], now: float) -> List[SystemState]:
         """Apply the moves of a command, unless a robot that takes part is not where the state has it."""
         if self.robots.refuse(moves, self.position(now).values):
-            self._reject("held", f"{moves[0].edge.word}: {' and '.join(self.robots.reasons())}")
+            self._reject("held", f"{moves[0].edge.word}: {in_words(' and '.join(self.robots.reasons()))}")
             return self._status_changes(now)
         return self._take(moves, now, commanded=True)
 
     def _take(
         self, moves: Optional[Tuple[Move, ...]], now: float, why: str = "", commanded: bool = False
     ) -> List[SystemState]:
-        """Apply the moves, and then internal edges of objectives that are enabled."""
+        """Apply the moves, and then internal edges of objectives that are enabled. `why`: the reason if that loses the
+        mission, a sentence; "": that the first of them happens."""
         states: List[SystemState] = []
+        if moves and not why:
+            name, edge = moves[0]
+            why = f"{marked(name)} {phrase(MARKED, self.model.automaton(name), edge).does}"
         while moves:
             before = self.state(now)
             self._automata.take(moves, now)
@@ -295,7 +303,7 @@ class Mission(MissionStatus):
             self._since = self._still_standing(before, states[-1])
         return states
 
-    def _evaluate(self, now: float, why: str = "") -> Optional[Tuple[Move, ...]]:
+    def _evaluate(self, now: float, why: str) -> Optional[Tuple[Move, ...]]:
         """End the mission if it is won, lost or not covered; else return the enabled internal edge of an objective.
 
         At the goal it is won once all orders were acknowledged; nothing else counts until then.
@@ -304,13 +312,12 @@ class Mission(MissionStatus):
         if self._automata.is_won():
             self.goal_at = now
             if self.orders.awaited():
-                self._log("info", f"the goal is reached, but {self.orders.awaited()} yet")
+                self._log("info", f"the goal is reached, but {in_words(self.orders.awaited())} yet")
             else:
                 self._conclude(life.WIN, "", now)
         elif self._automata.lost():
             broken = [self.model.says[name] for name in self._automata.lost() if name in self.model.says]
-            reason = why or f"{self._event} by {self._agent}"
-            self._conclude(life.LOSE, f"{reason} (broken: {', '.join(broken)})" if broken else reason, now)
+            self._conclude(life.LOSE, f"{why} (broken: {quoted(', '.join(broken))})" if broken else why, now)
         else:
             moves = self._automata.internal_move(position)
             if not moves:
@@ -352,7 +359,7 @@ class Mission(MissionStatus):
         elif not is_under_way(location) and agent not in self.robots.displaced:
             wrong = "expected the name of an agent that is under way"
         elif agent not in self.lost or self.ways.turns.pop(agent, None) is not None:
-            self._mark_lost(agent, f"has failed {report.text}".rstrip())
+            self._mark_lost(agent, f"has failed {as_sentence(report.text)}".rstrip())
         else:
             self.robots.drop(agent)
         if wrong:
@@ -397,4 +404,4 @@ class Mission(MissionStatus):
     def _mark_lost(self, agent: str, why: str) -> None:
         self.lost[agent] = why
         self.robots.drop(agent)
-        self._log("err", f"{agent} counts as lost: it {why}")
+        self._log("err", f"{agent} counts as lost: it {in_words(why)}")

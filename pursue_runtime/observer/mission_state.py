@@ -13,6 +13,7 @@ from pursue_runtime.observer.planning import Planning
 from pursue_runtime.observer.robots import Robots
 from pursue_runtime.observer.shared_ends import ALL, SharedEnds
 from pursue_runtime.observer.ways import Ways
+from pursue_runtime.sentences import in_words
 from pursue_runtime.state import WON, SystemState
 from pursue_runtime.strategy import Cover, Entry
 from pursue_runtime.words import Word
@@ -82,7 +83,7 @@ class MissionState:
 
     @property
     def reason(self) -> str:
-        """Return why it holds or has ended; "" where there is nothing to say."""
+        """Return why it holds or has ended, as a sentence; "" where there is nothing to say."""
         return self._life.reason
 
     def position(self, now: float) -> Position:
@@ -136,7 +137,7 @@ class MissionState:
         self._life.take(trigger, reason)
         self._ended = now
         level = "info" if self.status == WON else "err"
-        self._log(level, f"the mission is {self.status}" + (f": {reason}" if reason else ""))
+        self._log(level, f"the mission is {self.status}" + (f": {in_words(reason)}" if reason else ""))
 
     def _reject(self, kind: str, message: str, level: str = "warn") -> None:
         self.counts[kind] += 1

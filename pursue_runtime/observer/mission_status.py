@@ -11,6 +11,7 @@ from pursue_runtime.observer.assumptions import broken_reason
 from pursue_runtime.observer.mission_state import MissionState
 from pursue_runtime.observer.planning import PlanRequest, covers, is_uncovered
 from pursue_runtime.observer.uncovered import uncovered_position, uncovered_reason
+from pursue_runtime.sentences import in_words, marked
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, SystemState
 from pursue_runtime.strategy import Entry
 
@@ -94,7 +95,7 @@ class MissionStatus(MissionState):
             return
         if trouble and self._on_uncovered == "warn":
             if not self._warned:
-                self._log("warn", trouble)
+                self._log("warn", in_words(trouble))
             self._warned, trouble = True, ""
         reasons = waits + [f"{node} is silent" for node in sorted(self.silent)]
         if not trouble:
@@ -103,7 +104,7 @@ class MissionStatus(MissionState):
             reasons.append(f"{trouble}; {self._planning.progress()}")
         else:
             trouble += f"; no other plan: {self._planning.no_plan_reason}"
-            awaited = " and ".join(sorted(self.late - set(self.lost)))
+            awaited = " and ".join(map(marked, sorted(self.late - set(self.lost))))
             if not awaited:
                 self._conclude(life.STOP, trouble, now)
                 return
@@ -112,7 +113,7 @@ class MissionStatus(MissionState):
         if reason == self.reason and bool(reasons) == (self.status == HOLDING):
             return
         if reasons:
-            self._log("warn", f"the mission holds: {reason}")
+            self._log("warn", f"the mission holds: {in_words(reason)}")
             self._life.take(life.HOLD, reason)
         else:
             self._log("info", "the mission goes on")
@@ -181,7 +182,7 @@ class MissionStatus(MissionState):
         self._automata.turn(turns, start)
         for name, _ in turns:
             self.late.discard(name)
-            self._log("warn", f"{name} goes back: it {self.lost.pop(name)}")
+            self._log("warn", f"{name} goes back: it {in_words(self.lost.pop(name))}")
         self.ways.turns.clear()
         self._update_status(now, self._tolerance)
         self._beginnings.on_moves(turns, self.seq + 1)

@@ -10,6 +10,7 @@ from typing import Collection, Dict, Iterable, Iterator, List, Mapping, Optional
 from pursue_runtime.locations import action, is_under_way
 from pursue_runtime.model import Model, Move
 from pursue_runtime.orders import Order, format_order, parse_orders
+from pursue_runtime.sentences import marked
 
 
 class Orders:
@@ -83,7 +84,8 @@ class Orders:
 
     def awaited(self) -> str:
         """Return whose acknowledgements are missing, in words; "" if none is."""
-        return " and ".join(f"{order.agent} has not acknowledged {order.event}" for order, _ in self.open_since())
+        orders = [order for order, _ in self.open_since()]
+        return " and ".join(f"{marked(order.agent)} has not acknowledged {marked(order.event)}" for order in orders)
 
     def texts(self) -> Tuple[str, ...]:
         """Return the orders as they stand in the state."""

@@ -6,6 +6,7 @@ from typing import AbstractSet, Any, Dict, FrozenSet, Iterable, List, Mapping, N
 
 from pursue_runtime.model import Position
 from pursue_runtime.observer.ways import Way, Ways, blocked_reason, check_avoids
+from pursue_runtime.sentences import as_sentence, marked
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Cover, read_cover
 from pursue_runtime.zones import EPSILON, INFINITY, Zone, holds, last_moment
@@ -77,7 +78,7 @@ class Planning:
 
     def unexcused(self, lost: Mapping[str, str]) -> str:
         """Return which lost agents the plan in force relies on, and why they are lost; "" if there are none."""
-        return " and ".join(f"{name} {lost[name]}" for name in sorted(set(lost) - self.excused))
+        return " and ".join(f"{marked(name)} {lost[name]}" for name in sorted(set(lost) - self.excused))
 
     def unavoided(self, blocked: AbstractSet[Way]) -> str:
         """Return that blocked ways are such as the plan in force may use; "" if there are none."""
@@ -157,7 +158,7 @@ class Planning:
         if self.request is None or number != self.request.number:
             return False
         turning = bool(self.request.turning)
-        self.request, self.no_plan_reason = None, why
+        self.request, self.no_plan_reason = None, as_sentence(why)
         return turning
 
     def on_receipt(self, node: str, number: int) -> None:

@@ -6,6 +6,7 @@ from typing import Dict, List, Mapping, Set, Tuple
 
 from pursue_runtime.locations import is_action, is_movement, is_under_way, position_variable
 from pursue_runtime.model import Edge, Model, Move
+from pursue_runtime.sentences import as_sentence, marked
 from pursue_runtime.state import SystemState
 from pursue_runtime.words import BACK, DISPLACED, HELD, RESUME, RobotReport
 
@@ -38,14 +39,14 @@ class Robots:
         if report.event == HELD:
             if not is_under_way(location) and name not in self.displaced:
                 return f"{name} has no goal"
-            self.held.setdefault(name, report.text or "is held")
+            self.held.setdefault(name, as_sentence(report.text) or "is held")
         elif report.event == RESUME:
             if self.held.pop(name, None) is None:
                 return f"{name} is not held"
         elif report.event == DISPLACED:
             if is_movement(location):
                 return f"{name} is on its way"
-            self.displaced.setdefault(name, report.text or "is not where the state has it")
+            self.displaced.setdefault(name, as_sentence(report.text) or "is not where the state has it")
             self.returning |= {name} if is_action(location) else set()
         elif report.event == BACK:
             self._place(name)
@@ -74,9 +75,10 @@ class Robots:
 
     def reasons(self) -> List[str]:
         """Return why the mission holds for robots."""
-        held = [f"{name} {why}; publish {name}:{RESUME} to continue" for name, why in sorted(self.held.items())]
+        held = [f"{marked(name)} {why}; publish {name}:{RESUME} to continue" for name, why in sorted(self.held.items())]
         away = sorted(self.returning - set(self.held))
-        return held + [f"{name} {self.displaced[name]}, where the state has it: it is sent back" for name in away]
+        missing = [f"{marked(name)} {self.displaced[name]}, where the state has it: it is sent back" for name in away]
+        return held + missing
 
     def waiting(self) -> Set[str]:
         """Return the robots for which the mission holds."""

@@ -8,6 +8,7 @@ from pursue_runtime.locations import is_action, is_end, is_movement
 from pursue_runtime.model import Automaton, Model, Position
 from pursue_runtime.observer.mission_state import ACTING
 from pursue_runtime.observer.planning import stays
+from pursue_runtime.sentences import marked
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Cover
 from pursue_runtime.zones import INFINITY
@@ -23,7 +24,7 @@ def uncovered_reason(
     matter to it. The sentence is the same while only time passes. `late`: the agents that are; `tolerance` as in
     `covers`."""
     if late:
-        who = [f"{name} is late {_doing(model.automaton(name), position)}" for name in sorted(late)]
+        who = [f"{marked(name)} is late {_doing(model.automaton(name), position)}" for name in sorted(late)]
         return f"{_joined(who)}, and the strategy does not say what to do then"
     where = _where(model, cover, position)
     if not cover.zones(SystemState(0, 0.0, *position)):
@@ -45,7 +46,7 @@ def _where(model: Model, cover: Cover, position: Position) -> str:
     acting = model.of_kind(*ACTING)
     named = [automaton for automaton in acting if automaton.name in cover.names] or acting
     shown = named[:SHOWN] if len(named) > SHOWN + 1 else named
-    parts = [f"{each.name} is {_doing(each, position)}" for each in shown]
+    parts = [f"{marked(each.name)} is {_doing(each, position)}" for each in shown]
     more = len(named) - len(shown)
     return _joined([*parts, f"{more} others are elsewhere"] if more else parts)
 
@@ -56,10 +57,10 @@ def _doing(automaton: Automaton, position: Position) -> str:
     begins = [edge for edge in automaton.edges if edge.target == here != edge.source]
     if is_movement(here):
         ends = [edge.target for edge in automaton.edges_from(here) if is_end(edge.source, edge.target)]
-        return f"on its way to {ends[0]}" if ends else "on its way"
+        return f"on its way to {marked(ends[0])}" if ends else "on its way"
     if is_action(here) and begins:
-        return f"doing {begins[0].word} at {begins[0].source}"
-    return f"at {here}"
+        return f"doing {marked(begins[0].word)} at {marked(begins[0].source)}"
+    return f"at {marked(here)}"
 
 
 def _joined(parts: List[str]) -> str:

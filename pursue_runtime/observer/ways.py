@@ -7,6 +7,7 @@ from typing import Any, Collection, Dict, Mapping, Optional, Set, Tuple
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_movement, movement
 from pursue_runtime.model import Model, Move
+from pursue_runtime.sentences import as_sentence, marked
 from pursue_runtime.words import FREE, RobotReport
 
 Way = Tuple[str, str]
@@ -37,7 +38,8 @@ class Ways:
             turn = way_back(self._model, name, location)
             if turn and way not in self.blocked and self._model.automaton(name).kind == "robot":
                 self.turns[name] = turn
-            why = f"has found that {in_words(way)} is blocked" + (f": {report.text}" if report.text else "")
+            text = f": {as_sentence(report.text)}" if report.text else ""
+            why = f"has found that {in_words(way)} is blocked{text}"
         self.blocked.add(way)
         return "", why
 
@@ -75,8 +77,8 @@ def _has_receivers(model: Model, word: str) -> bool:
 
 
 def in_words(way: Way) -> str:
-    """Return the way in words, as in "the way between a and b"."""
-    return f"the way between {way[0]} and {way[1]}"
+    """Return the way in words, as in "the way between a and b", as part of a sentence."""
+    return f"the way between {marked(way[0])} and {marked(way[1])}"
 
 
 def blocked_reason(ways: Collection[Way]) -> str:

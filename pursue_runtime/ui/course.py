@@ -9,10 +9,10 @@ from typing import Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.locations import is_end
 from pursue_runtime.model import Model, Position
+from pursue_runtime.phrases import possibility
 from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import RUNNING, SystemState
 from pursue_runtime.strategy import Strategy
-from pursue_runtime.ui.phrases import possibility
 from pursue_runtime.zones import EPSILON, due
 
 MOST = 16

@@ -12,6 +12,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import action_of, is_action, movement, place_of
 from pursue_runtime.model import Model
+from pursue_runtime.sentences import in_words
 from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import ENDED, LIVE, SystemState
 from pursue_runtime.strategy import Strategy
@@ -90,7 +91,7 @@ class Picture:
     def marks(self, state: Optional[SystemState]) -> List[Mark]:
         """Return everything to show in a state; None: none has been received."""
         status = "no state from the observer yet" if state is None else state.status
-        reason = state.reason if state is not None else ""
+        reason = in_words(state.reason, self._model.shown) if state is not None else ""
         shown = [*self._still, *self._status_marks(status, reason)]
         if state is None:
             return shown

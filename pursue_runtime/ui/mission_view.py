@@ -9,11 +9,12 @@ from typing import Any, Collection, Dict, List, Mapping, NamedTuple, Optional, P
 
 from pursue_runtime.locations import is_end, is_movement
 from pursue_runtime.model import Edge, Model
+from pursue_runtime.phrases import not_promised, phrase, sentence, where
 from pursue_runtime.resend import resend_timeout
+from pursue_runtime.sentences import in_words
 from pursue_runtime.simulator.simulator import ACTING, report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
-from pursue_runtime.ui.phrases import in_labels, not_promised, phrase, sentence, where
 from pursue_runtime.words import PING, RESUME, START, RobotReport, Word, format_report, format_word, one_line
 from pursue_runtime.zones import due
 
@@ -226,7 +227,7 @@ class MissionView:
         if state is None or state.status not in ENDED:
             return None
         after = f"after {self.elapsed(state.stamp):.1f} time units"
-        reason = in_labels(self._model, state.reason)
+        reason = in_words(state.reason, self._model.shown)
         if state.status == WON:
             several = len(self._model.says) > 1
             goal = "All goals are reached" if len(self._model.goal) > 1 else "The goal is reached"
@@ -272,7 +273,8 @@ class MissionView:
         if state.event and (last is None or last.seq != state.seq):
             lines.append(f"{self.elapsed(state.stamp):8.1f}  {sentence(self._model, state, last)}")
         if state.status == HOLDING:
-            lines.append(f"{self.elapsed(state.stamp):8.1f}  the mission holds: {in_labels(self._model, state.reason)}")
+            why = in_words(state.reason, self._model.shown)
+            lines.append(f"{self.elapsed(state.stamp):8.1f}  the mission holds: {why}")
         if state.status == RUNNING:
             instructions = [self._instruction(person, state, last) for person in sorted(self._people)]
             lines += [f"          {instruction}" for instruction in instructions if instruction]

@@ -10,7 +10,18 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_action, is_end, is_movement
 from pursue_runtime.model import Automaton, Model
+from pursue_runtime.phrases import (
+    awaited,
+    begin_of,
+    doing,
+    listed,
+    not_promised,
+    phrase,
+    possibility,
+    sentence,
+)
 from pursue_runtime.poses import read_poses
+from pursue_runtime.sentences import in_words
 from pursue_runtime.simulator.simulator import ACTING, end_window, report_word
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
 from pursue_runtime.strategy import Strategy
@@ -18,17 +29,6 @@ from pursue_runtime.ui.floor import Floor
 from pursue_runtime.ui.lanes import Lanes
 from pursue_runtime.ui.mission_view import possible_words, tasks
 from pursue_runtime.ui.outlook import Outlook
-from pursue_runtime.ui.phrases import (
-    awaited,
-    begin_of,
-    doing,
-    in_labels,
-    listed,
-    not_promised,
-    phrase,
-    possibility,
-    sentence,
-)
 from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_now
 from pursue_runtime.ui.statuses import Status, status_texts
 from pursue_runtime.ui.strategies import strategies_in
@@ -150,7 +150,7 @@ class Page:
         others = [automaton.name for automaton in self._model.automata if automaton not in self._acting]
         return {
             "phase": facts.phase, "missing": list(facts.missing), "status": state.status,
-            "reason": in_labels(self._model, state.reason),
+            "reason": in_words(state.reason, self._model.shown),
             "verdict": facts.verdict[1] if facts.verdict else "", "good": bool(facts.verdict and not facts.verdict[0]),
             "at": _round(facts.at), "now": _round(facts.now), "live": state.status in LIVE, "unit": state.unit,
             "turn": self._turn(agents, state), "agents": agents, "open": opens, "tasks": self._tasks(state, agents),
@@ -189,7 +189,7 @@ class Page:
             if last.plan != state.plan:
                 fresh.append(self.note(at, f"plan {state.plan} is in force"))
         if state.status == HOLDING and (last is None or (last.status, last.reason) != (HOLDING, state.reason)):
-            why = in_labels(self._model, state.reason) or "no reason is given"
+            why = in_words(state.reason, self._model.shown) or "no reason is given"
             fresh.append(self.note(at, f"the mission holds: {why}", BAD))
         if last is not None and last.status == HOLDING and state.status == RUNNING:
             fresh.append(self.note(at, "the mission goes on"))
@@ -197,7 +197,7 @@ class Page:
 
     def trouble(self, at: float, text: str) -> None:
         """Adds to the log what a node says of its robots."""
-        self.note(at, in_labels(self._model, text), BAD)
+        self.note(at, in_words(text, self._model.shown), BAD)
 
     def note(self, at: float, text: str, kind: str = NOTE, word: str = "") -> Dict[str, Any]:
         """Adds an entry to the log, and returns it."""

@@ -12,6 +12,7 @@ import stat
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.observer.records import RecordsRead, read_records
+from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, LIVE, LOST, STATUSES
 from pursue_runtime.ui.bag_file import BadBag, BagSummary, read_summary
 from pursue_runtime.words import START, STOP
@@ -185,7 +186,7 @@ def _unit(head: Mapping[str, Any]) -> float:
 def _reason(ended: Mapping[str, Any]) -> str:
     """Why a mission ended without goal, as far as its last record says."""
     args = ended.get("args")
-    text = str(args[0])[:300] if isinstance(args, list) and args else ""
+    text = in_words(str(args[0]))[:300] if isinstance(args, list) and args else ""
     if ended.get("call") == "stop":
         return text
     if text.strip() == STOP:

@@ -11,10 +11,10 @@ from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Automaton, Model
+from pursue_runtime.phrases import is_there, possibility
 from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Command, Strategy
-from pursue_runtime.ui.phrases import is_there, possibility
 from pursue_runtime.ui.statuses import Status
 
 _SHOWN = 2

@@ -95,7 +95,7 @@ def test_where_every_way_is_blocked_there_is_no_plan_and_the_ways_are_named() ->
     assert replan(start(blocked=[["a", "b"], ["d", "c"]])) == {
         "format": 1, "won": False,
         "why": "'reach_objective: do fetch after 0' cannot be guaranteed from here"
-        " without the way between a and b and without the way between c and d",
+        " without the way between {a} and {b} and without the way between {c} and {d}",
     }
 
 

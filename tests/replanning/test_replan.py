@@ -165,8 +165,8 @@ def test_the_same_request_gives_the_same_answer() -> None:
 
 def test_without_a_robot_that_is_needed_there_is_no_plan() -> None:
     text = why(beginning("thesis/scenario_1", excused=["bot1"]))
-    assert text == "'reach_objective: do bot2_ina after 0' cannot be guaranteed from here without relying on bot1"
-    assert "without relying on bot1 and bot2" in why(beginning("thesis/scenario_1", excused=["bot2", "bot1"]))
+    assert text == "'reach_objective: do bot2_ina after 0' cannot be guaranteed from here without relying on {bot1}"
+    assert "without relying on {bot1} and {bot2}" in why(beginning("thesis/scenario_1", excused=["bot2", "bot1"]))
 
 
 def test_without_a_robot_that_is_not_needed_there_is_a_plan_that_leaves_it_alone() -> None:
@@ -180,7 +180,7 @@ def test_a_robot_that_failed_on_its_way_may_come_at_any_time_or_never() -> None:
     places = [asked(name, *place) for place in walk(name, 1, 12)]
     on_its_way = next(request for request in places if request["locations"]["bot1"].startswith("going_"))
     won(on_its_way)
-    assert "without relying on bot1" in why({**on_its_way, "excused": ["bot1"]})
+    assert "without relying on {bot1}" in why({**on_its_way, "excused": ["bot1"]})
 
 
 def test_who_is_excused_but_no_longer_needed_does_not_matter() -> None:
@@ -196,7 +196,7 @@ def test_a_robot_that_is_late_may_stay_for_ever() -> None:
     places = [asked(name, *place) for place in walk(name, 1, 12)]
     request = next(r for r in places if busy(r["locations"]) == ("bot1",))
     text = why({**request, "ahead": 100.0})
-    assert text.endswith("cannot be guaranteed from here without relying on bot1")
+    assert text.endswith("cannot be guaranteed from here without relying on {bot1}")
 
 
 # What is over, and what takes too long.

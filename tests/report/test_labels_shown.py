@@ -25,10 +25,10 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.workspace import Options, generate
 from pursue_runtime.data import parse_data
 from pursue_runtime.model import Model
+from pursue_runtime.phrases import sentence
 from pursue_runtime.state import RUNNING, SystemState
 from pursue_runtime.ui.mission_view import possible_words
 from pursue_runtime.ui.page import Facts, FloorPlan, Page
-from pursue_runtime.ui.phrases import sentence
 
 DESK, SHELF = "<script>alert('d')</script>", "]]> & <b>it's</b>"
 FETCH, RING = "fetch [it](javascript:x) {{ 7*7 }}", "`ring` *now* ${HOME} %s"

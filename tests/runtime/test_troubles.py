@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+from pursue_runtime.model import Model
 from pursue_runtime.troubles import Troubles, trouble_values
 from pursue_runtime.ui.page import BAD, FloorPlan, Page
 from pursue_runtime.ui.page_server import PageServer
-from tests.runtime.ui.test_page import MODEL
+from tests.runtime.ui.test_mission_view import DATA
 
-SENT = "on its way to b: sent elsewhere by another node; its goal is sent again"
+SENT = "on its way to {b}: sent elsewhere by another node; its goal is sent again"
 
 
 def values(**robots: str) -> Any:
@@ -20,28 +21,29 @@ def values(**robots: str) -> Any:
 def test_what_is_wrong_is_said_once_and_again_when_it_happens_again() -> None:
     troubles = Troubles()
     assert troubles.take("controller", values(), "") == []
-    assert troubles.take("controller", values(bot=SENT), "") == [f"bot {SENT}"]
+    assert troubles.take("controller", values(bot=SENT), "") == [f"{{bot}} {SENT}"]
     assert troubles.take("controller", values(bot=SENT), "") == []
-    assert troubles.take("controller", values(bot=SENT, bot2="is 3.0 m from a"), "") == ["bot2 is 3.0 m from a"]
+    assert troubles.take("controller", values(bot=SENT, bot2="is 3.0 m from {a}"), "") == ["{bot2} is 3.0 m from {a}"]
     assert troubles.take("controller", values(), "") == []
-    assert troubles.take("controller", values(bot=SENT), "") == [f"bot {SENT}"]
+    assert troubles.take("controller", values(bot=SENT), "") == [f"{{bot}} {SENT}"]
 
 
 def test_controllers_do_not_mix() -> None:
     troubles = Troubles()
-    assert troubles.take("controller_bot", values(bot=SENT), "") == [f"bot {SENT}"]
+    assert troubles.take("controller_bot", values(bot=SENT), "") == [f"{{bot}} {SENT}"]
     assert troubles.take("controller_bot2", values(), "") == []
     assert troubles.take("controller_bot", values(bot=SENT), "") == []
 
 
 def test_what_is_the_reason_of_the_state_is_not_said_twice() -> None:
-    assert Troubles().take("controller", values(bot="is 3.0 m from a"), "bot is 3.0 m from a, where …") == []
+    assert Troubles().take("controller", values(bot="is 3.0 m from {a}"), "{bot} is 3.0 m from {a}, where …") == []
 
 
 def test_the_page_notes_it() -> None:
-    page = Page(MODEL, FloorPlan({}, ()))
+    page = Page(Model({**DATA, "labels": {"bot": "Porter 1", "another": "no node"}}), FloorPlan({}, ()))
     server = PageServer(page, None)  # type: ignore[arg-type]
     server.show = lambda: None  # type: ignore[method-assign]
-    server.on_trouble(3.25, f"bot {SENT}")
+    server.on_trouble(3.25, f"{{bot}} {SENT}")
     (entry,) = page.log
-    assert (entry["at"], entry["text"], entry["kind"]) == (3.25, f"bot {SENT}", BAD)
+    assert (entry["at"], entry["kind"]) == (3.25, BAD)
+    assert entry["text"] == "Porter 1 on its way to b: sent elsewhere by another node; its goal is sent again"

@@ -6,6 +6,7 @@ import pytest
 
 from pursue_runtime.controller.goal import FIRST_WAIT, Answer, Goal, GoalTracker
 from pursue_runtime.controller.settings import Settings
+from pursue_runtime.sentences import in_words
 from tests.runtime.controller.robot_world import (
     ABORTED,
     ACTIVE,
@@ -147,7 +148,7 @@ def test_the_status_shows_failures_of_simple_goals_too() -> None:
     robot.go()
     robot.status(Answer("/move_base-1", robot.now, ACTIVE))
     robot.status(Answer("/move_base-1", robot.now, ABORTED, "Robot is oscillating."))
-    assert robot.texts == [f"{BLOCKED}#0 on its way to b: aborted: Robot is oscillating.; given up after 1 goal"]
+    assert robot.texts == [f"{BLOCKED}#0 on its way to {{b}}: aborted: Robot is oscillating.; given up after 1 goal"]
 
 
 # Cancelled by somebody else -------------------------------------------------------------------------------------------
@@ -158,7 +159,7 @@ def test_a_robot_whose_goal_is_cancelled_waits_for_a_person(robot: World, status
     robot.result(status, its_id(robot), text=text)
     statuses(robot, 30.0)
     assert len(robot.goals) == 1 and set(robot.words) == {HELD} and text in robot.texts[0]
-    assert robot.robot.trouble.startswith("on its way to b: ") and robot.robot.goal == ""
+    assert robot.robot.trouble.startswith("on its way to {b}: ") and robot.robot.goal == ""
     robot.state(held=True, running=False)
     assert robot.wait(60.0) == [] and len(robot.goals) == 1
     robot.state()
@@ -230,8 +231,8 @@ def test_a_robot_that_is_sent_elsewhere_is_taken_back_at_once_and_the_operator_i
     robot.wait(3.0)
     sent_elsewhere(robot, "rviz-1", result_first)
     assert [goal.movement for goal in robot.goals] == [WAY, WAY] and robot.words == []
-    assert robot.robot.trouble == "on its way to b: sent elsewhere by another node; its goal is sent again"
-    assert ("warn", f"bot1 {robot.robot.trouble}") in robot.said
+    assert robot.robot.trouble == "on its way to {b}: sent elsewhere by another node; its goal is sent again"
+    assert ("warn", f"bot1 {in_words(robot.robot.trouble)}") in robot.said
     robot.wait(0.3)
     statuses(robot, 5.0, listed(robot), Answer("rviz-1", robot.now - 0.3, PREEMPTED))
     assert len(robot.goals) == 2 and robot.words == []
@@ -246,7 +247,7 @@ def test_a_person_who_insists_holds_the_robot_and_the_reason_says_how_often(robo
         robot.wait(3.0)
         sent_elsewhere(robot, f"rviz-{count}")
     assert len(robot.goals) == 3 and set(robot.words) == {HELD}
-    assert f"{HELD}#0 on its way to b: preempted by another node 3 times: {TAKEN_BY_OTHER}" in robot.texts
+    assert f"{HELD}#0 on its way to {{b}}: preempted by another node 3 times: {TAKEN_BY_OTHER}" in robot.texts
     robot.state(held=True, running=False)
     robot.status(Answer("rviz-3", robot.now, ACTIVE))
     robot.wait(30.0)

@@ -59,7 +59,7 @@ def test_a_report_has_the_number_of_the_first_state_that_shows_what_it_is_about(
     robot.robot.start(WAY, robot.now)
     robot.act()
     robot.result(ABORTED)
-    assert robot.texts[-1].startswith(f"{BLOCKED}#12 on its way to b")
+    assert robot.texts[-1].startswith(f"{BLOCKED}#12 on its way to {{b}}")
 
 
 def test_an_end_before_its_window_is_reported_at_once(results: World) -> None:

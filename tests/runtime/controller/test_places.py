@@ -104,7 +104,7 @@ def test_an_action_that_has_begun_in_the_state_begins_late(robot: World) -> None
     robot.at(8.0, 4.0)
     robot.stay(doing="e")
     robot.order("e", "doing_e_in_b")
-    assert robot.actions == [] and set(robot.words) == {DISPLACED} and "is 5.0 m from b" in robot.texts[-1]
+    assert robot.actions == [] and set(robot.words) == {DISPLACED} and "is 5.0 m from {b}" in robot.texts[-1]
     robot.stay(doing="e", displaced=True, returning=True, running=False)
     robot.wait(1.0)
     assert len(robot.goals) == 2 and robot.actions == []
@@ -203,7 +203,7 @@ def test_what_is_known_by_results_alone_ends_with_a_goal_of_another_node() -> No
     assert robot.robot.is_placed(robot.now) and robot.words == [END]
     robot.status(own, Answer("rviz-1", robot.now, ACTIVE))
     assert robot.words[-1] == DISPLACED and not robot.robot.is_placed(robot.now)
-    assert robot.texts[-1].endswith("was sent away from b by another node")
+    assert robot.texts[-1].endswith("was sent away from {b} by another node")
 
 
 @pytest.mark.parametrize("goals", ["simple", "action"])

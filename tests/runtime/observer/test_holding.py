@@ -51,7 +51,7 @@ def uncovered() -> Journey:
     made.hear("bot_a2b", 2.0)
     assert made.mission.status == "running"
     state = made.hear("bot_going_a_to_b2b", 4.0)
-    assert (state.status, state.seq) == ("holding", 3) and "than the strategy expects; bot is at b" in state.reason
+    assert (state.status, state.seq) == ("holding", 3) and "than the strategy expects; {bot} is at {b}" in state.reason
     return made
 
 
@@ -212,7 +212,7 @@ def test_who_is_late_for_too_long_is_lost_and_a_plan_without_it_is_wanted() -> N
     assert moments[0] == pytest.approx(6.1) and moments[-1] == pytest.approx(6.0 + 8.0)
     assert made.mission.plan_request.excused == ("bot",)
     (state,) = made.mission.on_no_plan(made.mission.plan_request.number, "nobody else can", 15.0)
-    assert state.status == "stopped" and "bot is late by 8" in state.reason
+    assert state.status == "stopped" and "{bot} is late by 8" in state.reason
 
 
 def test_who_is_only_late_is_waited_for_where_there_is_no_plan_without_it() -> None:
@@ -222,7 +222,7 @@ def test_who_is_only_late_is_waited_for_where_there_is_no_plan_without_it() -> N
     made.mission.on_time(8.2)  # beyond what the strategy knows
     assert made.mission.status == "holding" and made.mission.plan_request.excused == ("bot",)
     (state,) = made.mission.on_no_plan(made.mission.plan_request.number, "nobody else can", 9.0)
-    assert state.status == "holding" and "waiting for bot" in state.reason and made.mission.plan_request is None
+    assert state.status == "holding" and "waiting for {bot}" in state.reason and made.mission.plan_request is None
     assert made.hear("bot_going_a_to_b2b", 10.0).status == "running"
 
 
@@ -230,7 +230,7 @@ def test_a_robot_that_has_failed_is_lost_at_once() -> None:
     made = journey()
     made.hear("bot_a2b", 2.0)
     state = made.hear("bot:_failed_", 3.0)
-    assert (state.status, state.lost) == ("holding", ("bot",)) and "bot has failed" in state.reason
+    assert (state.status, state.lost) == ("holding", ("bot",)) and "{bot} has failed" in state.reason
     assert parse_state(format_state(state)).lost == ("bot",)
     assert made.hear("bot:_failed_", 3.5) is None
 
@@ -259,7 +259,7 @@ def test_a_robot_that_finds_its_way_blocked_is_lost_and_the_plan_is_to_avoid_tha
     made.hear("bot_a2b", 2.0)
     state = made.hear("bot:_blocked_", 3.0)
     assert (state.status, state.lost) == ("holding", ("bot",))
-    assert state.reason == "bot has found that the way between a and b is blocked; looking for another plan"
+    assert state.reason == "{bot} has found that the way between {a} and {b} is blocked; looking for another plan"
     wanted = made.mission.plan_request
     assert (wanted.excused, wanted.blocked) == (("bot",), (("a", "b"),))
     assert made.hear("bot:_blocked_", 3.5) is None
@@ -270,7 +270,7 @@ def test_anybody_may_report_that_a_way_is_blocked() -> None:
     made = journey()
     state = made.hear("going_a_to_b:_blocked_", 1.0)
     assert (state.status, state.lost) == ("holding", ())
-    assert state.reason == "the way between a and b is blocked; looking for another plan"
+    assert state.reason == "the way between {a} and {b} is blocked; looking for another plan"
     assert made.mission.plan_request.blocked == (("a", "b"),) and made.mission.plan_request.excused == ()
     assert planned(made, EVERYWHERE, 1.5)[-1].status == "running"
     assert made.hear("going_a_to_b:_blocked_", 2.0) is None, "the plan avoids it"
@@ -291,7 +291,7 @@ def test_a_plan_of_a_planner_that_does_not_know_of_blocked_ways_is_not_used() ->
     plan = answer(EVERYWHERE)
     plan["strategies"]["two"] = {"strategy": [{"state": {}, "commands": [{"to": "b"}, {"to": "going_b_to_a"}]}]}
     (state,) = made.mission.on_plan(made.mission.plan_request.number, plan, 1.5)
-    assert state.status == "stopped" and "it uses the way between a and b, which is blocked" in state.reason
+    assert state.status == "stopped" and "it uses the way between {a} and {b}, which is blocked" in state.reason
 
 
 @pytest.mark.parametrize("strategies", [[], {"one": []}, {"one": {"strategy": [{}]}}, {"one": {"strategy": 7}}])

@@ -103,7 +103,7 @@ def test_who_is_lost_holds_the_mission_as_soon_as_a_stage_names_it() -> None:
     state = made.hear("bot:bot_a2b@1", 25.0)
     assert (state.lost, state.status, made.mission.plan_request) == (("thief",), "running", None)
     state = made.hear("bot_going_a_to_b2b", 28.5)
-    assert state.status == "holding" and state.reason.startswith("thief is late by 8 time units; looking for another")
+    assert state.status == "holding" and state.reason.startswith("{thief} is late by 8 time units; looking for another")
     assert made.mission.plan_request is not None and made.mission.plan_request.excused == ("thief",)
 
 

@@ -376,7 +376,7 @@ def test_any_of_several_bad_locations_loses() -> None:
     journey.hear("_start_", 0.0)
     journey.hear("wave", 1.0)
     state = journey.hear("fall", 2.0)
-    assert (state.status, state.reason) == ("lost", "fall by bot (broken: avoid fall)")
+    assert (state.status, state.reason) == ("lost", "{bot} does {fall} (broken: avoid fall)")
 
 
 @pytest.mark.parametrize("unlocked", [False, True])
@@ -411,7 +411,7 @@ def test_a_covered_state_goes_on_and_one_that_is_not_stops() -> None:
     journey.hear("_start_", 0.0)
     assert journey.hear("bot_a2b", 2.0).status == "running"
     state = journey.hear("bot_going_a_to_b2b", 5.5)
-    assert state.status == "stopped" and state.reason == "this happened at another time than the strategy expects; bot is at b"
+    assert state.status == "stopped" and state.reason == "this happened at another time than the strategy expects; {bot} is at {b}"
 
 
 def test_clocks_may_be_beside_a_zone_by_the_tolerance_and_no_more() -> None:

@@ -128,14 +128,14 @@ def test_a_goal_whose_order_nobody_acknowledges_is_not_won(made: Journey) -> Non
     made.hear("giver:_order_@2", 2.1)
     moment, state = made.tick_from(2.1)
     assert (moment, state.status) == (10.0, "stopped")
-    assert state.reason == "taker has not acknowledged handOver"
+    assert state.reason == "{taker} has not acknowledged {handOver}"
 
 
 def test_a_robot_that_acknowledges_nothing_counts_as_lost_until_it_does(made: Journey) -> None:
     made.hear("greet", 2.0)
     made.mission.on_time(10.0)
     assert made.hear("_ping_", 10.1).lost == ("taker",)
-    assert made.mission.lost["taker"] == "has not acknowledged greet"
+    assert made.mission.lost["taker"] == "has not acknowledged {greet}"
     assert made.hear("taker:_order_@2", 11.0).lost == ()
 
 

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_runtime.model import Model
+from pursue_runtime.sentences import in_words
 from pursue_runtime.state import format_state, parse_state
 from pursue_runtime.words import RobotReport, format_report, parse_report, parse_word
 from tests.runtime.models import commanding
@@ -75,7 +76,7 @@ def test_no_action_begins_with_a_robot_that_is_not_in_its_place(made: Journey, c
     assert (state.status, state.displaced, state.returning) == ("running", ("giver",), ())
     state = made.hear(f"giver:{command}@{state.seq}", 2.1)
     assert (state.status, state.returning) == ("holding", ("giver",)) and state.locations["giver"] == "mid"
-    assert state.reason == "giver is 5.0 m from mid, where the state has it: it is sent back"
+    assert state.reason == "{giver} is 5.0 m from mid, where the state has it: it is sent back"
     state = made.hear("giver:_back_", 9.0)
     assert (state.status, state.displaced, state.returning, state.reason) == ("running", (), (), "")
     state = made.hear(f"giver:{command}@{state.seq}", 9.1)
@@ -135,7 +136,7 @@ def test_a_robot_that_cannot_return_is_lost(made: Journey) -> None:
     made.hear(f"giver:load@{state.seq}", 2.1)
     state = made.hear("giver:_failed_ on its way back to mid: aborted", 5.0)
     assert (state.lost, state.displaced, state.returning) == (("giver",), (), ())
-    assert "giver has failed on its way back to mid: aborted; looking for another plan" in state.reason
+    assert "{giver} has failed on its way back to mid: aborted; looking for another plan" in state.reason
 
 
 def test_a_lost_robot_that_cannot_return_again_does_not_hold_the_mission(made: Journey) -> None:
@@ -161,7 +162,7 @@ def test_a_held_robot_waits_for_a_person_and_never_counts_as_lost(made: Journey)
     made.hear("giver:giver_mid2end@1", 2.0)
     state = made.hear("giver:_held_ on its way to end: preempted by another node", 3.0)
     assert (state.status, state.held) == ("holding", ("giver",))
-    assert state.reason == "giver on its way to end: preempted by another node; publish giver:_resume_ to continue"
+    assert state.reason == "{giver} on its way to end: preempted by another node; publish giver:_resume_ to continue"
     for _ in range(5):
         moment = made.mission.next_moment(3.0)
         if moment is not None:
@@ -203,7 +204,8 @@ def test_the_state_has_them_as_text() -> None:
     journey.hear("giver:_displaced_", 1.0)
     journey.hear("taker:_displaced_", 1.0)
     state: Any = journey.hear("giver:handOver@3", 2.0)
-    assert parse_state(format_state(state)) == state and state.displaced == ("giver", "taker")
+    again = parse_state(format_state(state))
+    assert again == state._replace(reason=in_words(state.reason)) and again.displaced == ("giver", "taker")
 
 
 # The words ------------------------------------------------------------------------------------------------------------

@@ -123,7 +123,7 @@ def test_who_fails_before_it_could_go_back_is_lost() -> None:
     made = journey()
     first = made.hear("bot:_blocked_", 3.0) and made.mission.plan_request.number
     state = made.hear("bot:_failed_", 3.5)
-    assert state.reason == "bot has failed; looking for another plan"
+    assert state.reason == "{bot} has failed; looking for another plan"
     assert made.mission.plan_request.number > first and made.mission.plan_request.excused == ("bot",)
     assert made.hear("bot:_failed_", 3.6) is None
 

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from pursue_runtime.model import Model, Position
 from pursue_runtime.observer.uncovered import uncovered_reason
+from pursue_runtime.sentences import in_words
 from pursue_runtime.strategy import read_cover
-from pursue_runtime.ui.phrases import in_labels
 from tests.runtime.models import model_data, worker
 from tests.runtime.observer.test_mission import CHASE, Journey
 from tests.runtime.texts import read
@@ -46,19 +46,19 @@ def test_who_is_late_is_named_with_what_it_does() -> None:
     while state is None or state.status == "running":
         moment, state = made.tick_from(moment)
     assert state.reason == (
-        "bot is late on its way to b, and the strategy does not say what to do then; looking for another plan"
+        "{bot} is late on its way to {b}, and the strategy does not say what to do then; looking for another plan"
     )
     made.mission.on_no_plan(made.mission.plan_request.number, "'do catch' cannot be guaranteed from here", moment)
     state = made.hear("_ping_", moment)
-    assert state.reason.startswith("waiting for bot: bot is late on its way to b, and ")
+    assert state.reason.startswith("waiting for {bot}: {bot} is late on its way to {b}, and ")
 
 
 @pytest.mark.parametrize(("words", "reason"), [
-    ((), "the moment at which the strategy goes on has passed; bot is at a and thief is at b"),
+    ((), "the moment at which the strategy goes on has passed; {bot} is at {a} and {thief} is at {b}"),
     ((("bot_a2b", 2.0), ("bot_going_a_to_b2b", 3.0)),
-     "this happened at another time than the strategy expects; bot is at b and thief is at b"),
+     "this happened at another time than the strategy expects; {bot} is at {b} and {thief} is at {b}"),
     ((("thief_leaves", 11.0), ("bot_a2b", 12.0), ("bot_going_a_to_b2b", 15.5)),
-     "the strategy does not say what to do now that bot is at b and thief is at gone"),
+     "the strategy does not say what to do now that {bot} is at {b} and {thief} is at {gone}"),
 ])
 def test_where_nobody_is_late_it_says_what_is_unexpected_and_where_everybody_is(words: Any, reason: str) -> None:
     made = journey()
@@ -78,7 +78,7 @@ def test_where_nobody_is_late_it_says_what_is_unexpected_and_where_everybody_is(
 def test_of_many_agents_the_first_are_named(agents: int, rest: str) -> None:
     model = Model(model_data(*(worker(f"a{number}", "robot") for number in range(agents))))
     reason = uncovered_reason(model, read_cover({"format": 1, "cover": []}), model.initial(), 0.1, set())
-    assert reason == f"the strategy does not say what to do now that a0 is at s, {rest}"
+    assert in_words(reason) == f"the strategy does not say what to do now that a0 is at s, {rest}"
 
 
 def test_the_names_of_automata_and_clocks_are_in_the_log() -> None:
@@ -87,13 +87,8 @@ def test_the_names_of_automata_and_clocks_are_in_the_log() -> None:
     made.hear("bot_going_a_to_b2b", 3.0)
     technical = [text for level, text in made.logs if level == "debug"]
     assert len(technical) == 1 and " Pbot=2 " in technical[0] and "Creach=3.000" in technical[0]
-    assert not [text for level, text in made.logs if level == "warn" and "Creach" in text]
-
-
-def test_people_read_labels() -> None:
-    labelled = CHASE.replace("objective:", "labels: {bot: Porter 1, b: bay}\nobjective:")
-    reason = "bot is late on its way to b, and the strategy does not say what to do then"
-    assert in_labels(Model(read(labelled)), reason).startswith("Porter 1 is late on its way to bay, and")
+    holds = [text for level, text in made.logs if level == "warn"]
+    assert holds and not [text for text in holds if "Creach" in text or "{" in text]
 
 
 @given(

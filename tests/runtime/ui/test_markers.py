@@ -119,9 +119,10 @@ def test_who_does_not_do_what_it_should_has_another_colour_and_the_text_says_why
 
 
 def test_the_status_and_its_reason_stand_above_the_map() -> None:
-    (mark,) = shown(at("holding", "bot on its way to b: preempted by another node 3 times; " * 2), "mission")
+    (mark,) = shown(at("holding", "{bot} on its way to {b}: preempted by another node 3 times; " * 2), "mission")
     lines = mark.text.splitlines()
-    assert lines[0] == "example: holding" and lines[1].startswith("bot on its way") and max(map(len, lines)) <= 60
+    assert lines[0] == "example: holding" and lines[1].startswith("bot on its way to the bank:")
+    assert max(map(len, lines)) <= 60
     assert mark.points[0][1] > 4.0 and shown(at("won"), "mission")[0].text == "example: won"
 
 

@@ -21,7 +21,6 @@ from pursue_runtime.ui.mission_view import (
     reporters,
     tasks,
 )
-from pursue_runtime.ui.phrases import in_labels
 from tests.runtime.models import model_data, mover, state, worker
 from tests.together import HOTEL
 from tests.together import model as hotel
@@ -290,27 +289,12 @@ def test_what_happens_is_printed_in_words() -> None:
 LABELLED = Model({**DATA, "labels": {"bot": "Porter 1", "a": "front desk", "boy": "Tom"}})
 
 
-@pytest.mark.parametrize("text, shown", [
-    ("bot is late by 60 time units", "Porter 1 is late by 60 time units"),
-    ("no other plan: 'do bot at a' cannot be guaranteed from here without relying on bot and boy",
-     "no other plan: 'do bot at a' cannot be guaranteed from here without relying on Porter 1 and Tom"),
-    ("bot on its way to a: aborted: found a wall; publish bot:_resume_ to continue",
-     "Porter 1 on its way to front desk: aborted: found a wall; publish bot:_resume_ to continue"),
-    ("the way between b and a is blocked, robot_bot stands",
-     "the way between b and front desk is blocked, robot_bot stands"),
-    ("a deadline has passed", "a deadline has passed"),
-])  # fmt: skip
-def test_people_read_labels_in_what_nodes_say(text: str, shown: str) -> None:
-    assert in_labels(LABELLED, text) == shown
-    assert in_labels(Model(DATA), text) == text
-
-
 def test_the_reason_of_an_end_has_labels() -> None:
     view = MissionView(LABELLED, IdleEnvironment())
     view.on_state(at(1, 100.0, event="_start_"), 100.0)
-    view.on_state(at(2, 160.0, status="stopped", reason="bot is late"), 160.0)
+    view.on_state(at(2, 160.0, status="stopped", reason="{bot} is late, and {a} is not a place"), 160.0)
     verdict = view.verdict()
-    assert verdict is not None and verdict[1].endswith(": Porter 1 is late.")
+    assert verdict is not None and verdict[1].endswith(": Porter 1 is late, and front desk is not a place.")
 
 
 # Who is ready

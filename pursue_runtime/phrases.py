@@ -1,39 +1,15 @@
-"""What agents do, in words for people: on the page and on the terminal."""
+"""What agents do, in words for people, or as part of a sentence (`sentences.MARKED` in place of a model)."""
 
 from __future__ import annotations
 
-import re
 from typing import NamedTuple, Optional, Sequence
 
 from pursue_runtime.locations import is_action, is_end, is_movement, is_under_way
 from pursue_runtime.model import Automaton, Edge, Model
+from pursue_runtime.sentences import Names
 from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import SystemState
 from pursue_runtime.words import START
-
-_QUOTED = r"'[^']*'"
-_AGENT = r"(?<![\w:#/@])(?:{names})(?![\w:])"
-_PLACE = r"(?:(?<=way to )|(?<=back to )|(?<=from )|(?<=at ))(?:{names})\b"
-_WAY = r"\bbetween (?P<a>\w+) and (?P<b>\w+)"
-"""Where a sentence of a node names an agent, and a place: a place may have the name of an English word. Quotes are the
-scenario's own text, and `bot1:_resume_` is a word to type."""
-
-
-def in_labels(model: Model, text: str) -> str:
-    """A sentence of a node, such as the reason of a state, with labels in place of the names of agents and places."""
-    agents = {automaton.name for automaton in model.automata if automaton.kind in ACTING}
-    of_agents = "|".join(sorted(name for name in model.labels if name in agents))
-    of_places = "|".join(sorted(name for name in model.labels if name not in agents))
-    patterns = [_QUOTED, _WAY]
-    patterns += [_AGENT.format(names=of_agents)] if of_agents else []
-    patterns += [_PLACE.format(names=of_places)] if of_places else []
-
-    def shown(found: "re.Match[str]") -> str:
-        if found["a"]:
-            return f"between {model.shown(found['a'])} and {model.shown(found['b'])}"
-        return model.shown(found.group())
-
-    return re.sub("|".join(patterns), shown, text) if model.labels else text
 
 
 class Phrase(NamedTuple):
@@ -43,7 +19,7 @@ class Phrase(NamedTuple):
     does: str
 
 
-def phrase(model: Model, automaton: Automaton, edge: Edge) -> Phrase:
+def phrase(model: Names, automaton: Automaton, edge: Edge) -> Phrase:
     """An edge of an agent in words."""
     source, target, word = (model.shown(name) for name in (edge.source, edge.target, edge.word))
     if is_end(edge.source, edge.target):

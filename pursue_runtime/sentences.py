@@ -1,0 +1,59 @@
+"""What nodes say of a mission, on its way to people: a sentence in which the names of the model are marked.
+
+Marks are those of Python's format strings: `{bot1} is late on its way to {b}`. Who shows a sentence to people puts the
+names there, or their labels; all other words stay as they are.
+"""
+
+from __future__ import annotations
+
+from string import Formatter
+from typing import Callable, List, Optional, Protocol, Tuple
+
+
+class Names(Protocol):
+    """What people read for a name: a model's labels, or MARKED."""
+
+    def shown(self, name: str) -> str:
+        """What stands in a text for this name."""
+
+
+class _Marked:
+    def shown(self, name: str) -> str:
+        return marked(name)
+
+
+MARKED: Names = _Marked()
+"""In place of a model: what is made with it is part of a sentence."""
+
+
+def marked(name: str) -> str:
+    """Return the name of an agent, a place or an event as a part of a sentence."""
+    return "{" + name + "}"
+
+
+def quoted(text: str) -> str:
+    """Return any text as a part of a sentence: nothing in it is marked."""
+    return text.replace("{", "{{").replace("}", "}}")
+
+
+def as_sentence(text: str) -> str:
+    """Return a text of another program as a sentence: as it is if it is one, else quoted."""
+    return quoted(text) if _parts(text) is None else text
+
+
+def in_words(sentence: str, shown: Callable[[str], str] = str) -> str:
+    """Return a sentence as people read it, with `shown` of each name; by default with the names. A text that is no
+    sentence stays as it is."""
+    parts = _parts(sentence)
+    return sentence if parts is None else "".join(text + (shown(name) if name else "") for text, name in parts)
+
+
+def _parts(sentence: str) -> Optional[List[Tuple[str, str]]]:
+    """Return its words, piece by piece, each with the name behind it ("": none); None for what is no sentence."""
+    try:
+        parts = list(Formatter().parse(sentence))
+    except ValueError:
+        return None
+    if any(name is not None and (spec or how or not name.isidentifier()) for _, name, spec, how in parts):
+        return None
+    return [(text, name or "") for text, name, _, _ in parts]
