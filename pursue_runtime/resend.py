@@ -42,7 +42,8 @@ def resend_timeout(sent: int, reaction: float = 0.0) -> float:
 
 
 class StateRepeats:
-    """Publishes each new state REPEATS times more, unchanged, at resend intervals, until there is a newer one.
+    """Publishes each new state REPEATS times more, as it was published last, at resend intervals, until there is a newer
+    one.
 
     A node that missed the state gets it within the reaction; for all others it is the state that they have.
     """
@@ -58,7 +59,8 @@ class StateRepeats:
         """Take that a state was published; a heartbeat is no new one."""
         known = self._state
         if known is None or (known.seq, known.status) != (state.seq, state.status):
-            self._state, self._left, self._next = state, REPEATS, now + self._interval
+            self._left, self._next = REPEATS, now + self._interval
+        self._state = state  # under its number: orders may be acknowledged meanwhile
 
     def due(self, now: float) -> Optional[SystemState]:
         """Return the state to publish again now, if any."""

@@ -61,6 +61,16 @@ def test_a_newer_state_takes_the_place_of_the_one_before() -> None:
     assert repeats.due(5.03) is newer
 
 
+def test_a_state_that_was_published_again_meanwhile_is_repeated_as_it_was_then() -> None:
+    """Else the one before it would bring a robot once more an order that it has acknowledged."""
+    repeats = StateRepeats(0.1)
+    repeats.on_publish(state(1, 100.0)._replace(orders=("bot:aboard@1/gate!",)), 5.0)
+    newer = state(1, 100.01)
+    repeats.on_publish(newer, 5.01)
+    assert repeats.next_moment() == pytest.approx(5.02)
+    assert repeats.due(5.02) is newer
+
+
 def test_a_report_of_a_robot_is_repeated_within_the_reaction_until_the_state_shows_it() -> None:
     report = Report(Word("bot", "bot_going_a_to_b2b", as_of=3), 0.1)
     assert report.due(100.0, 5.0) == "bot:bot_going_a_to_b2b#3"
