@@ -7,6 +7,9 @@ from typing import Dict, List, Mapping, NamedTuple, Optional, Tuple
 from pursue_runtime.observer.mark import Rank
 from pursue_runtime.state import ENDED, LIVE, WAITING, SystemState
 
+PATIENCE = 5.0
+"""Seconds of real time for which an observer that starts waits for what other nodes have seen."""
+
 SAME = 1e-3
 """Seconds by which two nodes may see the reset of a clock apart: stamps and clocks are rounded in messages."""
 
@@ -105,8 +108,11 @@ def _place(state: SystemState) -> Tuple[object, ...]:
 
 def _differs(state: SystemState, other: SystemState) -> bool:
     """Return True if two states with one number are not the same one, apart from the time that has passed."""
-    # An agent may become late, or report the end of what others have not finished, without a new number.
-    what, others = (each._replace(stamp=0.0, clocks={}, reason="", late=(), finished=()) for each in (state, other))
+    # An agent may become late or lost, acknowledge an order, or finish what others have not, without a new number.
+    what, others = (
+        each._replace(stamp=0.0, clocks={}, reason="", late=(), lost=(), orders=(), finished=())
+        for each in (state, other)
+    )
     return what != others or any(abs(a - b) > SAME for a, b in zip(_resets(state), _resets(other)))
 
 

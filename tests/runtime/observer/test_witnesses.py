@@ -59,13 +59,29 @@ def test_where_the_damaged_journal_leads_further_it_stops() -> None:
 
 
 @pytest.mark.parametrize("other", [
-    state(9, bot="b"), state(9, event="f"), state(9, status="holding"), state(9, plan=1), state(9, lost=("bot",)),
+    state(9, bot="b"), state(9, event="f"), state(9, status="holding"), state(9, plan=1), state(9, held=("bot",)),
     state(9)._replace(clocks={"Cbot": 3.0}), state(9, unit=2.0),
 ])
 def test_where_witnesses_disagree_it_stops(other: SystemState) -> None:
     for own, damage in ((state(6), ""), (FRESH, DAMAGE)):
         finding = found(own, damage, UI=state(9), simulator=other)
         assert finding.adopt is None and "UI and simulator have seen different states 9" in finding.stop
+
+
+@pytest.mark.parametrize("news", [
+    {"orders": ("bot:e@9/b+",)}, {"orders": ()}, {"late": ("bot",)}, {"late": ("bot",), "lost": ("bot",)},
+    {"finished": ("bot",)},
+])
+@pytest.mark.parametrize("own, damage", [(state(9), ""), (state(6), ""), (state(9), DAMAGE)])
+def test_witnesses_agree_if_one_of_them_has_seen_sooner_what_changes_without_a_new_number(
+    own: SystemState, damage: str, news: Dict[str, Any]
+) -> None:
+    """A state is published again under its number when an order is acknowledged, and when an agent becomes late."""
+    before = state(9, orders=("bot:e@9/b",))
+    after = before._replace(stamp=100.4, clocks={"Cbot": 10.4}, **news)
+    finding = found(own, damage, controller_bot=before, UI=after)
+    assert finding.stop == ""
+    assert finding.adopt in (None, after)
 
 
 def test_where_a_whole_journal_and_a_witness_disagree_it_stops() -> None:
