@@ -174,9 +174,9 @@ def main(words: Optional[Sequence[str]] = None) -> int:
     wanted = [(faults, runs) for faults, runs in CELLS if faults in (given.only.split() or [f for f, _ in CELLS])]
     for rows in _played([(name, wanted, given.seconds) for name in names], given.jobs):
         for row in rows:
-            results.setdefault("cells", {})[f"{row['faults']} {row['scenario']}"] = row
-            print(json.dumps(row), flush=True)
-        results["played"] = stamp
+            cell = {**row, "date": stamp["date"], "commit": stamp["commit"]}
+            results.setdefault("cells", {})[f"{row['faults']} {row['scenario']}"] = cell
+            print(json.dumps(cell), flush=True)
         _write(given.out, path, results)
     return 0
 

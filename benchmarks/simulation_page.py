@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, Mapping, Optional
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 
 from benchmarks import page
 from benchmarks.tables import markdown
@@ -97,9 +97,26 @@ def count(results: Results) -> str:
     faults = sum(row["missions"] for row in rows if row["faults"] == "all")
     what = f"{missions:,} missions, {faults:,} of them with all faults"
     end = f"{wrong} of them failed a check, or were lost without a fault that was too long"
-    played = results.get("played", {})
-    commit = f"\n\nPlayed {played['date']} with commit {played['commit']}." if played.get("commit") else ""
-    return f"{what}; {end}.{commit}\n"
+    return f"{what}; {end}.\n\n{played(results)}"
+
+
+def played(results: Results) -> str:
+    """When the rows were played, and with which commit."""
+    rows: Dict[Tuple[str, str], Dict[str, List[str]]] = {}
+    for faults in TITLES:
+        for row in cells_of(results, faults):
+            of_stamp = rows.setdefault((row["date"], row["commit"]), {})
+            of_stamp.setdefault(faults, []).append(str(row["scenario"]))
+    lines = []
+    for (date, commit), found in sorted(rows.items(), reverse=True):
+        whole = [f"`{faults}`" for faults, names in found.items() if len(names) == len(cells_of(results, faults))]
+        parts = [
+            f"`{faults}` of {', '.join(names)}"
+            for faults, names in found.items()
+            if len(names) < len(cells_of(results, faults))
+        ]
+        lines.append([date, commit, "; ".join([*([", ".join(whole)] if whole else []), *parts])])
+    return markdown(("played", "with commit", "rows"), lines, left=3) if lines else ""
 
 
 PARTS: Dict[str, Callable[[Results], str]] = {

@@ -5,15 +5,18 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
-from typing import Any, Dict
+from typing import Any, Dict, List
 
-from benchmarks import simulation_page
+import pytest
+
+from benchmarks import simulation, simulation_page
 from benchmarks.simulation import bundled, cells, kind_of, main
 
 
 def row(scenario: str, missions: int, **more: Any) -> Dict[str, Any]:
     facts = {"scenario": scenario, "faults": "loss", "missions": missions, "margin": 0.3, "latest": 0.125}
-    return {**facts, "ends": {"goal": missions}, "causes": {}, "examples": [], **more}
+    facts.update({"ends": {"goal": missions}, "causes": {}, "examples": [], "date": "2026-01-01", "commit": "aaaaaaa"})
+    return {**facts, **more}
 
 
 def test_a_cell_counts_the_ends_of_the_first_missions_and_is_the_same_again() -> None:
@@ -41,10 +44,37 @@ def test_tables_add_up() -> None:
     assert "| one | 0.3 | 10 | 10 | 100.00 | 0 | 0 | 0 | 0.125 | 0 | 0 | 0 |" in table
     assert "| all |  | 20 | 17 | 85.00 | 1 | 0 | 2 | 0.900 | 2 | 0 | 0 |" in table
     assert "| two | `loss` | 4 | go in state 3 was due for" in simulation_page.examples({"cells": rows})
-    stamp = {"date": "a day", "commit": "abc1234"}
-    text = simulation_page.count({"cells": rows, "played": stamp})
+    text = simulation_page.count({"cells": rows})
     assert text.startswith("20 missions, 0 of them with all faults; 0 of them failed")
-    assert text.endswith("\n\nPlayed a day with commit abc1234.\n")
+
+
+def test_the_page_says_which_rows_were_played_when_and_with_which_commit() -> None:
+    new = {"date": "2026-02-02", "commit": "bbbbbbb"}
+    rows = {"a": row("one", 10), "b": row("two", 10), "c": {**row("one", 10), "faults": "all", **new}}
+    assert played_rows(rows) == ["| 2026-02-02 | bbbbbbb | `all` |", "| 2026-01-01 | aaaaaaa | `loss` |"]
+    rows["b"].update(new)
+    rows["d"] = {**row("two", 10), "faults": "orders"}
+    assert played_rows(rows) == [
+        "| 2026-02-02 | bbbbbbb | `all`; `loss` of two |",
+        "| 2026-01-01 | aaaaaaa | `orders`; `loss` of one |",
+    ]
+
+
+def played_rows(rows: Dict[str, Any]) -> List[str]:
+    """The lines of the table of when rows were played."""
+    return [line for line in simulation_page.count({"cells": rows}).splitlines() if line.startswith("| 20")]
+
+
+def test_a_row_that_is_played_gets_a_stamp_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(simulation, "_played", lambda jobs, processes: [[{**row("one", 10), "faults": "orders"}]])
+    monkeypatch.setattr(simulation, "version", lambda: "bbbbbbb")
+    path = tmp_path / "benchmarks" / "simulation.json"
+    path.parent.mkdir()
+    path.write_text(json.dumps({"cells": {"loss one": row("one", 10)}}))
+    main(["--out", str(tmp_path), "--only", "orders"])
+    cells = json.loads(path.read_text())["cells"]
+    assert [cell["commit"] for cell in cells.values()] == ["aaaaaaa", "bbbbbbb"]
+    assert cells["loss one"]["date"] == "2026-01-01" < cells["orders one"]["date"]
 
 
 def test_the_page_shows_the_data(project_root: Path) -> None:
