@@ -5,11 +5,13 @@ from __future__ import annotations
 import random
 from typing import Any, Dict, List, Optional, Tuple, Union
 
+from pursue_gen.simulation.became_true import BecameTrue
 from pursue_gen.simulation.commands import EPSILON
-from pursue_gen.simulation.connections import Connections
+from pursue_gen.simulation.connections import RECONNECTION, Connections
 from pursue_gen.simulation.event_queue import Action, EventQueue, Timer
 from pursue_gen.simulation.faults import Crash, FaultPlan
 from pursue_gen.simulation.judge import Judge
+from pursue_gen.simulation.junk import junk_word
 from pursue_gen.simulation.meaning import broken_of
 from pursue_gen.simulation.nodes import ControllerNode, ObserverNode, PeopleNode
 from pursue_gen.simulation.opponents import Opponent, kind_in_mission
@@ -20,28 +22,16 @@ from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage
 from pursue_gen.simulation.world import SimulatedAgent
 from pursue_gen.tga.network import Kind
-from pursue_runtime.observer.assumptions import without
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planning import PlanRequest
+from pursue_runtime.observer.witnesses import PATIENCE
 from pursue_runtime.orders import Order
 from pursue_runtime.sentences import in_words
-from pursue_runtime.state import (
-    ENDED,
-    HOLDING,
-    LIVE,
-    LOST,
-    RUNNING,
-    STOPPED,
-    WON,
-    SystemState,
-)
-from pursue_runtime.words import Word, format_word, parse_word
+from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, STOPPED, WON, SystemState
+from pursue_runtime.words import Word, format_word
 
 START = 1000.0
 """The moment at which missions start, in seconds of ROS time."""
-
-JUNK = ("", "\u2603", "bot1 goes", "_start_", "_ping_", "unknown:nothing@3", "_plan_@1", "@@", ":_failed_")
-"""Words on pursue/events that change nothing."""
 
 HEARTBEAT, SILENCE = 1.0, 20.0
 """Seconds, as the observer's parameters ~heartbeat and ~silence have them."""
@@ -90,6 +80,7 @@ class SimulatedMission:
         self._plan: Optional[Dict[str, Any]] = None
         self._reachable = dict.fromkeys(stage.strategies, START)
         self._seen: Tuple[int, str] = (-1, "")
+        self._became_true = BecameTrue()
 
     # The course of the mission ----------------------------------------------------------------------------------------
 
@@ -169,13 +160,16 @@ class SimulatedMission:
 
     def publish(self, state: SystemState) -> None:
         """The observer publishes a state: all subscribers get it."""
+        moment = self.events.now
+        if self._observer.looks_back and self._latched is not None:
+            moment = self._became_true.moment(state, self._latched, moment)
         self._latched = state
         news = (state.seq, state.status) != self._seen
         self._seen = (state.seq, state.status)
         if news and self._record:
             self._note(_described(state))
-        self._judge.on_state(state, self.events.now)
-        self._promises.on_state(state, self.events.now)
+        self._judge.on_state(state, moment)
+        self._promises.on_state(state, moment)
         for node in self._controllers.values():
             self._send_state(node, state, self._stage.reaction)
         for mover in self._agents.values():
@@ -237,8 +231,11 @@ class SimulatedMission:
 
     def _report(self, agent: str, text: str) -> None:
         self._note(f"{agent} reports {text}")
-        machine = self._stage.controller_of(agent) or ""
-        self._send_word(f"report:{agent}", text, 0.0, machine)
+        self._became_true.note(agent, text, self.events.now)
+        self._send_word(f"report:{agent}", text, 0.0, self._machine_of(agent))
+
+    def _machine_of(self, agent: str) -> str:
+        return self._stage.controller_of(agent) or ""
 
     def _report_move(self, text: str) -> None:
         """Reports what an uncontrollable agent does. If another event of this instant comes first, the agent has
@@ -305,25 +302,54 @@ class SimulatedMission:
 
     def _restart(self, name: str, node: Union[ObserverNode, ControllerNode]) -> None:
         self._note(f"{name} is started again")
-        node.restart()
         if isinstance(node, ObserverNode):
+            is_cut = any(map(self._connections.is_cut, self._controllers))  # it waits for an answer from there
+            self.events.schedule(self.events.now + (PATIENCE if is_cut else 0.0), self._return_of_observer)
             return
+        node.restart()
         if self._observer.alive and self._latched is not None:  # what is latched comes at once
             self._send_state(node, self._latched, 0.0)
             if self._plan is not None:
                 self._send_plan(node, self._plan)
 
+    def _return_of_observer(self) -> None:
+        """It learns what the nodes have seen that it reaches; then each reports again what it does not show."""
+        reached = {name: node for name, node in self._controllers.items() if not self._connections.is_cut(name)}
+        seen = {name: node.seen for name, node in reached.items() if node.seen is not None}
+        if self._latched is not None:
+            others = [*self._agents, *(["UI"] if self._people is not None else [])]
+            cut = {name for name in self._agents if self._connections.is_cut(self._machine_of(name))}
+            seen.update((name, self._latched) for name in others if name not in cut)
+        self._reachable = dict.fromkeys(self._reachable, self.events.now)
+        self._observer.restart(seen)
+        for name, controller in self._controllers.items():
+            self._connect(name, f"word:{name}", name, controller.say_again)
+        for name, agent in self._agents.items():
+            self._connect(name, f"report:{name}", self._machine_of(name), agent.say_again)
+        if self._people is not None:
+            self._connect("UI", "word:UI", "UI", self._people.say_again)
+        if self._latched is not None:
+            self._choose_move(self._latched)
+
+    def _connect(self, name: str, connection: str, machine: str, say_again: Action) -> None:
+        """A node has connected to the observer: it reports again, and says when that is all. If that is lost, it has to
+        connect once more."""
+        say_again()
+        deliver = _to(self._observer, lambda: self._observer.on_reported(name))
+        self._connections.send(connection, 0.0, deliver, machine)
+        life = self._observer.life
+
+        def look() -> None:
+            if self._observer.life == life and self._observer.awaits(name):
+                self._connect(name, connection, machine, say_again)
+
+        if self._observer.awaits(name):
+            self.events.schedule(self.events.now + RECONNECTION[1], look)
+
     def _junk(self, draw: random.Random) -> None:
         """A word that must change nothing."""
-        mission = self._observer.mission
-        words = [*JUNK, "x" * 3000]
-        words += [text for text in self._published if not text.endswith(f"@{mission.seq}")]
-        model, here = mission.model, mission.position(self.events.now)
-        possible = {*model.possible(here, timed=False), *model.possible(without(here, model.assumptions), timed=False)}
-        words += [e.word for a in model.automata for e in a.edges if e.word not in possible]
-        text = draw.choice(words)
-        word = parse_word(text)
-        if word is not None and word.seq == mission.seq:
+        text = junk_word(draw, self._observer.mission, self._published, self.events.now)
+        if text is None:
             return
         self.fault_plan.count("junk")
         self._note(f"an unknown node publishes {text[:40]!r}")

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Callable, Dict, List, Optional, Protocol, Sequence
+from typing import Any, Dict, List, Mapping, Optional, Protocol, Sequence
 
 from pursue_gen.simulation.event_queue import EventQueue, Timer
 from pursue_gen.simulation.stage import Stage
 from pursue_runtime.controller.scheduler import CommandScheduler
-from pursue_runtime.observer.journal import CALLS, replay
+from pursue_runtime.observer.journal import Journal, Log, replay
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planning import PlanRequest
+from pursue_runtime.observer.returning import Inbox, take_up
 from pursue_runtime.orders import Order
 from pursue_runtime.resend import StateRepeats
-from pursue_runtime.state import SystemState
+from pursue_runtime.state import LIVE, SystemState
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui import mission_view as ui
 from pursue_runtime.ui.environment import IdleEnvironment
@@ -49,19 +50,35 @@ class MissionLinks(Protocol):
         `again`: it was restarted since its last order."""
 
 
-class ObserverNode:
-    """The observer. `alive` False: it was killed; its journal is kept as lines of text, as on a disk. `life` counts its
-    processes: what was sent to one never comes to the next."""
+class MemoryJournal(Journal):
+    """A journal as lines of text, which outlive the process that writes them, as on a disk."""
 
-    def __init__(self, stage: Stage, links: MissionLinks, log: Callable[[str, str], None]) -> None:
-        self.alive, self.life = True, 1
+    def __init__(self, mission: Mission, lines: List[str], log: Log) -> None:
+        """Replay the lines into a fresh mission. Raises DataError where they do not fit it."""
+        super().__init__(mission, "", {}, log)
+        self._lines = lines
+        entries = [json.loads(line) for line in lines]
+        replay(mission, entries)
+        self.last = max((float(entry["at"]) for entry in entries), default=0.0)
+
+    def _write(self, entry: Mapping[str, Any], sync: bool = False) -> None:
+        self._lines.append(json.dumps(entry))
+
+
+class ObserverNode:
+    """The observer. `alive` False: it was killed; its journal is kept. `life` counts its processes: what was sent to
+    one never comes to the next. `looks_back`: what it publishes now may have happened while there was no observer."""
+
+    def __init__(self, stage: Stage, links: MissionLinks, log: Log) -> None:
+        self.alive, self.life, self.looks_back = True, 1, False
         self._stage, self._links, self._log = stage, links, log
-        self._entries: List[str] = []
-        self._timer = Timer(links.events, lambda: self.call("tick"))
+        self._lines: List[str] = []
+        self._timer = Timer(links.events, self._on_alarm)
         self._repeat_timer = Timer(links.events, self._repeat)
         self._repeats = StateRepeats(stage.reaction)
         self._proposed = 0
         self.mission = self._mission()
+        self._inbox = Inbox(self.mission, MemoryJournal(self.mission, self._lines, log), log)
 
     def _mission(self) -> Mission:
         stage = self._stage
@@ -70,33 +87,48 @@ class ObserverNode:
         )
 
     def call(self, name: str, *args: Any) -> None:
-        """Calls the mission, writes the call to the journal if it changed the mission, and publishes what follows."""
-        if not self.alive:
-            return
-        mission, now = self.mission, self._links.events.now
-        before = mission.revision() if self._links.faulty else None
-        states = CALLS[name](mission, *args, now)
-        if before is not None and mission.revision() != before:
-            end = {"seq": mission.seq, "status": mission.status}
-            self._entries.append(json.dumps({"at": now, "call": name, "args": args, **end}))
-        self._publish(states)
+        """Calls the mission, and publishes what follows."""
+        if self.alive:
+            self.looks_back = self._inbox.returning is not None
+            self._publish(self._inbox.call(name, *args, now=self._links.events.now))
+
+    def on_reported(self, node: str) -> None:
+        """A node has reported all that it had to."""
+        if self.alive:
+            self.looks_back = self._inbox.returning is not None
+            self._publish(self._inbox.on_reported(node, self._links.events.now))
+
+    def awaits(self, node: str) -> bool:
+        """True while it has returned, and the node has not said that it has reported all that it had to."""
+        returning = self._inbox.returning
+        return self.alive and returning is not None and node in returning.missing()
+
+    def _on_alarm(self) -> None:
+        now = self._links.events.now
+        self.looks_back = self._inbox.returning is not None
+        self._publish(self._inbox.on_alarm(now, now))
 
     def heartbeat(self) -> None:
         """Publishes the state again."""
-        if self.alive:
+        if self.alive and self._inbox.returning is None:
             if self.mission.proposal is not None:
                 self._proposed = 0
+            self.looks_back = False
             self._publish([self.mission.state(self._links.events.now)])
 
-    def restart(self) -> None:
-        """A new process: it has the journal, and nothing else."""
+    def restart(self, seen: Mapping[str, SystemState]) -> None:
+        """A new process: it has the journal, and what other nodes have seen last."""
         self.alive = True
         self.life += 1
-        self.mission = self._mission()
-        replay(self.mission, [json.loads(entry) for entry in self._entries])
+        self.mission, now = self._mission(), self._links.events.now
+        journal = MemoryJournal(self.mission, self._lines, self._log)
+        reporting = [node for node, state in seen.items() if state.status in LIVE]
+        returning = take_up(self.mission, journal, seen, reporting, now, now)
+        self._inbox = Inbox(self.mission, journal, self._log, returning)
         self._proposed = 0
         self._repeats = StateRepeats(self._stage.reaction)
-        self.heartbeat()
+        self.looks_back = returning is not None
+        self._publish([self.mission.state(returning.floor if returning else now)])
 
     def kill(self) -> None:
         """It is killed."""
@@ -116,8 +148,7 @@ class ObserverNode:
             self._proposed = proposal["plan"]
             links.publish_plan(proposal)
         links.request_plan(mission.plan_request)
-        self._timer.set(mission.next_moment(links.events.now))
-
+        self._timer.set(*self._inbox.next_moments(links.events.now))
 
     def _repeat(self) -> None:
         state = self._repeats.due(self._links.events.now)
@@ -138,6 +169,11 @@ class ControllerNode:
 
     def _new(self) -> CommandScheduler:
         return CommandScheduler(self._stage.strategies[self.name], self.name)
+
+    @property
+    def seen(self) -> Optional[SystemState]:
+        """The newest state that it has seen."""
+        return self._scheduler.state if self.alive else None
 
     @property
     def _now(self) -> float:
@@ -165,6 +201,11 @@ class ControllerNode:
             word = self._scheduler.add_plan(plan["plan"], strategy, self._now)
             self._links.publish_word(self.name, word, self._links.events.now)
             self._set_timer()
+
+    def say_again(self) -> None:
+        """An observer has connected: a command that is due comes again."""
+        if self.alive:
+            self._on_timer()
 
     def restart(self) -> None:
         """A new process: it knows nothing."""
@@ -212,6 +253,11 @@ class PeopleNode:
         if plan["people"]:
             self._ui.add_plan(plan["plan"], Strategy(plan["people"]))
             self._on_timer()
+
+    def say_again(self) -> None:
+        """An observer has connected: an instruction that no state has answered comes again."""
+        self._ui.say_again()
+        self._on_timer()
 
     def _on_timer(self) -> None:
         now, stage = self._links.events.now, self._stage

@@ -13,12 +13,13 @@ from pursue_gen.simulation.connections import drawn_share
 from pursue_gen.simulation.event_queue import EventQueue, Timer
 from pursue_gen.simulation.faults import Breakdown, FaultPlan
 from pursue_gen.simulation.stage import Stage
+from pursue_runtime.controller.reports import Report
 from pursue_runtime.locations import action_of, is_action, is_movement
 from pursue_runtime.orders import Order, parse_orders
 from pursue_runtime.resend import resend_timeout
-from pursue_runtime.simulator.simulator import EndWindow, Simulator, end_window, report_word
+from pursue_runtime.simulator.simulator import EndWindow, Simulator, end_window, report_of
 from pursue_runtime.state import SystemState
-from pursue_runtime.words import FAILED, ORDERED, RobotReport, Word, format_report, format_word
+from pursue_runtime.words import FAILED, ORDERED, RobotReport, Word, format_word
 
 INSIDE = 1e-3
 """Time units by which the earliest end is inside its window, which opens with a strict bound."""
@@ -60,6 +61,9 @@ class SimulatedAgent:
         """The numbers of the states in which it came to its place, and came to what it was ordered to do last."""
         self._activities = 0
         self._broken = False
+        self._failed = -1  # the number of the state in which it came to what it has failed to finish
+        self._report: Optional[Report] = None  # that it has failed, or could finish that after all
+        self._report_timer = Timer(events, self._say)
         self._stamp = 0.0
         self._receipts: Dict[int, int] = {}  # the orders that no state shows as acknowledged: how often each was said
         self._receipt_timer = Timer(events, self._acknowledge)
@@ -73,7 +77,10 @@ class SimulatedAgent:
         self._set_timer()
 
     def on_orders(self, state: SystemState) -> None:
-        """A state, also one that was published again: which orders are acknowledged."""
+        """A state, also one that was published again: which orders and reports it shows."""
+        if self._report is not None:
+            shown = self.agent in (state.lost if FAILED in self._report.word else state.finished)
+            self._report.confirmed |= shown or state.locations.get(self.agent) != self._place
         if self._receipts:
             waiting = {order.seq for order in parse_orders(state.orders) if order.agent == self.agent}
             waiting -= {order.seq for order in parse_orders(state.orders) if order.acknowledged}
@@ -109,9 +116,17 @@ class SimulatedAgent:
     def _on_timer(self) -> None:
         now = self._events.now
         for word in self._simulator.due(now, now):
-            if not self._broken:
+            if not self._broken and self._since != self._failed:
                 self._publish(self.agent, word)
         self._set_timer()
+
+    def say_again(self) -> None:
+        """An observer has connected: what no state has shown is reported again."""
+        self._simulator.say_again()
+        self._on_timer()
+        if self._report is not None:
+            self._report.say_again()
+            self._say()
 
     def _set_timer(self) -> None:
         self._timer.set(*self._simulator.next_moments())
@@ -126,10 +141,11 @@ class SimulatedAgent:
     def _break(self, breakdown: Breakdown, begun: int) -> None:
         if self._since != begun:
             return  # it was done sooner
-        self._broken = True
+        self._broken, self._failed = True, begun
         self._fault_plan.count("failed" if breakdown.reported else "silent")
         if breakdown.reported:
-            self._publish(self.agent, format_report(RobotReport(self.agent, FAILED, as_of=begun)))
+            self._report = Report(RobotReport(self.agent, FAILED, as_of=begun), self._promised)
+            self._say()
         if breakdown.back is not None:
             self._events.schedule(self._events.now + breakdown.back, lambda: self._repair(begun))
 
@@ -138,7 +154,16 @@ class SimulatedAgent:
         self._broken = False
         window = self._window()
         if window is not None and self._since == begun:
-            self._publish(self.agent, report_word(self._stage.model, self.agent, window.event, begun))
+            self._report = Report(report_of(self._stage.model, self.agent, window.event, begun), self._promised)
+            self._say()
+
+    def _say(self) -> None:
+        """Report that it has failed, or that it has finished what it was at; again until a state shows it."""
+        report, now = self._report, self._events.now
+        word = report.due(now, now) if report is not None else None
+        if word is not None:
+            self._publish(self.agent, word)
+        self._report_timer.set(report.next_moment() if report is not None else None)
 
     def _window(self) -> Optional[EndWindow]:
         """When what it does ends by its model."""

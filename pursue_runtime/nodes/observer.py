@@ -9,12 +9,11 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-import math
 import os
 import threading
 import time
 from functools import partial
-from typing import Any, Dict, List, Mapping, Optional
+from typing import Any, Dict, List, Mapping
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -49,14 +48,14 @@ from pursue_runtime.nodes.witness import Witnesses
 from pursue_runtime.observer.journal import Journal, last_mission
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planner import Planner, PlannerAnswer
-from pursue_runtime.observer.returning import Returning
+from pursue_runtime.observer.returning import Inbox, take_up
 from pursue_runtime.observer.settings import ARGUMENTS, read_settings
-from pursue_runtime.observer.witnesses import contradicts, find_state, mission_seen, unknown_state
+from pursue_runtime.observer.witnesses import contradicts, mission_seen, unknown_state
 from pursue_runtime.resend import StateRepeats
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, STOPPED, WAITING, WON, SystemState, format_state
 from pursue_runtime.strategy import read_cover
-from pursue_runtime.words import EVENTS, FINISH, PLAN, REPORTED, STATE, STOP, SYSTEM_STATE
+from pursue_runtime.words import EVENTS, FINISH, PLAN, REPORTED, STATE, SYSTEM_STATE
 
 LOGS = {"debug": rospy.logdebug, "info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 
@@ -100,12 +99,13 @@ class Observer:
         self.events = rospy.Publisher(EVENTS, String, queue_size=10, tcp_nodelay=True)
         self.printer = StatePrinter(self.ending)
         self.alarm = Alarm(self.on_alarm, self.ending)
-        self.returning = self.take_up()
+        self.inbox = self.take_up()
         self.repeats = StateRepeats(self.mission.model.reaction * self.settings.time_unit)
         self.await_clock()
         self.plain_words = PlainWords(self.mission.state(self.now())) if self.settings.plain_words else None
         self.witnesses.await_subscribers(self.states)
-        self.publish([self.mission.state(self.returning.floor if self.returning else self.now())])
+        returning = self.inbox.returning
+        self.publish([self.mission.state(returning.floor if returning else self.now())])
         self.witnesses.follow(self.on_seen)
         self.words = subscribe(EVENTS, String, self.on_word, self.ending, tcp_nodelay=True)
         pulses = subscribe("/diagnostics", DiagnosticArray, self.on_diagnostics, self.ending, queue_size=100)
@@ -171,27 +171,13 @@ class Observer:
         """ROS time in seconds, but nothing comes before what is written down."""
         return max(float(rospy.get_time()), self.journal.last)
 
-    def take_up(self) -> Optional[Returning]:
-        """Take up the mission where the journal and the other nodes have it; stop it where that is unclear.
-
-        Return what other nodes have to report of the time in which there was no observer; None where they do not, or
-        none of them has seen the mission: then nobody knows until when the observer was there.
-        """
-        own, journal = self.mission.state(self.now()), self.journal
-        reached = max(journal.reached, self.newest.reached(journal.after))
-        found = find_state(own, journal.damage, journal.after, self.witnesses.seen, self.newest.begun, reached)
-        why = found.stop
-        awaited = self.witnesses.reporting(self.mission.name)
-        stamps = (self.witnesses.seen[node].stamp for node in awaited)
-        if found.adopt is not None:
-            try:
-                journal.adopt(found.adopt, found.adopt.stamp if awaited else rospy.get_time())
-            except DataError as problem:
-                why = f"the observer was restarted, and cannot go on from state {found.adopt.seq}: {problem}"
-        goes_on = awaited and not why and self.mission.status in LIVE
-        floor = max([journal.last, *stamps]) if goes_on else self.now()
-        journal.call("stop" if why else "restarted", *([why] if why else []), now=floor)
-        return Returning(floor, awaited, time.monotonic()) if goes_on else None
+    def take_up(self) -> Inbox:
+        """Take up the mission where the journal and the other nodes have it; stop it where that is unclear."""
+        seen, reporting = self.witnesses.seen, self.witnesses.reporting(self.mission.name)
+        begun, reached = self.newest.begun, self.newest.reached(self.journal.after)
+        now, real = self.now(), time.monotonic()
+        returning = take_up(self.mission, self.journal, seen, reporting, now, real, begun, reached)
+        return Inbox(self.mission, self.journal, self.log_soon, returning)
 
     def await_clock(self) -> None:
         """Wait for simulated time where a mission goes on: it is 0 until /clock was received."""
@@ -219,22 +205,7 @@ class Observer:
     def on_reported(self, node: str) -> None:
         """Handle that a node has reported all that it had to."""
         with self.lock, self.log_lines:
-            if self.returning is not None:
-                self.returning.on_reported(node)
-                self.settle()
-
-    def settle(self, at_once: bool = False) -> None:
-        """Take what was reported of the time without an observer, if nobody is waited for any more."""
-        returning = self.returning
-        if returning is None:
-            return
-        if not (at_once or returning.is_over(time.monotonic())):
-            self.publish([])  # sets the alarm
-            return
-        if returning.missing():
-            self.log_soon("warn", f"no answer on {EVENTS} from {', '.join(returning.missing())}")
-        self.returning = None
-        self.publish(returning.settle(self.mission, self.journal))
+            self.publish(self.inbox.on_reported(node, time.monotonic()))
 
     def is_controller(self, node: str) -> bool:
         """Return True for the name of a controller of the mission, as rospy has it."""
@@ -250,14 +221,11 @@ class Observer:
     def on_alarm(self) -> None:
         """Handle a deadline, or a step that an objective takes by itself; publish a new state once more, for a node
         that did not receive it."""
-        with self.lock:
+        with self.lock, self.log_lines:
             state = self.repeats.due(time.monotonic())
             if state is not None:
                 self.send(self.states, message_of(state))
-            if self.returning is None:
-                self.call("tick")
-            else:
-                self.settle()
+            self.publish(self.inbox.on_alarm(self.now(), time.monotonic()))
 
     def answer(self, answer: PlannerAnswer) -> None:
         """Handle the planner's answer."""
@@ -288,7 +256,7 @@ class Observer:
                     self.call("silent", node)
             with self.lock:
                 due = now >= self.published_at + self.settings.heartbeat
-                if due and self.returning is None and self.mission.status not in ENDED:
+                if due and self.inbox.returning is None and self.mission.status not in ENDED:
                     if self.mission.proposal is not None:
                         self.proposed = 0  # a controller has not reported that it has the plan: publish it again
                     self.publish([self.mission.state(self.now())])
@@ -312,11 +280,7 @@ class Observer:
         with self.lock, self.log_lines:
             if self.over and self.mission.status == WAITING:
                 return
-            if self.returning is not None and name == "hear" and args[0].strip() != STOP:
-                self.returning.hear(args[0], self.now())
-                return
-            self.settle(at_once=True)
-            self.publish(self.journal.call(name, *args, now=self.now()))
+            self.publish(self.inbox.call(name, *args, now=self.now()))
 
     # Publishing -------------------------------------------------------------------------------------------------------
 
@@ -333,12 +297,9 @@ class Observer:
             self.send(self.plans, json.dumps({**proposal, "mission": self.mission.name}))
         self.journal.sync_soon()
         self.planner.request_plan(self.mission.plan_request)
-        repeat = self.repeats.next_moment()
-        patience = None if repeat is None else max(0.0, repeat - time.monotonic())
-        moment = self.mission.next_moment(self.now())
-        if self.returning is not None:
-            moment, patience = None, max(0.0, min(repeat or math.inf, self.returning.deadline) - time.monotonic())
-        self.alarm.set(moment, patience)
+        moment, real = self.inbox.next_moments(self.now())
+        reals = [each for each in (real, self.repeats.next_moment()) if each is not None]
+        self.alarm.set(moment, max(0.0, min(reals) - time.monotonic()) if reals else None)
         if self.mission.status in ENDED and not self.over:
             self.over = True
             if self.mission.status == WON:

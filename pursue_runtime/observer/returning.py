@@ -1,4 +1,4 @@
-"""What a restarted observer hears before the time of the mission goes on: reports of what happened while it was away.
+"""How a restarted observer takes up a mission: it hears first what happened while it was away, then time goes on.
 
 Words are kept until all nodes that may have something to report have said so, and are then taken in the order of the
 times that they carry: as if the observer had been there. Times are seconds of ROS time, `real` of the monotonic clock.
@@ -6,12 +6,15 @@ times that they carry: as if the observer had been there. Times are seconds of R
 
 from __future__ import annotations
 
-from typing import Collection, List, NamedTuple, Set
+from typing import Any, Callable, Collection, List, Mapping, NamedTuple, Optional, Set, Tuple
 
+from pursue_runtime.data import DataError
 from pursue_runtime.observer.journal import Journal
+from pursue_runtime.observer.mark import Rank
 from pursue_runtime.observer.mission import Mission
-from pursue_runtime.state import SystemState
-from pursue_runtime.words import said_at
+from pursue_runtime.observer.witnesses import find_state
+from pursue_runtime.state import LIVE, SystemState
+from pursue_runtime.words import EVENTS, STOP, said_at
 
 PATIENCE = 5.0
 """Seconds of real time for which it waits for these nodes."""
@@ -68,6 +71,87 @@ class Returning:
             states += journal.call("hear", text, now=max(moment, journal.last))
         self._heard = []
         return states
+
+
+class Inbox:
+    """All that comes to a mission: it goes through the journal, and waits while the observer is `returning`.
+
+    Each method returns the states to publish. `now` is ROS time; nothing comes before what is written down.
+    """
+
+    def __init__(
+        self, mission: Mission, journal: Journal, log: Callable[[str, str], None], returning: Optional[Returning] = None
+    ) -> None:
+        """`returning`: as `take_up` returns it; `log` takes a level and a sentence."""
+        self.returning = returning
+        self._mission, self._journal, self._log = mission, journal, log
+
+    def call(self, name: str, *args: Any, now: float) -> List[SystemState]:
+        """Call the mission (a name in CALLS). A word is kept while the observer returns; anything else ends that."""
+        if self.returning is not None and name == "hear" and args[0].strip() != STOP:
+            self.returning.hear(args[0], now)
+            return []
+        states = self._settle()
+        return states + self._journal.call(name, *args, now=max(now, self._journal.last))
+
+    def on_reported(self, node: str, real: float) -> List[SystemState]:
+        """Take that a node has reported all that it had to."""
+        if self.returning is None:
+            return []
+        self.returning.on_reported(node)
+        return self._settle() if self.returning.is_over(real) else []
+
+    def on_alarm(self, now: float, real: float) -> List[SystemState]:
+        """Handle what is due by the time; while the observer returns, only that it has waited long enough."""
+        if self.returning is None:
+            return self.call("tick", now=now)
+        return self._settle() if self.returning.is_over(real) else []
+
+    def next_moments(self, now: float) -> Tuple[Optional[float], Optional[float]]:
+        """Return when to call `on_alarm`, in ROS time and on the monotonic clock; None: never."""
+        if self.returning is None:
+            return self._mission.next_moment(now), None
+        return None, self.returning.deadline
+
+    def _settle(self) -> List[SystemState]:
+        """Take what was reported of the time without an observer."""
+        returning, self.returning = self.returning, None
+        if returning is None:
+            return []
+        if returning.missing():
+            self._log("warn", f"no answer on {EVENTS} from {', '.join(returning.missing())}")
+        return returning.settle(self._mission, self._journal)
+
+
+def take_up(
+    mission: Mission,
+    journal: Journal,
+    seen: Mapping[str, SystemState],
+    reporting: Collection[str],
+    now: float,
+    real: float,
+    begun: bool = True,
+    reached: Rank = (0, False),
+) -> Optional[Returning]:
+    """Take up the mission where the journal and the other nodes have it; stop it where that is unclear.
+
+    `seen`: the newest state that each node has seen; `reporting`: those of these nodes that may have something to
+    report; `begun`, `reached`: as for `find_state`. Return what they have to report of the time in which there was no
+    observer; None where nobody has, or none of them has seen the mission: then nobody knows until when the observer was
+    there.
+    """
+    found = find_state(mission.state(now), journal.damage, journal.after, seen, begun, max(journal.reached, reached))
+    why = found.stop
+    if found.adopt is not None:
+        try:
+            journal.adopt(found.adopt, found.adopt.stamp if reporting else now)
+        except DataError as problem:
+            why = f"the observer was restarted, and cannot go on from state {found.adopt.seq}: {problem}"
+    goes_on = reporting and not why and mission.status in LIVE
+    stamps = (seen[node].stamp for node in reporting)
+    floor = max([journal.last, *stamps]) if goes_on else max(now, journal.last)
+    journal.call("stop" if why else "restarted", *([why] if why else []), now=floor)
+    return Returning(floor, reporting, real) if goes_on else None
 
 
 def _let_time_pass(mission: Mission, journal: Journal, start: float, end: float) -> List[SystemState]:

@@ -110,7 +110,7 @@ class Recorded(SimulatedMission):
     def journal(self) -> bytes:
         """What the observer has written down."""
         head = json.dumps({"format": 1, "scenario": "story", "unit": 1.0})
-        return "".join(f"{line}\n" for line in (head, *self._observer._entries)).encode()
+        return "".join(f"{line}\n" for line in (head, *self._observer._lines)).encode()
 
 
 def kinds(findings: Findings, *levels: str) -> List[str]:

@@ -13,7 +13,7 @@ from pursue_runtime.model import Model
 from pursue_runtime.observer.journal import Journal
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.records import read_records
-from pursue_runtime.observer.returning import PATIENCE, Returning
+from pursue_runtime.observer.returning import PATIENCE, Inbox, Returning, take_up
 from pursue_runtime.strategy import read_cover
 from tests.runtime.observer.test_holding import COVER
 from tests.runtime.observer.test_mission import CHASE, DEADLINE
@@ -48,6 +48,12 @@ class Observer:
         for word in words:
             returning.hear(word, now)
         return returning.settle(self.mission, self.journal)
+
+    def listens(self) -> Inbox:
+        """The observer is back, and waits for what a controller has to report since 110.5."""
+        self.journal.call("restarted", now=110.5)
+        log = lambda level, text: self.logs.append((level, text))
+        return Inbox(self.mission, self.journal, log, Returning(110.5, ["/controller"], 0.0))
 
     def tick(self, now: float) -> None:
         """The alarm rings."""
@@ -126,6 +132,48 @@ def test_it_waits_until_everybody_has_reported_but_not_for_ever() -> None:
     assert returning.is_over(100.0 + PATIENCE)
     returning.on_reported("/two")
     assert returning.is_over(100.0)
+
+
+def test_what_comes_while_it_listens_waits_until_all_have_reported(away: Observer) -> None:
+    inbox = away.listens()
+    assert inbox.call("hear", "answer#2~114.000000", now=130.0) == [] == inbox.on_alarm(130.0, 1.0)
+    assert inbox.next_moments(130.0) == (None, PATIENCE), "no deadline of the mission is handled"
+    assert inbox.on_reported("/somebody", 1.0) == [] and away.mission.seq == 2
+    (state,) = inbox.on_reported("/controller", 1.0)
+    assert (state.event, state.stamp, inbox.returning) == ("answer", 114.0, None)
+
+
+@pytest.mark.parametrize("call", [("hear", "_stop_"), ("back", "controller"), ("tick",)])
+def test_anything_but_a_word_ends_the_wait_and_comes_after_what_was_heard(
+    away: Observer, call: Tuple[str, ...]
+) -> None:
+    inbox = away.listens()
+    inbox.call("hear", "answer#2~114.000000", now=130.0)
+    states = inbox.call(*call, now=130.0)
+    assert (states[0].event, states[0].stamp, inbox.returning) == ("answer", 114.0, None)
+    assert away.mission.status == ("stopped" if "_stop_" in call else "running")
+
+
+def test_who_does_not_report_is_not_waited_for_longer_than_its_patience(away: Observer) -> None:
+    inbox = away.listens()
+    inbox.call("hear", "answer#2~114.000000", now=130.0)
+    assert inbox.on_alarm(130.0 + PATIENCE, PATIENCE)[0].stamp == 114.0
+    assert any("no answer" in text and "/controller" in text for _, text in away.logs)
+
+
+def test_an_observer_listens_only_to_those_that_have_seen_the_mission(away: Observer) -> None:
+    seen = {"/controller": away.mission.state(112.0), "/page": away.mission.state(111.0)}
+    returning = take_up(away.mission, away.journal, seen, ["/controller"], 130.0, 0.0)
+    assert returning is not None
+    assert (returning.floor, returning.missing()) == (112.0, ["/controller"])
+    assert take_up(away.mission, away.journal, seen, [], 130.0, 0.0) is None
+
+
+def test_a_state_that_the_journal_does_not_know_stops_a_mission_at_once(away: Observer) -> None:
+    other = away.mission.state(112.0)
+    seen = {"/controller": other._replace(locations={**other.locations, "bot": "b"})}
+    assert take_up(away.mission, away.journal, seen, ["/controller"], 130.0, 0.0) is None
+    assert away.mission.status == "stopped" and "/controller knows of a state 2" in away.mission.reason
 
 
 WORDS = ("call", "answer", "bot_a2b", "_failed_", "nonsense", "bot:bot_a2b@2", "_ping_", "bot:_failed_#2~113.000000 x")
