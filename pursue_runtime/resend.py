@@ -42,8 +42,7 @@ def resend_timeout(sent: int, reaction: float = 0.0) -> float:
 
 
 class StateRepeats:
-    """Publishes each new state REPEATS times more, as it was published last, at resend intervals, until there is a newer
-    one.
+    """Publishes each new state REPEATS times more, as it was published last, until there is a newer one.
 
     A node that missed the state gets it within the reaction; for all others it is the state that they have.
     """
