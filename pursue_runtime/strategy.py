@@ -136,16 +136,18 @@ class Cover(StateTable[Covered]):
     """For each state the zones in which the strategy knows what to do, and its commands, from cover.yaml.
 
     `stages`: for each stage of the strategy its milestones, locations of automata or values of variables; the stage
-    ends when all are reached. Until then each part of the stage must know what to do. Raises KeyError, TypeError or
-    ValueError.
+    ends when all are reached. Until then each part of the stage must know what to do. `shares`: for each share the
+    places of automata that it avoids; each must know what to do all the time. Raises KeyError, TypeError or ValueError.
     """
 
     def __init__(self, data: Mapping[str, Any]) -> None:
         super().__init__(((entry["state"], _covered(entry)) for entry in data["cover"]), _left_out_clocks(data))
         self._stages = [[(str(name), str(place)) for name, place in stage] for stage in data.get("stages", ())]
+        self._shares = [str(share[0][0]) for share in data.get("shares", ())]
 
     def zones(self, state: SystemState) -> List[List[Zone]]:
-        """The zones of each entry that applies in this state; () where a part of the stage has no entry for it."""
+        """The zones of each entry that applies in this state; () where a part of the stage, or a share, has no entry
+        for it."""
         applying = self.applying(state)
         if any(all(name not in names for names, _ in applying) for name in self._awaited(state)):
             return []
@@ -157,12 +159,12 @@ class Cover(StateTable[Covered]):
         return [zone for zones in found for zone in zones]
 
     def _awaited(self, state: SystemState) -> List[str]:
-        """The automata and variables that are not at their milestones of the present stage."""
+        """The automata and variables that are not at their milestones of the present stage, or one of each share."""
         for stage in self._stages:
             awaited = [name for name, wanted in stage if _parts(state, (name,)) != (wanted,)]
             if awaited:
                 return awaited
-        return []
+        return self._shares
 
 
 def _covered(entry: Mapping[str, Any]) -> Covered:

@@ -32,7 +32,7 @@ class SubStrategy:
 
     `agents` are the automata that it commands; a state in which it has nothing to do is absent. The controller `UI` is
     no program: its commands are instructions to people. `objectives` are those of `agents` that are no agents: the
-    automata of objectives. `left_out_clocks`: as the strategy has them. `in_stages`: it has stages.
+    automata of objectives. `left_out_clocks`: as the strategy has them. `in_parts`: it has stages or shares.
     """
 
     controller: str
@@ -40,7 +40,7 @@ class SubStrategy:
     blocks: Tuple[Tuple[DiscreteState, Tuple[Command, ...]], ...]
     objectives: Tuple[str, ...] = ()
     left_out_clocks: Tuple[str, ...] = ()
-    in_stages: bool = False
+    in_parts: bool = False
 
     @property
     def commands(self) -> int:
@@ -88,7 +88,7 @@ def partition(
             _select(strategy, commanded, controllers == GENERAL),
             tuple(automaton for automaton in commanded if automaton in objectives),
             strategy.left_out_clocks,
-            bool(strategy.stages),
+            strategy.in_parts,
         )
         for name, commanded in owners.items()
     )

@@ -37,17 +37,18 @@ def strategy_data(sub: SubStrategy, reaction: Fraction) -> Dict[str, Any]:
 
 
 def cover_data(strategy: Strategy) -> Dict[str, Any]:
-    """For each state what the strategy does, and in which zones: wait, or a command; its stages, if it has any, and the
-    clocks that it leaves out."""
+    """For each state what the strategy does, and in which zones: wait, or a command; its stages or shares, if it has
+    any, and the clocks that it leaves out."""
     cover: List[Dict[str, Any]] = []
     for block in strategy.blocks:
         does: Dict[str, Any] = {"wait": _zones(block.wait)} if block.wait else {}
         if block.commands:
             does["commands"] = [_command(command) for command in block.commands]
         cover.append({"state": _state(block.state), **does})
-    stages = [[list(place) for place in milestones] for milestones in strategy.stages]
-    left_out = _left_out(strategy.left_out_clocks)
-    return {"format": 3, **({"stages": stages} if stages else {}), **left_out, "cover": cover}
+    parts = {"stages": strategy.stages, "shares": strategy.shares}
+    places = {name: [[list(place) for place in some] for some in all_of_them] for name, all_of_them in parts.items()}
+    named = {name: some for name, some in places.items() if some}
+    return {"format": 3, **named, **_left_out(strategy.left_out_clocks), "cover": cover}
 
 
 def _left_out(clocks: Sequence[str]) -> Dict[str, List[str]]:

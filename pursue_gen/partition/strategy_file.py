@@ -14,6 +14,7 @@ from pursue_gen.synthesis.strategy import Strategy
 
 _WHEREVER = "Whoever a state does not name may be anywhere, and is not waited for."
 _STAGES = "Stages are played one after the other: each ends where all of its places are reached."
+_SHARES = "Shares are played at the same time: each avoids its places, and has an entry of its own in every state."
 
 
 def render(sub: SubStrategy, scenario_name: str, generator: str, reaction: Fraction) -> str:
@@ -25,7 +26,7 @@ def render(sub: SubStrategy, scenario_name: str, generator: str, reaction: Fract
     head = (
         f"Strategy of {sub.controller} in {scenario_name}, written by pursue-gen {generator}.",
         "In a state below, the command is due as soon as one of its zones (clocks in time units) holds.",
-        *((_WHEREVER,) if sub.in_stages else ()),
+        *((_WHEREVER,) if sub.in_parts else ()),
     )
     data = strategy_data(sub, reaction)
     for name in ("commands_agents", "left_out_clocks"):
@@ -40,11 +41,12 @@ def render_cover(strategy: Strategy, scenario_name: str, generator: str) -> str:
     head = (
         f"What the strategy for {scenario_name} does, written by pursue-gen {generator}.",
         "In a state below, it waits or commands as long as one of the zones (clocks in time units) holds.",
-        *((_WHEREVER, _STAGES) if strategy.stages else ()),
+        *((_WHEREVER, _SHARES if strategy.shares else _STAGES) if strategy.in_parts else ()),
     )
     data = cover_data(strategy)
-    if "stages" in data:
-        data["stages"] = [inline(milestones) for milestones in data["stages"]]
+    for name in ("stages", "shares"):
+        if name in data:
+            data[name] = [inline(places) for places in data[name]]
     if "left_out_clocks" in data:
         data["left_out_clocks"] = inline(data["left_out_clocks"])
     data["cover"] = [{**entry, "state": inline(entry["state"])} for entry in data["cover"]]

@@ -21,6 +21,7 @@ from pursue_gen.proof.left_out import proven_part
 from pursue_gen.proof.moves import Arena
 from pursue_gen.proof.native.search import searches_of
 from pursue_gen.proof.search import Depth, Found, Searches
+from pursue_gen.proof.shares import shares_of
 from pursue_gen.proof.stages import Part, parts_of
 from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits, Listener
 from pursue_gen.synthesis.strategy import Command, Strategy, Zone, ZoneKey
@@ -86,11 +87,11 @@ def verify(
     if reaction < 0:
         raise PursueError([error("SYN103", f"the reaction time is {reaction}", hint="give 0 or more time units")], 2)
     prompt = reaction == 0 if prompt is None else prompt
-    if strategy.stages:
-        if strategy.left_out_clocks:
+    if strategy.in_parts:
+        if strategy.stages and strategy.left_out_clocks:
             return Report(False, "left out: a strategy in stages leaves no clock out", (), frozenset(), 0)
         how = limit, prompt, limits, progress
-        return _in_stages(network, objective, strategy, reaction, ranks, how)
+        return _in_parts(network, objective, strategy, reaction, ranks, how)
     part, matters = proven_part(network, objective, strategy)
     if matters:
         return Report(False, f"left out: the strategy does not speak of what matters: {matters}", (), frozenset(), 0)
@@ -127,7 +128,7 @@ def _names_all(part: Network, strategy: Strategy) -> bool:
     )
 
 
-def _in_stages(
+def _in_parts(
     network: Network,
     objective: Objective,
     strategy: Strategy,
@@ -135,13 +136,14 @@ def _in_stages(
     ranks: Optional[Mapping[ZoneKey, int]],
     how: Tuple[int, Optional[bool], Limits, Optional[Listener]],
 ) -> Report:
-    """The outcome of all stages, each of which has to win; `ranks` are those within the stages."""
+    """The outcome of all stages or shares, each of which has to win; `ranks` are those within them."""
     limit, prompt, limits, progress = how
     used: Set[ZoneKey] = set()
     states, start = 0, time.monotonic()
-    for part in parts_of(network, objective, strategy):
+    called, taken_apart = ("share", shares_of) if strategy.shares else ("stage", parts_of)
+    for part in taken_apart(network, objective, strategy):
         if part.fault:
-            reason = f"left out: stage {part.stage + 1} cannot be played: {part.fault}"
+            reason = f"left out: {called} {part.stage + 1} cannot be played: {part.fault}"
             return Report(False, reason, (), frozenset(), states)
         own = None if ranks is None else _ranks_of(part, ranks)
         left = max(1, limit - states), prompt, own, limits.since(start), progress

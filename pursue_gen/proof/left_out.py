@@ -19,6 +19,7 @@ from pursue_gen.proof.live import Places, commanded, live
 from pursue_gen.proof.moves import Arena, Bound
 from pursue_gen.proof.zones import without
 from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga.hidden import is_loosened, why_not_hidden
 from pursue_gen.tga.network import Automaton, Edge, Network, Objective
 from pursue_gen.tga.part import clocks_of, part_of, start_of
 from pursue_gen.tga.pauses import without_clocks
@@ -27,13 +28,16 @@ from pursue_gen.zones.dbm import Dbm, raw
 
 
 def named_part(network: Network, strategy: Strategy) -> Network:
-    """The part of the network that the strategy speaks of; the network itself where it names everything, or has stages.
+    """The part of the network that the strategy speaks of; the network itself where it names everything, or has stages
+    or shares.
 
     The first block says what is named: one that names something else covers nothing. The clocks that it leaves out are
     not in the part.
     """
+    if strategy.shares:
+        return network
     names = _names(network, strategy)
-    part = network if names is None else _with_clocks_of(part_of(network, *names), network, strategy)
+    part = network if names is None else with_clocks_of(part_of(network, *names), network, strategy)
     return without_clocks(part, strategy.left_out_clocks)
 
 
@@ -51,7 +55,7 @@ def _named_of(network: Network, objective: Objective, strategy: Strategy) -> Tup
     if names is None:
         return network, ""
     alive, extent = live(network, commanded(strategy.blocks))
-    part = _with_clocks_of(part_of(alive, *names), network, strategy)
+    part = with_clocks_of(part_of(alive, *names), network, strategy)
     return part, why_it_matters(alive, objective, part, extent.places)
 
 
@@ -86,7 +90,7 @@ def _compared(strategy: Strategy) -> Set[Optional[str]]:
     return {name for zone in zones for constraint in zone for name in (constraint.left, constraint.right)}
 
 
-def _with_clocks_of(part: Network, network: Network, strategy: Strategy) -> Network:
+def with_clocks_of(part: Network, network: Network, strategy: Strategy) -> Network:
     """The part with the clocks that the strategy compares, though only dead edges of the part's automata may.
 
     Where the network says how its clocks start, all clocks of these automata stay: it may say so by differences.
@@ -101,7 +105,7 @@ def _with_clocks_of(part: Network, network: Network, strategy: Strategy) -> Netw
 
 def _names(network: Network, strategy: Strategy) -> Optional[Tuple[Set[str], Set[str]]]:
     """The automata and variables that a strategy names; None where these are all, or it names unknown ones."""
-    if not strategy.blocks or strategy.stages:
+    if not strategy.blocks or strategy.in_parts:
         return None
     state = strategy.blocks[0].state
     automata, variables = {name for name, _ in state.locations}, {name for name, _ in state.values}
@@ -114,12 +118,18 @@ def _names(network: Network, strategy: Strategy) -> Optional[Tuple[Set[str], Set
 
 
 def why_it_matters(
-    network: Network, objective: Objective, part: Network, places: Optional[Places] = None, from_start: bool = True
+    network: Network,
+    objective: Objective,
+    part: Network,
+    places: Optional[Places] = None,
+    from_start: bool = True,
+    hiding: bool = False,
 ) -> str:
     """Why what the part of the network leaves out may matter in it; "" if it cannot.
 
     `places`: where its automata may come to (see `live`); None: where they may without commands. `from_start`: they
-    begin in their initial locations, not in the middle of a play.
+    begin in their initial locations, not in the middle of a play. `hiding`: what is left out may do to the part what
+    `tga.hidden` lets it do.
     """
     places = live(network, frozenset())[1].places if places is None else places
     kept = {automaton.name: automaton for automaton in part.automata}
@@ -129,21 +139,22 @@ def why_it_matters(
             return f"the objective is about {name}"
     for automaton in network.automata:
         if automaton.name in kept:
-            why = _why_an_edge_matters(automaton, kept[automaton.name], part)
+            why = _why_an_edge_matters(automaton, kept[automaton.name], part, hiding)
         else:
-            why = _why_it_is_seen(automaton, noticed)
+            why = why_not_hidden(automaton, part) if hiding else _why_it_is_seen(automaton, noticed)
             why = why or _why_it_may_stop_time(automaton, network, places[automaton.name], from_start)
         if why:
             return f"{automaton.name} {why}"
     return ""
 
 
-def _why_an_edge_matters(automaton: Automaton, kept: Automaton, part: Network) -> str:
-    """Why an edge of the automaton that the part does not have may change something there."""
+def _why_an_edge_matters(automaton: Automaton, kept: Automaton, part: Network, hiding: bool) -> str:
+    """Why an edge of the automaton that the part does not have may change something there, other than by a move of the
+    environment."""
     variables = {name for name, _ in part.variables}
     listened = _channels(a for a in part.automata if a.name != automaton.name)[1]
     for edge in automaton.edges:
-        if edge in kept.edges:
+        if edge in kept.edges or (hiding and is_loosened(edge, automaton, kept)):
             continue
         what = f"may go from {edge.source} to {edge.target}"
         if edge.source != edge.target or edge.resets or any(name in variables for name, _ in edge.assign):

@@ -63,7 +63,7 @@ def strategy_margin(
     if len(strategy.blocks) > _BLOCKS * states:
         return Margin(reaction, None)
     part = named_part(network, strategy)
-    left, arenas = states, None if strategy.stages else Arena.kept(part)
+    left, arenas = states, None if strategy.in_parts else Arena.kept(part)
 
     def wins(delay: Fraction) -> Optional[bool]:
         nonlocal left

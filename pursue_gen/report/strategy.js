@@ -236,11 +236,12 @@
     if (!k || book.parts[k - 1][0] !== stage) {
       const count = book.parts.filter((part) => part[0] === stage).length;
       const begins = stage ? "when stage " + stage + " is done" : "from the start";
-      at("tree").append(make("h4", {}, `Stage ${stage + 1} of ${stages}, ${begins}${together(count)}`));
+      at("tree").append(make("h4", {}, until ? `Stage ${stage + 1} of ${stages}, ${begins}${together(count)}`
+        : `${count} shares, played at the same time`));
     }
     const end = k + 1 < book.parts.length ? book.parts[k + 1][3] : book.states.length;
     const names = who.map((name) => book.automata.find((a) => a.name === name).shown).join(" and ");
-    at("tree").append(make("p", {}, make("span", { className: "who" }, names), `${names ? " play" + (who.length > 1 ? "" : "s") : "Played"} until “${until}”.`),
+    at("tree").append(make("p", {}, make("span", { className: "who" }, names), `${names ? " play" + (who.length > 1 ? "" : "s") : "Played"}${until ? ` until “${until}”` : ""}.`),
       stage ? situations(first, end) : card(first));
   });
   if (!stages) at("tree").append(card(0));

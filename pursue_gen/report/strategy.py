@@ -43,9 +43,12 @@ def _stages(strategy: StrategyData) -> List[str]:
     if not strategy.parts:
         return []
     stages = strategy.parts[-1].stage + 1
+    in_stages, called = f"in {counted(stages, 'stage')}, one after the other", "part of a stage"
+    if not any(part.until for part in strategy.parts):
+        in_stages, called = f"in {counted(len(strategy.parts), 'share')}, all at the same time", "share"
     text = (
-        f"It is played in {counted(stages, 'stage')}, one after the other. A part of a stage speaks only of those who "
-        "matter to it: all others may be anywhere and do whatever they can, and its commands are right all the same."
+        f"It is played {in_stages}. A {called} speaks only of those who matter to it: all others may be anywhere and "
+        "do whatever they can, and its commands are right all the same."
     )
     return [f"<p>{text}</p>"]
 

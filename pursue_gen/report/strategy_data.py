@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from string import ascii_letters
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.explanation.network_words import Words, words_of, zone_texts
 from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Reach, Scenario
 from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
+from pursue_gen.proof.live import commanded
 from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import Game, State, initial_state, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import DiscreteState, Place, Strategy, Zone
+from pursue_gen.tga.network import Objective
 from pursue_gen.tga.objectives import stated
 
 Key = Tuple[Tuple[str, str, str, str], ...]
@@ -52,7 +54,8 @@ class Situation:
 
 @dataclass(frozen=True)
 class StagePart:
-    """A part of a stage (counted from 0): the robots that play it, the words for what ends it, its first situation."""
+    """A part of a stage (counted from 0), or a share: the robots that play it, the words for what ends it ("" of a
+    share: nothing does), its first situation."""
 
     stage: int
     who: Tuple[str, ...]
@@ -65,8 +68,8 @@ class StrategyData:
     """All situations, the initial one first; zones as (words, exact text).
 
     `automata`: name, kind (see `_kind`), and for each of its places the words and the parts of `Words`. `left_out`: the
-    automata that the strategy does not speak of, as they cannot matter. `parts`: of a strategy in stages; the last
-    place of each automaton then stands for all: the part does not speak of it.
+    automata that the strategy does not speak of, as they cannot matter. `parts`: of a strategy in stages or shares; the
+    last place of each automaton then stands for all: the part does not speak of it.
     """
 
     automata: Tuple[Tuple[str, str, Tuple[Tuple[str, Tuple[str, ...]], ...]], ...]
@@ -92,8 +95,8 @@ _ANYWHERE: Tuple[str, Tuple[str, ...]] = ("anywhere", ())
 
 def strategy_data_of(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyData:
     """The data of a solution's strategy; `reach_obj` as for `partition`, which decides the controller of a command."""
-    if won.strategy.stages:
-        return _in_stages(scenario, won, reach_obj)
+    if won.strategy.in_parts:
+        return _in_parts(scenario, won, reach_obj)
     builder = _Builder(scenario, won)
     owners = _owners(scenario, won, reach_obj)
     automata = tuple(
@@ -116,8 +119,18 @@ def _owners(scenario: Scenario, won: Solution, reach_obj: str) -> Dict[str, Tupl
     return owners
 
 
-def _in_stages(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyData:
-    """The situations of each part of each stage, one after the other; whom a part does not name may be anywhere."""
+def _objectives(won: Solution) -> Iterator[Tuple[int, Place, Objective, bool]]:
+    """The parts of the strategy: the number of each one's stage, its place, its objective, whether it is in the last
+    stage. Shares are all in the first one."""
+    for avoided in won.strategy.shares:
+        yield 0, avoided[0], replace(won.objective, bad=avoided), True
+    for stage, milestones in enumerate(won.strategy.stages):
+        for place in milestones:
+            yield stage, place, replace(won.objective, goal=(place,)), stage == len(won.strategy.stages) - 1
+
+
+def _in_parts(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyData:
+    """The situations of each part, one after the other; whom a part does not name may be anywhere."""
     named = {name for block in won.strategy.blocks for name, _ in block.state.locations}
     every = [automaton.name for automaton in won.network.automata if automaton.name in named]
     words = _Builder(scenario, replace(won, strategy=Strategy(())))
@@ -132,19 +145,20 @@ def _in_stages(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyDat
     zones: List[Tuple[str, str]] = []
     situations: List[Situation] = []
     parts: List[StagePart] = []
-    for stage, milestones in enumerate(won.strategy.stages):
-        for place in milestones:
-            blocks = tuple(won.strategy.blocks[n] for n in won.strategy.numbers_of(stage, place))
-            own = replace(won, objective=replace(won.objective, goal=(place,)), strategy=Strategy(blocks))
-            builder = _Builder(scenario, replace(own, network=own.part), words.words)
-            at = [every.index(automaton.name) for automaton in builder.game.automata]
-            which = [shown.index(name) for name in builder.shown]
-            is_last = stage == len(won.strategy.stages) - 1
-            who = tuple(name for name, kind, _ in (automata[k] for k in at) if kind == "robot")
-            parts.append(StagePart(stage, who, _until(scenario, words.words, place), len(situations)))
-            moved = _Moved(free, at, which, len(zones), len(situations), is_last)
-            situations += [moved.situation(some) for some in builder.situations()]
-            zones += builder.zones
+    for number, (stage, place, wanted, is_last) in enumerate(_objectives(won)):
+        key = number if won.strategy.shares else stage
+        blocks = tuple(won.strategy.blocks[n] for n in won.strategy.numbers_of(key, place))
+        own = replace(won, objective=wanted, strategy=Strategy(blocks))
+        builder = _Builder(scenario, replace(own, network=own.part), words.words)
+        at = [every.index(automaton.name) for automaton in builder.game.automata]
+        which = [shown.index(name) for name in builder.shown]
+        moving = {name for name, _ in commanded(blocks)}
+        who = tuple(name for name, kind, _ in (automata[k] for k in at) if kind == "robot" and name in moving)
+        until = "" if won.strategy.shares else _until(scenario, words.words, place)
+        parts.append(StagePart(stage, who, until, len(situations)))
+        moved = _Moved(free, at, which, len(zones), len(situations), is_last)
+        situations += [moved.situation(some) for some in builder.situations()]
+        zones += builder.zones
     left_out = tuple(automaton.name for automaton in won.network.automata if automaton.name not in named)
     owners = _owners(scenario, won, reach_obj)
     found = tuple(zones), tuple(situations), left_out, scenario.labels, tuple(parts)

@@ -45,7 +45,7 @@ class Remaining:
         """How often to look ahead where many missions are to be played: less often in larger games."""
         self._known: Dict[Tuple[State, Tuple[int, ...]], Optional[float]] = {}
         self._met = 0  # symbolic states that were looked at
-        if won.objective.kind is Kind.SAFETY or won.strategy.stages:
+        if won.objective.kind is Kind.SAFETY or won.strategy.in_parts:
             return
         part = won.part
         game = with_deadline(with_counter(part), won.objective, LONGEST)

@@ -16,6 +16,7 @@ from pursue_gen.proof.checker import LIMIT, verify
 from pursue_gen.proof.known import Known, at_start
 from pursue_gen.proof.live import Commanded, Extent, is_controllers, live, taken_over
 from pursue_gen.proof.stages import after_stage, is_sure, stage_objective
+from pursue_gen.solving.found import Found, stats_of_all
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.subgoals import Subgoal, commanded_agents, protections, subgoals
@@ -44,14 +45,6 @@ _MOST = 4
 def little_work(network: Network) -> int:
     """The work that is spent on a game in one piece before anything else is tried."""
     return max(1, _FIRST // (len(network.clocks) + 1) ** 2)
-
-
-@dataclass(frozen=True)
-class Found:
-    """A proven strategy, and what it took to find it."""
-
-    strategy: Strategy
-    stats: Stats
 
 
 def won_by_some(
@@ -106,11 +99,7 @@ class _Search:
 
     def stats(self) -> Stats:
         """What all the games took."""
-        counts = [
-            (some.discrete_states, some.zones, some.seconds, some.symbolic_states, some.work) for some in self._verdicts
-        ]
-        states, zones, seconds, symbolic, work = (sum(column) for column in zip(*counts))
-        return Stats(self._verdicts[0].engine, int(states), int(zones), seconds, int(symbolic), int(work))
+        return stats_of_all(self._verdicts)
 
     def found(self) -> Optional[Strategy]:
         """The first strategy that is found; raises PursueError at a limit."""

@@ -54,7 +54,7 @@ def prove(
         hint = "this is a fault of the strategy, not of the scenario" + play_that_shows(report)
         raise NotProven([error("SYN020", f"the strategy does not win: {report.reason}", hint=hint)])
     kept = pruned(strategy, report)
-    if not simpler or report.states > _LITTLE or kept.stages:
+    if not simpler or report.states > _LITTLE or kept.in_parts:
         return kept
     left = None if ranks is None else pruned_ranks(strategy, report, ranks)
     fewer = simplified(named_part(network, kept), kept, reaction, left)

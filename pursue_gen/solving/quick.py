@@ -69,7 +69,7 @@ def quick(won: Solution, options: SolveOptions) -> Solution:
     known = guaranteed(won, STATES, options.limits)
     stats = won.stats
     hard = stats is not None and (stats.work > _HARD or stats.discrete_states > _MANY)
-    if hard or won.strategy.stages or (known.worst is not None and known.worst <= _ENOUGH * known.least):
+    if hard or won.strategy.in_parts or (known.worst is not None and known.worst <= _ENOUGH * known.least):
         return replace(won, guarantee=known)
     scale = min(1.0, (_CLOCKS / (len(won.part.clocks) + 1)) ** 3)
     budget = _budget(options.since(start), WORK, _DISCRETE_STATES, scale)

@@ -12,12 +12,15 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit, Lost, NotProven
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.worst_case import LIMIT, with_counter, worst_case
-from pursue_gen.solving.crowds import Found, has_parts, little_work, won_by_some, works_in_parallel
+from pursue_gen.solving.crowds import has_parts, little_work, won_by_some, works_in_parallel
+from pursue_gen.solving.found import Found
 from pursue_gen.solving.least_time import Guarantee, bounds, fastest, unscaled
+from pursue_gen.solving.lost_promises import lost_promises, only_promises
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL, Rules, played
+from pursue_gen.solving.shares import can_be_shared, won_in_shares
 from pursue_gen.solving.without_pauses import lost_to_few_calls, verdict_with, won_without_pauses
 from pursue_gen.synthesis.cone import out_of_reach
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
@@ -89,6 +92,9 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
         known = _with_little_work(game, objective, rules.reaction, options)
         if isinstance(known, Found):
             return Solution(game, objective, known.strategy, rules.reaction, known.stats, rules=rules)
+        if isinstance(known, Objective):
+            part = only_promises(network, objective, known.bad)
+            raise Lost([_cannot_be_met(part, known, rules, options.since(start), len(objective.bad))])
         verdict = known
     if verdict is None and in_parts and lost_to_few_calls(game, objective, rules.reaction, options.since(start)):
         raise Lost([_cannot_be_met(network, objective, rules, options.since(start))])
@@ -141,11 +147,20 @@ def _smaller(won: Solution, options: SolveOptions) -> Solution:
 
 def _with_little_work(
     game: Network, objective: Objective, reaction: Fraction, options: SolveOptions
-) -> Union[Verdict, Found, None]:
-    """The verdict in one piece, or a proven strategy that leaves out agents, or pauses of the environment; None where
-    little work finds neither (see `crowds` and `without_pauses`)."""
+) -> Union[Verdict, Found, Objective, None]:
+    """The verdict in one piece, or a proven strategy that leaves out agents, or pauses of the environment, or a part of
+    the objective that is lost; None where little work finds neither (see `shares`, `lost_promises`, `crowds` and
+    `without_pauses`)."""
     start, work, rests = time.monotonic(), little_work(game), bool(pauses(game))
-    verdict = verdict_with(game, objective, reaction, min(work, _EASY) if rests else work, options)
+    shared = can_be_shared(game, objective)
+    verdict = verdict_with(game, objective, reaction, min(work, _EASY) if rests or shared else work, options)
+    if verdict is None and shared:
+        found = won_in_shares(game, objective, reaction, options.since(start))
+        if found is not None:
+            return found
+        lost = lost_promises(game, objective, reaction, options.since(start))
+        if lost:
+            return replace(objective, bad=lost)
     if verdict is None and rests:
         found = won_without_pauses(game, objective, reaction, work, options.since(start))
         if found is not None:
@@ -209,9 +224,15 @@ def solve_scenario(scenario: Scenario, rules: Rules, options: SolveOptions = DEF
     return solution(translate(scenario), scenario_objective(scenario), rules, options)
 
 
-def _cannot_be_met(network: Network, objective: Objective, rules: Rules, options: SolveOptions) -> Diagnostic:
+def _cannot_be_met(
+    network: Network, objective: Objective, rules: Rules, options: SolveOptions, promises: int = 0
+) -> Diagnostic:
+    """That the objective cannot be met; `promises`: so many there are, of which those of the objective are lost."""
     reaction = f"{float(rules.reaction):g}"
     message = f"the objective cannot be met with ends {rules.ends} and a reaction of {reaction} time units"
+    if len(objective.bad) < promises:
+        which = " and ".join(name for name, _ in objective.bad)
+        message += f"; {which} alone cannot be kept, even if nothing else is wanted"
     hint = "the agents that nobody controls can always prevent it: give the robots more time or speed, or fewer duties"
     alone = out_of_reach(network, objective)
     if alone:

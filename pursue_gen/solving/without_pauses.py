@@ -15,7 +15,7 @@ from typing import Optional
 
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT
-from pursue_gen.solving.crowds import Found
+from pursue_gen.solving.found import Found
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.synthesis.budget import Budget

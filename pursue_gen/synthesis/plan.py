@@ -18,7 +18,7 @@ from typing import Dict, List, NoReturn, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_gen.outcomes import NotProven
-from pursue_gen.synthesis.plan_parts import left_out_lines, read_left_out_clocks, read_stages, spoken_of
+from pursue_gen.synthesis.plan_parts import left_out_lines, read_left_out_clocks, read_shares, read_stages, spoken_of
 from pursue_gen.synthesis.plan_text import (
     ALWAYS,
     assign_meaning,
@@ -70,10 +70,10 @@ class _Names:
 class _Reader:
     """Reads one plan, line by line. The caches hold what many lines say alike."""
 
-    def __init__(self, names: _Names, file: str, in_stages: bool) -> None:
-        """`in_stages`: a state may leave out automata and variables."""
+    def __init__(self, names: _Names, file: str, in_parts: bool) -> None:
+        """`in_parts`: a state may leave out automata and variables."""
         self.names = names
-        self.in_stages = in_stages
+        self.in_parts = in_parts
         self.file = file
         self.line = 1
         self.text = ""
@@ -145,7 +145,7 @@ class _Reader:
             if name not in known:
                 self.fail("PLN005", f"the network has no {what} '{name}'", _OTHER_NETWORK)
         for name in known:
-            if name not in given and not self.in_stages:
+            if name not in given and not self.in_parts:
                 self.fail("PLN006", f"the state says nothing of {what} '{name}'", _OTHER_NETWORK)
 
     def location(self, automaton: str, printed: str) -> str:
@@ -243,8 +243,9 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     if header is None:
         raise _no_strategy(text, file)
     above = text[: header.start()]
-    stages, left_out_clocks = read_stages(above, network, file), read_left_out_clocks(above, network, file)
-    reader = _Reader(_Names(spoken_of(above, network, file)), file, bool(stages))
+    stages, shares = read_stages(above, network, file), read_shares(above, network, file)
+    left_out_clocks = read_left_out_clocks(above, network, file)
+    reader = _Reader(_Names(spoken_of(above, network, file)), file, bool(stages or shares))
     first = text.count("\n", 0, header.end()) + 1
     blocks: List[Block] = []
     seen: Set[DiscreteState] = set()
@@ -266,7 +267,7 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     if not blocks:
         reader.line, reader.text = first, ""
         reader.fail("PLN003", "the strategy is empty: no state follows its title", _RUN_AGAIN)
-    return Strategy(tuple(blocks), header.group(1).lower().startswith("counter"), stages, left_out_clocks)
+    return Strategy(tuple(blocks), header.group(1).lower().startswith("counter"), stages, left_out_clocks, shares)
 
 
 def _start(reader: _Reader, line: str, seen: Set[DiscreteState]) -> _Open:

@@ -1,19 +1,20 @@
-"""The lines of a plan that say what it does not speak of, or which stages it has, written and read:
+"""The lines of a plan that say what it does not speak of, or which stages or shares it has, written and read:
 
     -- Left out: visitor Pvisitor
     -- Left out clocks: Cguest
     -- Stage: Slocked=1
     -- Stage: rule1.rule10 rule2.rule20
     -- Stage: reachObj.win
+    -- Share: obj.lose obj3.lose
 
-In a plan with stages each block names what matters to it. A stage's milestones are locations of automata and values of
-variables.
+In a plan with stages or shares each block names what matters to it. A stage's milestones are locations of automata and
+values of variables; a share's places are what it avoids.
 """
 
 from __future__ import annotations
 
 import re
-from typing import List, Match, Set, Tuple
+from typing import List, Match, Pattern, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_gen.synthesis.strategy import Place, Strategy
@@ -22,6 +23,7 @@ from pursue_gen.tga.network import Network
 from pursue_gen.tga.part import part_of
 
 _STAGE = re.compile(r"^ -- Stage:(.*)$", re.MULTILINE)
+_SHARE = re.compile(r"^ -- Share:(.*)$", re.MULTILINE)
 _LEFT_OUT_CLOCKS = re.compile(r"^ -- Left out clocks:(.*)$", re.MULTILINE)
 _LEFT_OUT = re.compile(r"^ -- Left out:(.*)$", re.MULTILINE)
 
@@ -29,10 +31,13 @@ _LEFT_OUT = re.compile(r"^ -- Left out:(.*)$", re.MULTILINE)
 def left_out_lines(strategy: Strategy, network: Network) -> List[str]:
     """The lines with the automata, variables and clocks that the strategy leaves out; none where there are none.
 
-    Of a strategy in stages a line for each of them, with its milestones.
+    Of a strategy in stages a line for each of them, with its milestones; of one in shares with what each avoids.
     """
     if not strategy.blocks:
         return []
+    clocks = [f" -- Left out clocks: {' '.join(strategy.left_out_clocks)}"] if strategy.left_out_clocks else []
+    if strategy.shares:
+        return [*(f" -- Share: {' '.join(map('.'.join, avoided))}" for avoided in strategy.shares), *clocks]
     if strategy.stages:
         variables = dict(network.variables)
         return [
@@ -43,20 +48,30 @@ def left_out_lines(strategy: Strategy, network: Network) -> List[str]:
     named = {name for name, _ in (*state.locations, *state.values)}
     every = (*(automaton.name for automaton in network.automata), *(name for name, _ in network.variables))
     left = [name for name in every if name not in named]
-    lines = [f" -- Left out: {' '.join(left)}"] if left else []
-    return lines + [f" -- Left out clocks: {' '.join(clocks)}" for clocks in (strategy.left_out_clocks,) if clocks]
+    return [*([f" -- Left out: {' '.join(left)}"] if left else []), *clocks]
 
 
 def read_stages(text: str, network: Network, file: str) -> Tuple[Tuple[Place, ...], ...]:
     """The stages of a plan, whose text above its title this is. Raises PursueError for an unknown milestone."""
+    return _read_places(text, network, file, _STAGE, "milestone")
+
+
+def read_shares(text: str, network: Network, file: str) -> Tuple[Tuple[Place, ...], ...]:
+    """The shares of such a plan. Raises PursueError for an unknown place."""
+    return _read_places(text, network, file, _SHARE, "share for")
+
+
+def _read_places(
+    text: str, network: Network, file: str, line: Pattern[str], what: str
+) -> Tuple[Tuple[Place, ...], ...]:
     known = {(automaton.name, location.name) for automaton in network.automata for location in automaton.locations}
     stages: List[Tuple[Place, ...]] = []
-    for match in _STAGE.finditer(text):
+    for match in line.finditer(text):
         milestones = []
         for word in match.group(1).split():
             name, sign, value = re.split(r"([.=]|$)", word, maxsplit=1)
             if not (is_value(network, (name, value)) if sign == "=" else (name, value) in known):
-                raise _unknown(text, match, f"the plan has a milestone '{word}', which the network does not have", file)
+                raise _unknown(text, match, f"the plan has a {what} '{word}', which the network does not have", file)
             milestones.append((name, value))
         stages.append(tuple(milestones))
     return tuple(stages)

@@ -61,6 +61,10 @@ class Strategy:
     the stage ends when all of them are. A block is for one milestone: the one that it names and is not at, of the first
     stage that is not over.
 
+    One in `shares` has for each of them the places that it is to avoid, of automata that no other share names. Shares
+    are played at the same time, by different agents: a block belongs to the one whose places it names (see
+    `proof.shares`). A strategy has stages or shares, or neither.
+
     `left_out_clocks`: pauses of the environment (see `tga.pauses`) on which it does not rely. Its zones do not compare
     them, it wins whatever they are, and what only resets them makes no command stale.
     """
@@ -69,18 +73,27 @@ class Strategy:
     counter: bool = False
     stages: Tuple[Tuple[Place, ...], ...] = ()
     left_out_clocks: Tuple[str, ...] = ()
+    shares: Tuple[Tuple[Place, ...], ...] = ()
+
+    @property
+    def in_parts(self) -> bool:
+        """True if its blocks do not all name the same: it has stages or shares."""
+        return bool(self.stages or self.shares)
 
     def numbers_of(self, stage: int, place: Place) -> Tuple[int, ...]:
-        """The numbers of the blocks that lead to a milestone."""
+        """The numbers of the blocks that lead to a milestone; of a share: `place` is its first one."""
         return tuple(n for n, part in enumerate(self.parts) if part == (stage, place))
 
     @cached_property
     def parts(self) -> Tuple[Optional[Tuple[int, Place]], ...]:
-        """For each block its stage and milestone; None where it has none."""
+        """For each block its stage and milestone, or its share and the first place of that; None where it has none."""
         return tuple(map(self._part, self.blocks))
 
     def _part(self, block: Block) -> Optional[Tuple[int, Place]]:
         places = {**{name: str(value) for name, value in block.state.values}, **dict(block.state.locations)}
+        if self.shares:
+            own = [k for k, avoided in enumerate(self.shares) if any(name in places for name, _ in avoided)]
+            return (own[0], self.shares[own[0]][0]) if len(own) == 1 else None
         for stage, milestones in enumerate(self.stages):
             open_ones = [place for place in milestones if places.get(place[0]) != place[1]]
             if open_ones:

@@ -73,7 +73,7 @@ def of_the_whole(network: Network, strategy: Strategy) -> Strategy:
         commands = []
         for block in found:
             for command in block.commands:
-                made = [move for move in moves if is_meant(move, command, block)]
+                made = [move for move in moves if is_meant(move, command)]
                 pending += [move.target for move in made]
                 commands += [Command(command.zones, move.moves) for move in made]
         if found:
@@ -87,10 +87,9 @@ def applies(block: Block, state: DiscreteState) -> bool:
     return set(block.state.locations) <= set(state.locations) and set(block.state.values) <= set(state.values)
 
 
-def is_meant(move: JointMove, command: Command, block: Block) -> bool:
-    """True if those whom the block names do in the move what the command says."""
-    named = {name for name, _ in block.state.locations}
-    return move.controllable and set(command.moves) == {part for part in move.moves if part.automaton in named}
+def is_meant(move: JointMove, command: Command) -> bool:
+    """True if the move is what the command says; others may take part in it of whom its part does not know that."""
+    return move.controllable and set(command.moves) <= set(move.moves)
 
 
 VISITS = hand_to_visitors(2)

@@ -40,3 +40,14 @@ def test_a_cover_without_stages_is_covered_where_an_entry_applies() -> None:
     plain = {**DATA, "stages": []}
     state = SystemState(1, 0.0, {"one": "b", "two": "a", "left": "open", "right": "open", "goal": "run"}, {}, {})
     assert len(read_cover(plain).zones(state)) == 1
+
+
+def test_each_share_has_to_know_what_to_do_all_the_time() -> None:
+    entries = [
+        {"state": {"bot1": "a", "obj": "idle"}, "wait": ["always"]},
+        {"state": {"bot2": "c", "obj2": "idle"}, "wait": ["Cbot2 <= 3"]},
+    ]
+    cover = read_cover({"shares": [[["obj", "lose"]], [["obj2", "lose"]]], "cover": entries})
+    both = {"bot1": "a", "bot2": "c", "obj": "idle", "obj2": "idle"}
+    assert len(cover.zones(SystemState(1, 0.0, both, {}, {}))) == 2
+    assert cover.zones(SystemState(1, 0.0, {**both, "bot2": "elsewhere"}, {}, {})) == []

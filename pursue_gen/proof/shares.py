@@ -1,0 +1,125 @@
+"""A strategy in shares, taken apart: each share is a game of its own, and all are played at the same time.
+
+A share is to avoid some of what is to be avoided. Its blocks name what matters to that, and its commands are for agents
+whom no other share commands. In its game the commands of the others are moves of the environment, which may come at any
+time but need not come: so it wins whatever the others do. Only what they command at all can happen (see `live`): who is
+never sent to a place is not there. Whom a share does not name may be anywhere, and do at any time what he can do to
+those whom it names (see `tga.hidden`), but must not stop time (see `left_out`); that those whom another share names do
+not is shown there. Then each play of the network shows each share one of its plays.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import AbstractSet, FrozenSet, Iterator, List, Sequence, Set, Tuple
+
+from pursue_gen.proof.left_out import why_it_matters, with_clocks_of
+from pursue_gen.proof.live import Commanded, Extent, commanded, live
+from pursue_gen.proof.stages import Part
+from pursue_gen.synthesis.strategy import Block, Strategy
+from pursue_gen.tga.hidden import HIDDEN, with_hidden
+from pursue_gen.tga.network import Automaton, Kind, Network, Objective, with_controllability
+from pursue_gen.tga.part import part_of
+
+Names = Tuple[FrozenSet[str], FrozenSet[str]]
+"""The automata and the variables that a block names."""
+
+
+def shares_of(network: Network, objective: Objective, strategy: Strategy) -> Iterator[Part]:
+    """The shares as games of their own, in their order (`Part.stage` is the number of the share, from 0). After one
+    with a fault there are no more."""
+    fault = _misplaced(network, objective, strategy)
+    numbers = [strategy.numbers_of(k, avoided[0]) for k, avoided in enumerate(strategy.shares) if avoided]
+    shares = [[strategy.blocks[n] for n in some] for some in numbers]
+    alive, extent = live(network, commanded(strategy.blocks))
+    fault = fault or _misnamed(network, shares) or _unguarded(objective, shares, extent)
+    if fault:
+        yield Part(0, network, objective, strategy, (), fault)
+        return
+    for k, blocks in enumerate(shares):
+        automata, variables = names_of(blocks[0])
+        others = {name for some in shares if some is not blocks for name in names_of(some[0])[0]}
+        game = left_to_others(alive, commanded(b for some in shares if some is not blocks for b in some))
+        own = Strategy(tuple(blocks))
+        part = with_clocks_of(part_of(game, automata, variables), network, own)
+        own = replace(own, left_out_clocks=tuple(clock for clock in strategy.left_out_clocks if clock in part.clocks))
+        wanted = Objective(Kind.SAFETY, bad=tuple(place for place in objective.bad if place[0] in automata))
+        stays = {name: set() if name in others else places for name, places in extent.places.items()}
+        fault = why_it_matters(game, wanted, part, stays, hiding=True)
+        seen = with_hidden(game, part)
+        yield Part(k, seen, wanted, own if seen is part else _beside_hidden(own), numbers[k], fault)
+        if fault:
+            return
+
+
+def left_to_others(network: Network, commands: Commanded) -> Network:
+    """The network in which the environment decides when these commands come."""
+    senders = {name for name, _ in commands}
+
+    def left(automaton: Automaton) -> Automaton:
+        if automaton.name not in senders:
+            return automaton
+        owned = ((edge, edge.controllable and (automaton.name, edge) not in commands) for edge in automaton.edges)
+        return replace(automaton, edges=tuple(with_controllability(*one) for one in owned))
+
+    return replace(network, automata=tuple(map(left, network.automata)))
+
+
+def _beside_hidden(strategy: Strategy) -> Strategy:
+    """The strategy in the network that has an automaton for those whom it does not name."""
+    states = (replace(b.state, locations=(*b.state.locations, (HIDDEN, HIDDEN))) for b in strategy.blocks)
+    blocks = tuple(replace(block, state=state) for block, state in zip(strategy.blocks, states))
+    return replace(strategy, blocks=blocks)
+
+
+def names_of(block: Block) -> Names:
+    """What a block names."""
+    return frozenset(name for name, _ in block.state.locations), frozenset(name for name, _ in block.state.values)
+
+
+def _misplaced(network: Network, objective: Objective, strategy: Strategy) -> str:
+    """Why these shares cannot be those of a strategy for the objective; "" if they may."""
+    if any(automaton.name.startswith(HIDDEN) for automaton in network.automata):
+        return f"a name begins with {HIDDEN}"
+    if objective.kind is not Kind.SAFETY:
+        return "an objective with a goal has no shares"
+    if strategy.stages:
+        return "a strategy has stages or shares, not both"
+    unknown = [place for avoided in strategy.shares for place in avoided if place not in objective.bad]
+    if unknown:
+        return f"{'.'.join(unknown[0])} is not to be avoided"
+    if not all(strategy.shares):
+        return "a share has nothing to avoid"
+    if None in strategy.parts:
+        state = strategy.blocks[strategy.parts.index(None)].state
+        return f"the block for {', '.join(map('.'.join, state.locations))} belongs to no share"
+    return ""
+
+
+def _misnamed(network: Network, shares: Sequence[Sequence[Block]]) -> str:
+    """Why these blocks cannot be those of shares; "" if they may."""
+    known: AbstractSet[str] = {automaton.name for automaton in network.automata}
+    variables = dict(network.variables)
+    commanding: Set[str] = set()
+    for number, blocks in enumerate(shares, start=1):
+        if not blocks:
+            return f"no block belongs to share {number}"
+        names = names_of(blocks[0])
+        if any(names_of(block) != names for block in blocks):
+            return f"the blocks of share {number} do not all name the same"
+        if not names[0] <= known or not names[1] <= variables.keys():
+            return "blocks name what the network does not have"
+        own = {name for name, _ in commanded(blocks)}
+        if own & commanding:
+            return f"{min(own & commanding)} is commanded in two shares"
+        commanding |= own
+    return ""
+
+
+def _unguarded(objective: Objective, shares: Sequence[Sequence[Block]], extent: Extent) -> str:
+    """What is to be avoided and may happen, though no share guards against it; "" if there is nothing."""
+    named = {name for blocks in shares for name in names_of(blocks[0])[0]}
+    open_ones: List[str] = [
+        f"{name}.{place}" for name, place in objective.bad if name not in named and place in extent.places[name]
+    ]
+    return f"no share guards against {open_ones[0]}" if open_ones else ""

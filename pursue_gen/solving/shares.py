@@ -1,0 +1,286 @@
+"""Promises shared out among the robots: each group of robots keeps some of them, in a game of its own.
+
+A promise goes to one robot, or to two where none can keep it alone; robots that have one in common are a group. At
+first each group's game is played as if all the others stood still. Then what they are commanded comes into it, as moves
+of the environment, where it matters, until nothing changes any more; groups that cannot be played so are joined. Which
+robot keeps which promise is tried in turn, those with least to do first. Whatever wins so wins the game, in which it is
+proven (see `proof.shares`); where nothing does, nothing is known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import combinations
+from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+
+from pursue_gen.outcomes import LimitHit, NotProven
+from pursue_gen.proof.checker import LIMIT, verify
+from pursue_gen.proof.live import Commanded, commanded, is_controllers, live, taken_over
+from pursue_gen.proof.shares import left_to_others
+from pursue_gen.solving.found import Found, stats_of_all
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.proving import prove
+from pursue_gen.solving.subgoals import commanded_agents
+from pursue_gen.solving.useful import useful
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.cone import cone_of_influence
+from pursue_gen.synthesis.solve import Stats
+from pursue_gen.synthesis.strategy import Place, Strategy
+from pursue_gen.tga.ends import is_agent
+from pursue_gen.tga.hidden import HIDDEN, is_loosened, why_not_hidden, with_hidden
+from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.part import part_of, variables_of
+from pursue_gen.tga.pauses import pauses
+
+WORK = 200_000_000
+"""The work that is spent on all games of groups."""
+
+_GAME = 20_000_000
+"""The work of one of them."""
+
+_STATES = 20_000
+"""So many discrete states it may have: few groups that need more are won with so little work."""
+
+_CLOCKS = 6
+"""So many clocks at most: of more, zones cost more than is counted."""
+
+_WAYS = 30
+"""So many ways to share out the promises are tried."""
+
+_ROUNDS = 8
+"""So many times each group is looked at again, as the others' commands have changed."""
+
+
+_NEEDED, _PLACES, _ALL = range(3)
+"""Who is shown in a group's game: whoever its commands depend on; those, too, on whose place something else depends;
+all who matter."""
+
+_NOBODY: FrozenSet[str] = frozenset()
+
+
+@dataclass(frozen=True)
+class _Group:
+    """Robots, and what they keep from happening, in the objective's order."""
+
+    team: FrozenSet[str]
+    bad: Tuple[Place, ...]
+
+
+def can_be_shared(network: Network, objective: Objective) -> bool:
+    """True for a safety objective with several promises, places to be avoided, that several robots may keep."""
+    return objective.kind is Kind.SAFETY and len(objective.bad) > 1 and len(commanded_agents(network)) > 1
+
+
+def won_in_shares(
+    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
+) -> Optional[Found]:
+    """A proven strategy in shares; None where none is found with little work."""
+    budget = Budget(replace(options.limits, work=WORK, states=_STATES), options.progress, options.engine, whole=True)
+    ways = [(False, True), (True, True), (True, False)]
+    for thorough, free in ways if pauses(network) else ways[::2]:
+        search = _Search(network, objective, reaction, options, budget, thorough, free)
+        try:
+            strategy = search.found()
+        except LimitHit:
+            return None
+        if strategy is not None:
+            return Found(strategy, stats_of_all(search.stats))
+    return None
+
+
+class _Search:
+    """`thorough`: games that are not won with some hidden are played with all of them as well; `free`: they are played
+    without the pauses of the environment."""
+
+    def __init__(
+        self,
+        network: Network,
+        objective: Objective,
+        reaction: Fraction,
+        options: SolveOptions,
+        budget: Budget,
+        thorough: bool,
+        free: bool,
+    ) -> None:
+        self._network, self._objective, self._reaction = network, objective, reaction
+        self._options, self._budget, self._thorough, self._free = options, budget, thorough, free
+        self._robots = commanded_agents(network)
+        self._taken = taken_over(network)
+        self._setters: Dict[str, Set[str]] = {name: set() for name, _ in network.variables}
+        for automaton in network.automata:
+            for edge in automaton.edges:
+                for name, _ in edge.assign:
+                    self._setters[name].add(automaton.name)
+        self._won: Dict[Tuple[Network, Tuple[Place, ...]], Optional[Strategy]] = {}
+        self._alone: Dict[_Group, bool] = {}
+        self.stats: List[Stats] = []
+
+    def found(self) -> Optional[Strategy]:
+        """The first strategy that is found; raises LimitHit where the budget is used up."""
+        able = {place: self._able(place) for place in self._objective.bad}
+        order = sorted(self._objective.bad, key=lambda place: len(able[place]))
+        ways = self._ways(order, able, ())
+        for _, groups in zip(range(_WAYS), ways):
+            strategy = self._together(groups)
+            if strategy is not None:
+                return strategy
+        return None
+
+    def _able(self, place: Place) -> Tuple[str, ...]:
+        """The robots that can do something about what is to be avoided there."""
+        game = self._game(_Group(frozenset(self._robots), (place,)), frozenset())
+        names = {automaton.name for automaton in game.automata}
+        return tuple(name for name in self._robots if name in names)
+
+    def _ways(
+        self, promises: Sequence[Place], able: Dict[Place, Tuple[str, ...]], groups: Tuple[_Group, ...]
+    ) -> Iterator[Tuple[_Group, ...]]:
+        """The ways to share out these promises among groups that have some already; each group wins its game alone."""
+        if not promises:
+            yield groups
+            return
+        first, rest = promises[0], promises[1:]
+        for team in self._teams(first, able[first], groups):
+            grown = self._grown(groups, team, first)
+            if self._is_won(grown[-1]):
+                yield from self._ways(rest, able, grown)
+
+    def _teams(
+        self, promise: Place, able: Sequence[str], groups: Sequence[_Group]
+    ) -> Iterator[FrozenSet[str]]:
+        """Who may keep the promise: one robot, those with least to do first; two where no one can alone."""
+        load = {name: sum(len(group.bad) for group in groups if name in group.team) for name in able}
+        alone = [frozenset([name]) for name in sorted(able, key=lambda name: load[name])]
+        yield from alone or [_NOBODY]
+        if not any(self._is_won(_Group(team, (promise,))) for team in alone):
+            yield from (frozenset(two) for two in combinations(able, 2))
+
+    def _grown(self, groups: Sequence[_Group], team: FrozenSet[str], promise: Place) -> Tuple[_Group, ...]:
+        """The groups, those of this team joined, with one promise more; that group is the last."""
+        met = [group for group in groups if group.team & team]
+        return (*(group for group in groups if group not in met), self._joined([*met, _Group(team, (promise,))]))
+
+    def _joined(self, groups: Sequence[_Group]) -> _Group:
+        bad = {place for group in groups for place in group.bad}
+        team = _NOBODY.union(*(group.team for group in groups))
+        return _Group(team, tuple(place for place in self._objective.bad if place in bad))
+
+    def _is_won(self, group: _Group) -> bool:
+        """True if the group wins its game while the others stand still."""
+        if group not in self._alone:
+            lost = (other for other, won in self._alone.items() if not won and other.team == group.team)
+            hopeless = any(set(other.bad) <= set(group.bad) for other in lost)
+            self._alone[group] = not hopeless and self._strategy(group, frozenset()) is not None
+        return self._alone[group]
+
+    def _together(self, groups: Sequence[_Group]) -> Optional[Strategy]:
+        """A strategy of these groups that is proven, each with the others' commands; None where there is none."""
+        won: Dict[_Group, Strategy] = {}
+        for group in groups:
+            strategy = self._strategy(group, frozenset())
+            assert strategy is not None
+            won[group] = strategy
+        for _ in range(_ROUNDS):
+            before = dict(won)
+            for group in before:
+                blocks = (block for other, some in before.items() if other != group for block in some.blocks)
+                theirs = commanded(blocks)
+                strategy = self._strategy(group, theirs)
+                if strategy is None:
+                    named = {automaton.name for automaton in self._game(group, theirs).automata}
+                    met = [other for other in before if other == group or other.team & named]
+                    joined = self._joined(met)
+                    together = self._strategy(joined, frozenset()) if len(met) > 1 else None
+                    if together is None:
+                        return None
+                    won = {other: some for other, some in before.items() if other not in met}
+                    strategy, group = together, joined
+                won[group] = strategy
+                if group not in before:
+                    break
+            if all(before.get(group) is strategy for group, strategy in won.items()):
+                return self._proven(won)
+        return None
+
+    def _proven(self, won: Mapping[_Group, Strategy]) -> Optional[Strategy]:
+        """The strategies of the groups as one, if it wins the game."""
+        some = won.values()
+        blocks = tuple(block for strategy in some for block in strategy.blocks)
+        clocks = {clock for strategy in some for clock in strategy.left_out_clocks}
+        left_out = tuple(clock for clock in self._network.clocks if clock in clocks)
+        strategy = Strategy(blocks, left_out_clocks=left_out, shares=tuple(group.bad for group in won))
+        limits = self._options.limits
+        report = verify(self._network, self._objective, strategy, self._reaction, LIMIT, limits=limits)
+        return strategy if report.ok else None
+
+    def _strategy(self, group: _Group, theirs: Commanded) -> Optional[Strategy]:
+        """A proven strategy of the group's game against these commands of others; None where none is found."""
+        for shown in (_NEEDED, _PLACES, _ALL)[: 2 + self._thorough]:
+            game = self._game(group, theirs, shown)
+            key = game, group.bad
+            if key not in self._won:
+                self._won[key] = self._solved(game, Objective(Kind.SAFETY, bad=group.bad))
+            if self._won[key] is not None:
+                return self._won[key]
+        return None
+
+    def _solved(self, game: Network, wanted: Objective) -> Optional[Strategy]:
+        free = self._free and bool(pauses(game))
+        if len(game.clocks) > _CLOCKS:
+            return None
+        share = min(1.0, _GAME / max(1, self._budget.work))
+        try:
+            verdict = self._budget.verdict(game, wanted, self._reaction, share, without_pauses=free)
+            self.stats.append(verdict.stats)
+            if verdict.strategy is None:
+                return None
+            how = self._reaction, verdict.ranks, self._options
+            return _without_hidden(prove(game, wanted, verdict.strategy, *how, otherwise=verdict.cautious))
+        except (NotProven, LimitHit):
+            if self._budget.used_up:
+                raise
+            return None
+
+    def _game(self, group: _Group, theirs: Commanded, shown: int = _ALL) -> Network:
+        """The group's game: what matters to its promises, where it may do what it likes, and others these commands.
+
+        `shown`: how much of the others is in it; the rest is hidden (see `tga.hidden`).
+        """
+        mine = {c for c in useful(self._network, group.team, group.bad) if is_controllers(c[1], self._taken)}
+        alive = left_to_others(live(self._network, mine | theirs)[0], theirs)
+        # The automata of other promises only watch.
+        names = {automaton.name for automaton in alive.automata}.difference(name for name, _ in self._objective.bad)
+        names.update(name for name, _ in group.bad)
+        alive = part_of(alive, names, self._setters.keys())
+        hidden = {a.name for a in alive.automata if is_agent(a) and a.name not in group.team and shown != _ALL}
+        tested = {name for _, edge in mine for name in variables_of(edge)}
+        while True:
+            away = {name for name, who in self._setters.items() if who and who <= hidden} - tested
+            away = away if shown == _NEEDED else set()
+            part = part_of(alive, names - hidden, self._setters.keys() - away)
+            game = cone_of_influence(with_hidden(alive, part), Objective(Kind.SAFETY, bad=group.bad))
+            seen = {name for name in hidden if why_not_hidden(alive.automaton(name), game)}
+            seen |= {name for variable, _ in game.variables for name in self._setters[variable] & hidden}
+            seen |= {name for variable in _decisive(alive, game) for name in self._setters[variable] & hidden}
+            if not seen:
+                return game
+            hidden -= seen
+
+
+def _decisive(network: Network, game: Network) -> Iterator[str]:
+    """The variables that the game does not have, and whose tests cannot be left out."""
+    for automaton in game.automata:
+        if automaton.name != HIDDEN:
+            whole = network.automaton(automaton.name)
+            for edge in whole.edges:
+                if edge not in automaton.edges and not is_loosened(edge, whole, automaton):
+                    yield from variables_of(edge)
+
+
+def _without_hidden(strategy: Strategy) -> Strategy:
+    """The strategy in the names of the network itself."""
+    if not strategy.blocks or strategy.blocks[0].state.locations[-1][0] != HIDDEN:
+        return strategy
+    blocks = (replace(b, state=replace(b.state, locations=b.state.locations[:-1])) for b in strategy.blocks)
+    return replace(strategy, blocks=tuple(blocks))

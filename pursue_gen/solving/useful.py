@@ -1,0 +1,62 @@
+"""What some agents can do towards a promise: the moves that may change what it watches, and what these need."""
+
+from __future__ import annotations
+
+from typing import AbstractSet, Iterable, List, Set, Tuple
+
+from pursue_gen.synthesis.strategy import Place
+from pursue_gen.tga.ends import is_agent
+from pursue_gen.tga.network import Automaton, Edge, Network
+from pursue_gen.tga.part import variables_of
+from pursue_runtime.locations import is_action, is_movement
+
+
+def useful(network: Network, team: AbstractSet[str], places: Iterable[Place]) -> Set[Tuple[str, Edge]]:
+    """The edges of these agents that may matter for whether the places are reached, each with its agent's name, and all
+    of the automata that are no agents. Whoever leaves out the others may miss a win, but plays by the rules."""
+    watching = {name for name, _ in places}
+    search = _Search([a for a in network.automata if a.name in team], [a for a in network.automata if not is_agent(a)])
+    search.need(edge for automaton in network.automata if automaton.name in watching for edge in automaton.edges)
+    while search.grow():
+        pass
+    return search.found
+
+
+class _Search:
+    """What is needed; it only grows."""
+
+    def __init__(self, team: List[Automaton], others: List[Automaton]) -> None:
+        self._team, self._others = team, others
+        self._channels: Set[str] = set()
+        self._variables: Set[str] = set()
+        self.found = {(automaton.name, edge) for automaton in others for edge in automaton.edges}
+        for automaton in team:
+            for edge in automaton.edges:
+                if is_movement(edge.target) or is_movement(edge.source):
+                    self.found.add((automaton.name, edge))
+                    self._variables.update(test.variable for clause in edge.guard.integers for test in clause)
+
+    def need(self, edges: Iterable[Edge]) -> None:
+        """Take in what these edges receive, and which variables they test or set."""
+        for edge in edges:
+            self._variables.update(variables_of(edge))
+            if edge.sync is not None:
+                self._channels.add(edge.sync.channel)
+
+    def grow(self) -> bool:
+        """Take in what may change that, by one step more; False if that is nothing."""
+        before = len(self._channels), len(self._variables), len(self.found)
+        for automaton in self._others:
+            self.need(e for e in automaton.edges if any(name in self._variables for name, _ in e.assign))
+        for automaton in self._team:
+            ends = {edge.source for name, edge in self.found if name == automaton.name and is_action(edge.source)}
+            new = [edge for edge in automaton.edges if self._matters(edge, ends)]
+            self.found.update((automaton.name, edge) for edge in new)
+            self._variables.update(t.variable for edge in new for clause in edge.guard.integers for t in clause)
+        return before != (len(self._channels), len(self._variables), len(self.found))
+
+    def _matters(self, edge: Edge, begun: AbstractSet[str]) -> bool:
+        """True for an edge that changes what is needed, or begins what an edge from one of these locations ends."""
+        if edge.sync is not None and edge.sync.sends and edge.sync.channel in self._channels:
+            return True
+        return edge.source != edge.target and edge.target in begun

@@ -1,0 +1,246 @@
+"""Strategies in shares: what the checker proves of them, held against the game as a whole and against the solver."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import Dict, Optional, Tuple
+
+import pytest
+from hypothesis import HealthCheck, assume, event, given, settings
+from hypothesis import strategies as st
+
+from benchmarks.lab_scenarios import Size, lab_scenario
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.language import parse
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.proof.checker import verify
+from pursue_gen.proof.shares import names_of
+from pursue_gen.simulation.make import make_case
+from pursue_gen.simulation.mission import simulate_mission
+from pursue_gen.simulation.outcome import SAFE, Settings
+from pursue_gen.simulation.runs import MissionRunner
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.request import SolveRequest
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.shares import can_be_shared, won_in_shares
+from pursue_gen.solving.solution import Solution
+from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.plan import read_plan, write_plan
+from pursue_gen.synthesis.solve import solve
+from pursue_gen.synthesis.strategy import Block, Command, Strategy
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Network, Objective
+from tests.proof.test_stages import of_the_whole
+
+RANDOM = settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+SMALL = Size(places=3, robots=2, people=1, promises=2)
+LITTLE = Limits(states=3_000, work=3_000_000)
+NOW, LATE = Fraction(0), Rules().reaction
+MANY = 20_000
+"""So many symbolic states the judge of a strategy that names everything looks at."""
+
+BUILDINGS = """
+poi "dock1"
+poi "hall1"
+poi "room1"
+poi "dock2"
+poi "hall2"
+poi "room2"
+connect dock1 and hall1 distance 4
+connect hall1 and room1 distance 3
+connect dock2 and hall2 distance 4
+connect hall2 and room2 distance 3
+connect hall1 and hall2 distance 9
+event "call1"
+event "serve1" location room1 duration 2
+event "call2"
+event "serve2" location room2 duration 2
+agent "bot1" controllable mobile 1 location dock1 can_do serve1
+agent "bot2" controllable mobile 1 location dock2 can_do serve2
+agent "guest1" mobile 2 location room1 can_do call1
+agent "guest2" mobile 2 location room2 can_do call2
+objective: if call1 then serve1 within 30
+objective: if call2 then serve2 within 30
+"""
+"""A robot and a guest who walks about in each of two buildings."""
+
+NARROW = BUILDINGS + "objective: bot1 never_with bot2\n"
+
+
+def game_of(scenario: Scenario) -> Tuple[Network, Objective]:
+    return played(translate(scenario), Rules()), scenario_objective(scenario)
+
+
+def in_shares(text: str, reaction: Fraction = LATE) -> Tuple[Network, Objective, Strategy]:
+    """The game, and a strategy in shares that is proven for it."""
+    network, objective = game_of(parse(text, "lab.pur", "lab"))
+    found = won_in_shares(network, objective, reaction, SolveOptions())
+    assert found is not None
+    return network, objective, found.strategy
+
+
+def reason(network: Network, objective: Objective, strategy: Strategy) -> str:
+    """Why the checker refuses the strategy; "" if it does not."""
+    report = verify(network, objective, strategy, Rules().reaction)
+    return "" if report.ok else report.reason
+
+
+def test_each_robot_keeps_a_promise_and_nobody_waits_for_those_whom_it_does_not_name() -> None:
+    network, objective, strategy = in_shares(BUILDINGS)
+    assert strategy.shares == ((("obj", "lose"),), (("obj2", "lose"),))
+    firsts = [strategy.blocks[strategy.numbers_of(k, share[0])[0]] for k, share in enumerate(strategy.shares)]
+    assert [names_of(block)[0] for block in firsts] == [{"bot1", "obj"}, {"bot2", "obj2"}]
+    assert reason(network, objective, strategy) == ""
+
+
+def test_a_plan_in_shares_is_read_as_it_was_written() -> None:
+    network, objective, strategy = in_shares(NARROW)
+    assert read_plan(write_plan(strategy, network, objective), network, "plan.txt") == strategy
+
+
+@pytest.mark.parametrize("text", [BUILDINGS, NARROW])
+def test_what_is_proven_share_by_share_wins_the_game_as_a_whole(text: str) -> None:
+    network, objective, strategy = in_shares(text, NOW)
+    assert verify(network, objective, of_the_whole(network, strategy)).ok
+
+
+def test_shares_that_are_none_are_refused() -> None:
+    network, objective, strategy = in_shares(BUILDINGS)
+    first, second = strategy.shares
+    assert "is not to be avoided" in reason(network, objective, replace(strategy, shares=((("obj", "idle"),), second)))
+    assert "belongs to no share" in reason(network, objective, replace(strategy, shares=(first,)))
+    assert "nothing to avoid" in reason(network, objective, replace(strategy, shares=(first, second, ())))
+    assert "not both" in reason(network, objective, replace(strategy, stages=(first,)))
+    ours = tuple(block for n, block in enumerate(strategy.blocks) if n in strategy.numbers_of(0, first[0]))
+    assert "no block belongs to share 2" in reason(network, objective, replace(strategy, blocks=ours))
+    alone = replace(strategy, blocks=ours, shares=(first,))
+    assert "obj2 may have to leave atRisk" in reason(network, objective, alone)
+
+
+def test_a_robot_is_commanded_in_one_share() -> None:
+    network, objective, strategy = in_shares(BUILDINGS)
+    going = next(block for block in strategy.blocks if any(c.moves[0].automaton == "bot1" for c in block.commands))
+    theirs = strategy.numbers_of(1, strategy.shares[1][0])[0]
+    blocks = list(strategy.blocks)
+    blocks[theirs] = replace(blocks[theirs], commands=going.commands)
+    assert "bot1 is commanded in two shares" in reason(network, objective, replace(strategy, blocks=tuple(blocks)))
+
+
+def test_who_must_not_meet_the_other_is_kept_from_him_by_what_the_other_is_commanded() -> None:
+    """Each robot alone in its building is never with the other; with one more promise there, they may meet."""
+    network, objective, strategy = in_shares(NARROW)
+    also = BUILDINGS.replace("can_do serve2", "can_do serve2, serve1")
+    wandering = also + "objective: bot1 never_with bot2 at hall1\n"
+    other, wanted, both = in_shares(wandering)
+    assert reason(network, objective, strategy) == "" == reason(other, wanted, both)
+
+
+Damage = Tuple[Block, ...]
+
+
+@st.composite
+def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
+    """The strategy with wrong claims: another block's waits or commands, a block less, names less, other shares."""
+    number = draw(st.integers(0, len(strategy.blocks) - 1))
+    block, other = strategy.blocks[number], draw(st.sampled_from(strategy.blocks))
+    always: Tuple[Command, ...] = tuple(replace(command, zones=((),)) for command in block.commands)
+    changed = draw(
+        st.sampled_from(
+            [
+                replace(block, wait=()),
+                replace(block, wait=((),)),
+                replace(block, commands=()),
+                replace(block, commands=always),
+                replace(block, wait=other.wait, commands=other.commands),
+            ]
+        )
+    )
+    blocks = list(strategy.blocks)
+    blocks[number] = changed
+    if draw(st.booleans()):
+        name = draw(st.sampled_from([name for name, _ in block.state.locations]))
+        blocks = [_without(each, name) if names_of(each) == names_of(block) else each for each in blocks]
+        blocks = list({each.state: each for each in blocks}.values())
+    shares = strategy.shares
+    if len(shares) > 1 and draw(st.booleans()):
+        gone = draw(st.integers(0, len(shares) - 1))
+        lost = set(strategy.numbers_of(gone, shares[gone][0]))
+        blocks = [each for n, each in enumerate(blocks) if n not in lost]
+        shares = shares[:gone] + shares[gone + 1 :]
+    return replace(strategy, blocks=tuple(blocks), shares=shares)
+
+
+def _without(block: Block, name: str) -> Block:
+    places = tuple(place for place in block.state.locations if place[0] != name)
+    values = tuple(value for value in block.state.values if value[0] != f"P{name}")
+    return replace(block, state=replace(block.state, locations=places, values=values))
+
+
+def lab(seed: int) -> Optional[Tuple[str, Scenario]]:
+    text = lab_scenario(seed, SMALL)
+    scenario = parse(text, "lab.pur", "lab")
+    return (text, scenario) if can_be_shared(*game_of(scenario)) else None
+
+
+_FOUND: Dict[Tuple[int, Fraction], Optional[Strategy]] = {}
+
+
+def found_for(seed: int, reaction: Fraction) -> Tuple[Scenario, Network, Objective, Strategy]:
+    """A random scenario and its strategy in shares."""
+    made = lab(seed)
+    assume(made is not None)
+    assert made is not None
+    network, objective = game_of(made[1])
+    key = seed, reaction
+    if key not in _FOUND:
+        found = won_in_shares(network, objective, reaction, SolveOptions())
+        _FOUND[key] = found and found.strategy
+    strategy = _FOUND[key]
+    event("won" if strategy else "not found")
+    assume(strategy is not None)
+    assert strategy is not None
+    return made[1], network, objective, strategy
+
+
+SEEDS = st.integers(0, 400)
+
+
+@RANDOM
+@given(seed=SEEDS)
+def test_what_is_won_in_shares_is_not_lost_in_one_piece(seed: int) -> None:
+    _, network, objective, strategy = found_for(seed, Rules().reaction)
+    try:
+        assert solve(network, objective, Rules().reaction, limits=LITTLE).won
+    except PursueError:
+        return
+    assert verify(network, objective, strategy, Rules().reaction).ok
+
+
+@RANDOM
+@given(data=st.data(), seed=SEEDS)
+def test_a_strategy_with_wrong_claims_that_passes_wins_the_game_as_a_whole(data: st.DataObject, seed: int) -> None:
+    _, network, objective, strategy = found_for(seed, NOW)
+    for _ in range(data.draw(st.integers(0, 2))):
+        assume(strategy.blocks)
+        strategy = data.draw(damaged(strategy))
+    try:
+        passes = bool(strategy.blocks) and verify(network, objective, strategy).ok
+    except PursueError:
+        return  # it speaks of clocks that its share does not have
+    event("passes" if passes else "refused")
+    if passes:
+        report = verify(network, objective, of_the_whole(network, strategy), limit=MANY)
+        event("too large to judge" if report.reason.startswith("limit") else "judged")
+        assert report.ok or report.reason.startswith("limit"), (report.reason, report.play)
+
+
+@settings(RANDOM, max_examples=8)
+@given(seed=SEEDS)
+def test_missions_stay_safe_by_commands_that_the_strategy_holds(seed: int) -> None:
+    scenario, network, objective, strategy = found_for(seed, Rules().reaction)
+    won = Solution(network, objective, strategy, Rules().reaction, rules=Rules())
+    runner = MissionRunner(make_case(scenario, won, SolveRequest(), "random", (), None)[0])
+    for number in range(4):
+        mission = simulate_mission(runner.stage, Settings("random", until=150.0), number)
+        assert mission.end == SAFE, mission
