@@ -158,6 +158,10 @@ class Cover(StateTable[Covered]):
         found = (covered.commands.get((agent, event), ()) for covered in self.find(state))
         return [zone for zones in found for zone in zones]
 
+    def holds_command(self, entry: Entry, agent: str, event: str) -> bool:
+        """Return True if the entry has the agent do the event."""
+        return any((agent, event) in covered.commands for covered in self.entered(entry))
+
     def _awaited(self, state: SystemState) -> List[str]:
         """The automata and variables that are not at their milestones of the present stage, or one of each share."""
         for stage in self._stages:

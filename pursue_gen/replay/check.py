@@ -189,7 +189,7 @@ class _Checker:
         move = self._move(before, state)
         since, self._since = self._since, {}
         if move is not None:
-            decided = max(since_for(move[0][0], since, before), key=lambda each: each.seq)
+            decided = max(since_for(move[0][0], self.orders.get(before.plan), since, before), key=lambda each: each.seq)
             self.steps.append(ReplayedStep(before, state, move, decided))
             self._since = self._standing(before, state, move, since)
             self._zeros.update(dict.fromkeys(after(move, place_of(before))[1], state.stamp))

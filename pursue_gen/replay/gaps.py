@@ -82,7 +82,7 @@ class _Plays:
                 yield []
             return
         for number, word in enumerate(words):
-            counts = word.seq is None or max(since_for(word.agent, since, seq)) <= word.seq <= seq
+            counts = word.seq is None or max(since_for(word.agent, self._orders, since, seq)) <= word.seq <= seq
             if not counts or (seq + 1 == state.seq and word.event != state.event):
                 continue
             for move in self.moves.of(place, word.event, word.agent):

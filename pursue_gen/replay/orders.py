@@ -48,7 +48,7 @@ class PlanTable(Generic[Payload]):
 
     def entered(self, entry: Entry) -> List[Payload]:
         """What was put where an entry holds."""
-        return self._tables[entry[0]][entry[1]]
+        return self._tables.get(entry[0], {}).get(entry[1], [])
 
     def holding(self, place: DiscreteState) -> List[Entry]:
         """What the entries name that hold there, each once."""
@@ -87,10 +87,16 @@ class Orders:
         }
 
 
-def since_for(agent: str, since: Mapping[Entry, Since], now: Since) -> List[Since]:
-    """Since when what the blocks decide that may command the agent stands: those that name it, else all; `now` where
-    none holds."""
-    return [value for (names, _), value in since.items() if agent in names] or list(since.values()) or [now]
+def since_for(agent: str, orders: Optional[Orders], since: Mapping[Entry, Since], now: Since) -> List[Since]:
+    """Since when what the blocks decide that may command the agent stands: those that do, else those that name it, else
+    all; `now` where none holds."""
+    commanding = [
+        value
+        for entry, value in since.items()
+        if orders is not None and any(command.agent == agent for command in orders.commands.entered(entry))
+    ]
+    named = [value for (names, _), value in since.items() if agent in names]
+    return commanding or named or list(since.values()) or [now]
 
 
 def of_strategy(strategy: Strategy, subs: Sequence[SubStrategy], reaction: Fraction) -> Orders:

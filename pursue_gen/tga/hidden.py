@@ -6,8 +6,8 @@ that the part does not have may have any value: what tests them may happen, or n
 it can in the network, and more: what is won against it is won (Ehlers, Mattmüller, Peter, "Combining symbolic
 representations for solving timed games", 2010).
 
-Who receives only if a hidden variable is so does it by a move of the environment: right after the one that is received,
-where somebody in the part sends it.
+Who receives only if a hidden variable is so does it by a move of that automaton: right after the one that is received,
+where somebody in the part sends it. The move is not its own: nobody at the bound of an invariant may rely on it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import AbstractSet, Dict, Iterator, List, Optional, Sequence, Tuple
 
-from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Network, Test
+from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Network, Sync, Test
 from pursue_gen.tga.part import variables_of
 
 HIDDEN = "_hidden"
@@ -28,16 +28,21 @@ def with_hidden(network: Network, part: Network) -> Network:
     The automaton that stands for the others is the last, where there is one. See `why_not_hidden` and
     `is_loosened` for what cannot be had so.
     """
-    loosened = {a.name: tuple(_loosened(network, part, network.automaton(a.name), a)) for a in part.automata}
-    kept = tuple(replace(a, edges=(*a.edges, *loosened[a.name])) if loosened[a.name] else a for a in part.automata)
-    hidden = tuple(dict.fromkeys(_all_seen(network, part)))
+    hidden = dict.fromkeys(_all_seen(network, part))
+    kept = []
+    for automaton in part.automata:
+        loosened = tuple(_loosened(network, part, network.automaton(automaton.name), automaton))
+        hidden.update(dict.fromkeys(told for _, told in loosened if told is not None))
+        edges = dict.fromkeys((*automaton.edges, *(edge for edge, _ in loosened)))
+        kept.append(replace(automaton, edges=tuple(edges)) if loosened else automaton)
     if hidden:
-        kept = (*kept, Automaton(HIDDEN, (Location(HIDDEN),), HIDDEN, hidden))
-    elif kept == part.automata:
+        kept.append(Automaton(HIDDEN, (Location(HIDDEN),), HIDDEN, tuple(hidden)))
+    elif tuple(kept) == part.automata:
         return part
     sent = {edge.sync.channel for edge in hidden if edge.sync is not None}
-    channels = tuple(channel for channel in network.channels if channel in sent or channel in part.channels)
-    return replace(part, automata=kept, channels=channels)
+    channels = [channel for channel in network.channels if channel in sent or channel in part.channels]
+    channels += sorted(sent.difference(channels))
+    return replace(part, automata=tuple(kept), channels=tuple(channels))
 
 
 def why_not_hidden(automaton: Automaton, part: Network) -> str:
@@ -56,11 +61,12 @@ def why_not_hidden(automaton: Automaton, part: Network) -> str:
 
 def is_loosened(edge: Edge, automaton: Automaton, kept: Automaton) -> bool:
     """True for an edge that the part does not have, because of a hidden variable, and whose tests of that may be left
-    out: what the controller does must not depend on them, nor which of several edges is taken, nor an invariant forbid
-    where it leads. `kept`: the automaton in the part."""
+    out: what the controller does must not depend on them, nor which of several edges is taken; no invariant may oblige
+    anybody to take it, nor forbid where it leads. `kept`: the automaton in the part."""
+    stays = {location.name: location.invariant for location in automaton.locations}
     if edge.sync is None or edge.sync.sends:
-        return not edge.controllable
-    (stay,) = (location.invariant for location in automaton.locations if location.name == edge.target)
+        return not edge.controllable and not stays[edge.source]
+    stay = stays[edge.target]
     rival = any(other.sync == edge.sync and other.source == edge.source for other in kept.edges)
     return edge.controllable and not rival and {bound.clock for bound in stay}.issubset(edge.resets)
 
@@ -82,40 +88,44 @@ def _all_seen(network: Network, part: Network) -> Iterator[Edge]:
                 yield seen
 
 
-def _loosened(network: Network, part: Network, automaton: Automaton, kept: Automaton) -> Iterator[Edge]:
+def _loosened(
+    network: Network, part: Network, automaton: Automaton, kept: Automaton
+) -> Iterator[Tuple[Edge, Optional[Edge]]]:
     """The edges of an automaton that the part does not have, as moves of the environment: tests of hidden variables may
-    hold."""
+    hold. Each comes with the hidden edge that makes the automaton take it; None: it takes it by itself."""
     variables, there = {name for name, _ in part.variables}, {a.name for a in part.automata}
-    found: Dict[Edge, None] = {}
     for edge in automaton.edges:
         if edge in kept.edges or variables.issuperset(variables_of(edge)) or not is_loosened(edge, automaton, kept):
             continue
-        guard = _tests(edge, variables, edge.guard.clocks)
-        loose = replace(edge, guard=guard, assign=_assigned(edge, variables), controllable=False)
+        guard = _tests(edge, variables, tuple(bound for bound in edge.guard.clocks if bound.clock in part.clocks))
+        resets = tuple(clock for clock in edge.resets if clock in part.clocks)
+        loose = replace(edge, guard=guard, assign=_assigned(edge, variables), resets=resets)
         if edge.sync is None or edge.sync.sends:
-            found[loose] = None
+            yield loose, None
         elif loose.assign or loose.resets or loose.source != loose.target:
             for sender, its in _senders(network, edge.sync.channel):
-                found[_right_after(network, loose, its if sender in there else None, variables, part.clocks)] = None
-    return iter(found)
+                after = _right_after(network, loose, its if sender in there else None, variables, part.clocks)
+                channel = "_".join([HIDDEN, automaton.name, *(bound.clock for bound in after.clocks)])
+                told = Edge(HIDDEN, HIDDEN, Guard(after.clocks), Sync(channel, sends=True), controllable=False)
+                yield replace(loose, guard=Guard(integers=after.integers), sync=Sync(channel, sends=False)), told
 
 
 def _right_after(
     network: Network, edge: Edge, sent: Optional[Edge], variables: AbstractSet[str], clocks: Sequence[str]
-) -> Edge:
-    """The edge that receives, as a move of its own: after the one that is `sent` in the part, else at any time."""
+) -> Guard:
+    """When an edge that receives may be taken later: at once after the one that is `sent` in the part, else at any time
+    at which it may hold what the edge tests."""
     assert edge.sync is not None
     edges = (other for automaton in network.automata for other in automaton.edges if other.sync is not None)
     with_it = [e for e in edges if e.sync is not None and e.sync.channel == edge.sync.channel]
     changed = {name for other in with_it for name, _ in other.assign}
-    reset = {clock for other in with_it for clock in other.resets}
-    bounds = tuple(bound for bound in edge.guard.clocks if bound.clock not in reset)
     tests = tuple(clause for clause in edge.guard.integers if not any(test.variable in changed for test in clause))
-    if sent is not None:
-        others = {name for other in with_it if other.sync != sent.sync for name, _ in other.assign}
-        bounds += tuple(ClockBound(clock, "<=", 0) for clock in sent.resets if clock in clocks)
-        tests += tuple((Test(name, value),) for name, value in sent.assign if name in variables - others)
-    return replace(edge, sync=None, guard=Guard(bounds, tests))
+    if sent is None:
+        return Guard(integers=tests)
+    others = {name for other in with_it if other.sync != sent.sync for name, _ in other.assign}
+    values = tuple((Test(name, value),) for name, value in sent.assign if name in variables - others)
+    now = tuple(ClockBound(clock, "<=", 0) for clock in sent.resets if clock in clocks)
+    return Guard(now, (*tests, *values))
 
 
 def _senders(network: Network, channel: str) -> List[Tuple[str, Edge]]:

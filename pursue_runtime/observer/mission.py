@@ -245,10 +245,11 @@ class Mission(MissionStatus):
     def _is_current(self, word: Word) -> bool:
         """Return True for a command for the present state, or for an earlier one: what was decided there stands.
 
-        The entries that name the agent are those that may command it.
+        Others than the entries that hold the command may name the agent, too: in their part nobody commands it.
         """
-        known = [(names, since) for (names, _), since in self._since.items()]
-        since = [since for names, since in known if word.agent in names] or [since for _, since in known]
+        known, cover = self._since, self._cover
+        since = [known[e] for e in known if cover is not None and cover.holds_command(e, word.agent, word.event)]
+        since = since or [known[entry] for entry in known if word.agent in entry[0]] or list(known.values())
         return word.seq is not None and max(since, default=self.seq) <= word.seq <= self.seq
 
     def _is_commanded(self, word: Word, now: float) -> bool:

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Dict, Optional, Tuple
 
 import pytest
-from hypothesis import HealthCheck, assume, event, given, settings
+from hypothesis import HealthCheck, assume, event, example, given, settings
 from hypothesis import strategies as st
 
 from benchmarks.lab_scenarios import Size, lab_scenario
@@ -34,7 +34,7 @@ from pursue_gen.tga.network import Network, Objective
 from tests.proof.test_stages import of_the_whole
 
 RANDOM = settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
-SMALL = Size(places=3, robots=2, people=1, promises=2)
+SIZES = (Size(places=3, robots=2, people=1, promises=2), Size(places=4, robots=3, people=1, promises=3))
 LITTLE = Limits(states=3_000, work=3_000_000)
 NOW, LATE = Fraction(0), Rules().reaction
 MANY = 20_000
@@ -66,6 +66,25 @@ objective: if call2 then serve2 within 30
 """A robot and a guest who walks about in each of two buildings."""
 
 NARROW = BUILDINGS + "objective: bot1 never_with bot2\n"
+
+
+RELIEVED = """
+poi "dock"
+poi "room"
+poi "gate"
+connect dock and room distance 10
+connect room and gate distance 10
+agent "bot1" controllable mobile 1 location dock
+agent "bot2" controllable mobile 1 location room
+agent "bot3" controllable mobile 1 location room
+agent "guest" mobile 1 location gate
+objective: if guest at room then any robot at room within 3
+objective: patrol gate every 90 by bot2
+objective: patrol gate every 90 by bot3
+objective: patrol room every 90 by bot2
+objective: patrol room every 90 by bot3
+"""
+"""The guest is also answered where one of two robots leaves the room and the other stays, which nobody has to do."""
 
 
 def game_of(scenario: Scenario) -> Tuple[Network, Objective]:
@@ -136,7 +155,9 @@ def test_who_must_not_meet_the_other_is_kept_from_him_by_what_the_other_is_comma
     assert reason(network, objective, strategy) == "" == reason(other, wanted, both)
 
 
-Damage = Tuple[Block, ...]
+def test_a_deadline_is_not_kept_by_what_others_may_do_but_need_not() -> None:
+    network, objective = game_of(parse(RELIEVED, "lab.pur", "lab"))
+    assert won_in_shares(network, objective, LATE, SolveOptions()) is None
 
 
 @st.composite
@@ -178,7 +199,7 @@ def _without(block: Block, name: str) -> Block:
 
 
 def lab(seed: int) -> Optional[Tuple[str, Scenario]]:
-    text = lab_scenario(seed, SMALL)
+    text = lab_scenario(seed, SIZES[seed % len(SIZES)])
     scenario = parse(text, "lab.pur", "lab")
     return (text, scenario) if can_be_shared(*game_of(scenario)) else None
 
@@ -236,6 +257,7 @@ def test_a_strategy_with_wrong_claims_that_passes_wins_the_game_as_a_whole(data:
 
 
 @settings(RANDOM, max_examples=8)
+@example(seed=67)  # two shares name a robot, and what matters to the one that does not command it changes
 @given(seed=SEEDS)
 def test_missions_stay_safe_by_commands_that_the_strategy_holds(seed: int) -> None:
     scenario, network, objective, strategy = found_for(seed, Rules().reaction)
