@@ -49,17 +49,20 @@ def model_data(*automata: Dict[str, Any]) -> Dict[str, Any]:
 
 
 def commanding(cover: Dict[str, Any], model: Model) -> Dict[str, Any]:
-    """A cover that also commands, in the zones in which it waits, whatever controllable automata can do."""
+    """A cover that also commands, in the zones in which it waits, whatever controllable automata can do: in the entries
+    that name them, as those of parts do; in all where none does."""
     able = {
         (automaton.name, edge.word): None
         for automaton in model.automata
         for edge in automaton.edges
         if edge.sync != "receive" and edge.controllable
     }
-    entries = [
-        {**entry, "commands": [{"agent": agent, "do": event, "when": entry["wait"]} for agent, event in able]}
-        for entry in cover["cover"]
-    ]
+    named = {name for entry in cover["cover"] for name in entry["state"]}
+    entries = []
+    for entry in cover["cover"]:
+        mine = [(agent, event) for agent, event in able if agent in entry["state"] or agent not in named]
+        commands = [{"agent": agent, "do": event, "when": entry["wait"]} for agent, event in mine]
+        entries.append({**entry, "commands": commands})
     return {**cover, "cover": entries}
 
 

@@ -46,8 +46,9 @@ def serving(files: int = 256, longest: float = 60.0) -> Iterator[Tuple[int, "sub
     with subprocess.Popen(words, stdin=pipe, stdout=pipe, stderr=pipe) as process:
         assert process.stdout is not None and process.stdin is not None
         try:
-            there, _, _ = select.select([process.stdout], [], [], PATIENCE)
-            assert there, "the server has not begun"
+            said = select.poll()  # which takes any file number: this process may have many files open
+            said.register(process.stdout, select.POLLIN)
+            assert said.poll(PATIENCE * 1000), "the server has not begun"
             yield int(process.stdout.readline()), process
             process.stdin.close()
             assert process.wait(PATIENCE) == 0
