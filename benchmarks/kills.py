@@ -3,8 +3,9 @@
 Each mission is recorded twice (see second_recorder), and judged afterwards by `pursue_gen.replay` from what either
 recorder has, what the observer has heard beside that, and the workspace's strategy alone.
 `--out docs` writes what was found to docs/benchmarks/kills.json and docs/kills.md; with `--first 240` it adds the
-missions from 240 on to the 240 that are there. The kills of a mission follow from its number and the seed; the moments
-at which they hit the nodes do not.
+missions from 240 on to the 240 that are there. Each mission is written as soon as it and all before it have ended, so
+an interruption loses none. The kills of a mission follow from its number and the seed; the moments at which they hit
+the nodes do not.
 """
 
 from __future__ import annotations
@@ -13,7 +14,6 @@ import argparse
 import collections
 import contextlib
 import datetime
-import http.client
 import json
 import os
 import random
@@ -27,9 +27,9 @@ import xmlrpc.client
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import Any, Dict, Iterable, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple
 
-from benchmarks.ros_world import ROOT, World, generated, world
+from benchmarks.ros_world import NO_ANSWER, ROOT, Hasty, World, generated, world
 from benchmarks.second_recorder import NAME, bag_of, command, heard_in, merged, topics_of, with_heard
 from benchmarks.synthesis import machine, version
 from pursue_gen.diagnostics import PursueError
@@ -100,11 +100,11 @@ def draw(seed: int, number: int, nodes: Sequence[str], length: float) -> List[Ki
 
 def process_of(uri: str, node: str) -> int:
     """Return the process of a node as it says itself; 0 where none answers."""
-    with contextlib.suppress(OSError, http.client.HTTPException, xmlrpc.client.Error):
-        with xmlrpc.client.ServerProxy(uri) as master:
+    with contextlib.suppress(*NO_ANSWER):
+        with xmlrpc.client.ServerProxy(uri, transport=Hasty()) as master:
             found: Any = master.lookupNode("/kills", f"/{node}")
         if found[0] == 1:
-            with xmlrpc.client.ServerProxy(str(found[2])) as slave:
+            with xmlrpc.client.ServerProxy(str(found[2]), transport=Hasty()) as slave:
                 answer: Any = slave.getPid("/kills")
             return int(answer[2])
     return 0
@@ -112,7 +112,7 @@ def process_of(uri: str, node: str) -> int:
 
 def subscribed(uri: str, node: str) -> Set[str]:
     """Return the topics to which a node has subscribed, as the master has them."""
-    with xmlrpc.client.ServerProxy(uri) as master:
+    with xmlrpc.client.ServerProxy(uri, transport=Hasty()) as master:
         state: Any = master.getSystemState("/kills")
     return {topic for topic, nodes in state[2][1] if f"/{node}" in nodes}
 
@@ -182,7 +182,7 @@ def outcome(findings: Findings) -> Tuple[str, str]:
 def mission(
     number: int, seed: int, workspaces: Sequence[Tuple[str, Path, Game]], unit: float, keep: Optional[Path]
 ) -> Mission:
-    """Play and judge one mission on a master of its own; one that is BAD leaves its files in `keep`."""
+    """Play and judge one mission on a master of its own; one without goal leaves its files in `keep`."""
     scenario, workspace, game = workspaces[number % len(workspaces)]
     nodes = ["observer", "UI", "simulator", *(folder.name for folder in (workspace / "src").glob("controller*"))]
     kills = draw(seed, number, sorted(nodes), 20.0 * unit)
@@ -195,30 +195,28 @@ def mission(
         found, why, missed = judge(bag, second, journals, game)
         if found in BAD:
             print(there.log("roslaunch")[-6000:], flush=True)
-            if keep:
-                shutil.copytree(home, keep / f"mission_{number}", dirs_exist_ok=True)
+        if found != "goal" and keep:
+            shutil.copytree(home, keep / f"mission_{number}", dirs_exist_ok=True)
     killed = tuple(f"{kill.node} after {kill.after:.2f} s" for kill in kills)
     return Mission(number, scenario, found, why, killed, missed)
 
 
 def measure(
     numbers: Sequence[int], seed: int, jobs: int, unit: float, names: Sequence[str], keep: Optional[Path] = None
-) -> List[Mission]:
-    """Play and judge the missions with these numbers, `jobs` at a time."""
+) -> Iterator[Mission]:
+    """Play and judge the missions with these numbers, `jobs` at a time; each as soon as it and all before it ended."""
     with tempfile.TemporaryDirectory(prefix="kills_ws_") as home, ThreadPoolExecutor(jobs) as pool:
         workspaces = []
         for name in names:
             text = (ROOT / "scenarios" / f"{name}.pur").read_text(encoding="utf-8")
             workspace = generated(text, Path(name).name, Path(home) / Path(name).name, RULES)
             workspaces.append((name, workspace, game_of(from_workspace(workspace))))
-        done: List[Mission] = []
         for each in pool.map(lambda number: mission(number, seed, workspaces, unit, keep), numbers):
-            done.append(each)
             kills = ", ".join(each.kills)
             print(f"{each.number:4} {each.scenario:30} {each.outcome:8} {each.why} [{kills}]", flush=True)
             for what in each.missed:
                 print(f"     both recorders have missed: {what}", flush=True)
-    return done
+            yield each
 
 
 def results(done: Sequence[Mission]) -> Dict[str, Any]:
@@ -327,7 +325,7 @@ def options() -> argparse.ArgumentParser:
     parser.add_argument("--jobs", type=int, default=2, help="missions at a time (2)")
     parser.add_argument("--unit", type=float, default=0.5, help="seconds per time unit (0.5)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write kills.md and benchmarks/kills.json there")
-    parser.add_argument("--keep", type=Path, metavar="DIR", help="copy bags and logs of wrong missions there")
+    parser.add_argument("--keep", type=Path, metavar="DIR", help="copy bags and logs of missions without goal there")
     parser.add_argument("--machine", default=machine(), help="how the results name the machine")
     parser.add_argument("--date", default=datetime.date.today().isoformat(), help="how they give the date (today)")
     parser.add_argument("scenarios", nargs="*", default=SCENARIOS, metavar="SCENARIO", help="as thesis/scenario_1")
@@ -342,18 +340,24 @@ def main() -> int:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that no process stays behind
     kept = given.out / "benchmarks" / "kills.json" if given.out else None
     before = json.loads(kept.read_text(encoding="utf-8")) if kept and given.first else None
-    part = {"first": given.first, "missions": given.missions, "date": given.date, "commit": version()}
+    part = {"first": given.first, "date": given.date, "commit": version()}
     head = {"seed": given.seed, "unit": given.unit, "machine": given.machine, "parts": [part]}
     if before and mismatch(before, head):
         options().error(mismatch(before, head))
+
+    def so_far(done: Sequence[Mission]) -> Dict[str, Any]:
+        found = {**results(done), **head, "parts": [{**part, "missions": len(done)}]}
+        return together(before, found) if before else found
+
+    done: List[Mission] = []
     numbers = range(given.first, given.first + given.missions)
-    found = {**results(measure(numbers, given.seed, given.jobs, given.unit, given.scenarios, given.keep)), **head}
-    found = together(before, found) if before else found
-    text = page(found)
-    print(text)
-    if kept:
-        write_texts({kept: json.dumps(found, indent=1) + "\n", given.out / "kills.md": text})
-    return 1 if found["bad"] else 0
+    for each in measure(numbers, given.seed, given.jobs, given.unit, given.scenarios, given.keep):
+        done.append(each)
+        if kept:  # at once, so that an interruption loses nothing
+            found = so_far(done)
+            write_texts({kept: json.dumps(found, indent=1) + "\n", given.out / "kills.md": page(found)})
+    print(page(so_far(done)))
+    return 1 if so_far(done)["bad"] else 0
 
 
 if __name__ == "__main__":

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import contextlib
+import http.client
 import os
+import random
 import shutil
 import signal
 import socket
 import subprocess
 import sys
 import time
+import xmlrpc.client
 from pathlib import Path
-from typing import Dict, Iterator, List, Mapping, Optional
+from typing import Any, Dict, Iterator, List, Mapping, Optional
 
 from pursue_gen.language import parse
 from pursue_gen.solving.rules import Rules
@@ -19,6 +22,25 @@ from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.workspace import Options, write_workspace
 
 ROOT = Path(__file__).resolve().parent.parent
+
+PORTS = 4
+"""So many ports are tried: roslaunch gives its master ten seconds, and a free port may be another program's by then."""
+
+UP = 60.0
+"""Seconds within which a roscore has to be there."""
+
+NO_ANSWER = (OSError, http.client.HTTPException, xmlrpc.client.Error)
+"""What a call of a node or a master raises that does not answer."""
+
+
+class Hasty(xmlrpc.client.Transport):
+    """Calls that do not wait for ever: behind the port there may be anybody, by now."""
+
+    def make_connection(self, host: Any) -> http.client.HTTPConnection:
+        """The connection, with a timeout."""
+        made = super().make_connection(host)
+        made.timeout = 5
+        return made
 
 
 class World:
@@ -28,23 +50,36 @@ class World:
         if not shutil.which("roscore"):
             raise SystemExit("this benchmark needs ROS 1: roscore is not on PATH")
         self.home = home
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
         self.variables = {
             "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
-            "ROS_MASTER_URI": f"http://127.0.0.1:{port}",
             "ROS_HOSTNAME": "localhost",
             "ROS_HOME": str(home),
             "ROS_LOG_DIR": str(home / "log"),
         }
-        self._environment = {**os.environ, **self.variables}
         self.running: Dict[str, "subprocess.Popen[bytes]"] = {}
-        self.start("roscore", ["roscore", "-p", str(port)])
-        deadline = time.monotonic() + 120
-        while self.run(["rosparam", "get", "/run_id"]).returncode:
-            if time.monotonic() > deadline:
-                raise SystemExit(f"roscore does not come up; see {home}/roscore.txt")
+
+    def start_master(self) -> None:
+        """Starts the roscore; where it does not come up, another one on another port. Raises SystemExit after PORTS."""
+        for _ in range(PORTS):
+            port = free_port()
+            self.variables["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
+            core = self.start("roscore", ["roscore", "-p", str(port)])
+            deadline = time.monotonic() + UP
+            while core.poll() is None and time.monotonic() < deadline:
+                if self._is_up(core):
+                    return
+                time.sleep(0.05)
+            self.stop("roscore")
+        raise SystemExit(f"no roscore comes up, on {PORTS} ports: {self.log('roscore')[-2000:]}")
+
+    def _is_up(self, core: "subprocess.Popen[bytes]") -> bool:
+        """Whether this roscore has its master, not another program at the same port, and its parameters are set."""
+        uri = self.variables["ROS_MASTER_URI"]
+        with contextlib.suppress(*NO_ANSWER), xmlrpc.client.ServerProxy(uri, transport=Hasty()) as master:
+            has: Any = master.hasParam("/world", "/run_id")
+            process: Any = master.getPid("/world")
+            return bool(has[2]) and _stat(process[2])[1] == str(core.pid)
+        return False
 
     def start(self, name: str, command: List[str], **more: str) -> "subprocess.Popen[bytes]":
         """Starts a process; what it says goes to <home>/<name>.txt."""
@@ -52,7 +87,7 @@ class World:
             process = subprocess.Popen(
                 command,
                 cwd=str(ROOT),
-                env={**self._environment, **more},
+                env={**self._environment(), **more},
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=subprocess.STDOUT,
@@ -63,14 +98,14 @@ class World:
 
     def run(self, command: List[str]) -> "subprocess.CompletedProcess[str]":
         """Runs a command to its end."""
-        return subprocess.run(command, env=self._environment, capture_output=True, text=True, timeout=60, check=False)
+        return subprocess.run(command, env=self._environment(), capture_output=True, text=True, timeout=60, check=False)
 
     def node(self, workspace: Path, package: str, script: str = "", *arguments: str) -> None:
         """Starts a node of a workspace that was built."""
         script = script or package
         program = workspace / "src" / package / "scripts" / script
         modules = workspace / "devel" / "lib" / "python3" / "dist-packages"
-        path = os.pathsep.join([str(modules), *filter(None, [self._environment.get("PYTHONPATH")])])
+        path = os.pathsep.join([str(modules), *filter(None, [os.environ.get("PYTHONPATH")])])
         self.start(script, [sys.executable, str(program), *arguments], PYTHONPATH=path)
 
     def stop(self, *names: str) -> None:
@@ -88,6 +123,9 @@ class World:
         for name in chosen:
             del self.running[name]
 
+    def _environment(self) -> Dict[str, str]:
+        return {**os.environ, **self.variables}
+
     def log(self, name: str) -> str:
         """What a process has said."""
         return (self.home / f"{name}.txt").read_text(errors="replace")
@@ -98,6 +136,7 @@ def world(home: Path) -> Iterator[World]:
     """A world whose processes end with it."""
     there = World(home)
     try:
+        there.start_master()
         yield there
     finally:
         there.stop()
@@ -116,9 +155,24 @@ def generated(text: str, name: str, folder: Path, rules: Optional[Rules] = None)
     return workspace
 
 
+def free_port() -> int:
+    """A port of this machine that is free now, and that no connection gets by chance: lower than those that the system
+    gives away, and not the one that another run would draw."""
+    while True:
+        port = random.SystemRandom().randrange(20000, 32000)
+        with socket.socket() as probe, contextlib.suppress(OSError):
+            probe.bind(("", port))
+            return port
+
+
+def _stat(process: int) -> List[str]:
+    """What the system tells of a process, from its state on (proc(5), `stat`)."""
+    return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+
+
 def cpu_seconds(process: "subprocess.Popen[bytes]") -> float:
     """The processor time that the process has used so far."""
-    fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    fields = _stat(process.pid)
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 

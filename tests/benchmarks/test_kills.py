@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
+import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Dict, List, Sequence, Tuple
 
 import pytest
 
+from benchmarks import kills
 from benchmarks.kills import OUTCOMES, Mission, draw, judge, mismatch, outcome, page, results, together
 from pursue_gen.replay import Findings
 from pursue_gen.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
@@ -117,6 +120,36 @@ def test_missions_are_added_to_those_that_were_played_before() -> None:
     assert mismatch(made(0, one), made(2, two)) == ""
     for other in (made(1, two), made(3, two), made(2, two, seed=8)):
         assert "cannot be added to what is there: 2 missions, seed 7, unit 0.5" in mismatch(made(0, one), other)
+
+
+def test_missions_that_have_ended_are_kept_when_those_after_them_are_interrupted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    roscores = [True]
+
+    def play(number: int, *_: object) -> Mission:
+        if number == 3 and roscores:
+            roscores.clear()
+            raise SystemExit("no roscore comes up")
+        return Mission(number, "one", "goal", "", ())
+
+    def kept(*more: str) -> List[int]:
+        command = ["kills", "--out", str(tmp_path), "--machine", "a machine", "--jobs", "2", *more, "thesis/scenario_1"]
+        monkeypatch.setattr("sys.argv", command)
+        with contextlib.suppress(SystemExit):
+            assert kills.main() == 0
+        assert (tmp_path / "kills.md").is_file()
+        return [part["missions"] for part in json.loads(file.read_text())["parts"]]
+
+    file = tmp_path / "benchmarks" / "kills.json"
+    file.parent.mkdir()
+    monkeypatch.setattr(kills, "mission", play)
+    monkeypatch.setattr(kills, "generated", lambda *_: tmp_path)
+    monkeypatch.setattr(kills, "from_workspace", lambda _: None)
+    monkeypatch.setattr(kills, "game_of", lambda _: game())
+    assert kept("--missions", "6") == [3]
+    assert kept("--missions", "3", "--first", "3") == [3, 3]
+    assert json.loads(file.read_text())["missions"] == 6
 
 
 def test_the_page_says_how_much_both_recorders_have_missed() -> None:

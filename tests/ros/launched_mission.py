@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import http.client
 import json
 import os
 import re
@@ -16,6 +15,7 @@ from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Opt
 
 from ros_world import Ros, end
 
+from benchmarks.ros_world import NO_ANSWER, Hasty
 from tests.waiting import PATIENCE
 
 LOGGER = Path(__file__).resolve().parent / "topic_logger.py"
@@ -66,16 +66,6 @@ def ready(output: str, scenario: str) -> bool:
     """True where the UI that was started last is one of this scenario, and has found everybody ready."""
     starts = list(re.finditer(r"^(\w+): waiting for ", output, re.MULTILINE))
     return bool(starts) and starts[-1].group(1) == scenario and "All nodes are ready" in output[starts[-1].end():]
-
-
-class Hasty(xmlrpc.client.Transport):
-    """Calls that do not wait for ever: the port of a node that was killed may be anybody's by now."""
-
-    def make_connection(self, host: Any) -> http.client.HTTPConnection:
-        """The connection, with a timeout."""
-        connection = super().make_connection(host)
-        connection.timeout = 5
-        return connection
 
 
 def _ends(node: str, other: str, end: int) -> Set[str]:
@@ -229,7 +219,7 @@ class LaunchedMission:
         Both ends are compared: the observer lists a connection before the logger does, and the logger still lists those
         of nodes that were killed.
         """
-        with contextlib.suppress(OSError, http.client.HTTPException, xmlrpc.client.Error):
+        with contextlib.suppress(*NO_ANSWER):
             with xmlrpc.client.ServerProxy(self._uri) as master:
                 nodes: Any = [master.lookupNode("/test", f"/{node}") for node in ("observer", "topic_logger")]
             if all(code == 1 for code, _, _ in nodes):
@@ -246,7 +236,7 @@ class LaunchedMission:
 
     def pid(self, node: str) -> int:
         """The process of a node, as it says itself; 0 where none answers."""
-        with contextlib.suppress(OSError, http.client.HTTPException, xmlrpc.client.Error):
+        with contextlib.suppress(*NO_ANSWER):
             with xmlrpc.client.ServerProxy(self._uri) as master:
                 code, _, uri = master.lookupNode("/test", f"/{node}")  # type: ignore[misc]
             if code == 1:

@@ -5,13 +5,10 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import hashlib
-import http.client
 import os
-import random
 import re
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -19,10 +16,11 @@ import time
 import uuid
 import xmlrpc.client
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Tuple
+from typing import Callable, Dict, Iterator, List, Mapping, Optional, Tuple
 
 from preloaded import process_of
 
+from benchmarks.ros_world import NO_ANSWER, Hasty, free_port
 from pursue_gen.language import load
 from pursue_gen.solving.solution import IDEAL, Rules, solve_scenario
 from pursue_gen.workspace import Options, write_workspace
@@ -35,7 +33,6 @@ NEEDED = ("catkin_make", "catkin_test_results", "roscore", "roslaunch", "rosrun"
 
 
 _SOURCE = re.compile(r"source (\S+/setup\.bash); ")
-NO_ANSWER = (OSError, http.client.HTTPException, xmlrpc.client.Error)
 
 Started = Tuple["subprocess.Popen[bytes]", Dict[str, str]]
 """A process, and the variables that lead to its master."""
@@ -192,7 +189,7 @@ class Ros:
         master = self.start(command, self.home, log, ROS_MASTER_URI=uri, PATH=path)
         deadline = time.monotonic() + PATIENCE / 2
         while time.monotonic() < deadline and master.poll() is None:
-            with contextlib.suppress(*NO_ANSWER), xmlrpc.client.ServerProxy(uri, transport=_Hasty()) as found:
+            with contextlib.suppress(*NO_ANSWER), xmlrpc.client.ServerProxy(uri, transport=Hasty()) as found:
                 if found.getPid("/test")[2] == process_of(master.pid):  # type: ignore[index]
                     found.setParam("/test", "/run_id", str(uuid.uuid1()))
                     return uri, master
@@ -202,29 +199,10 @@ class Ros:
         return self._master(tries - 1)
 
 
-def free_port() -> int:
-    """A port of this machine that is free now, and that no connection gets by chance: lower than those that the system
-    gives away, and not the one that another run would draw."""
-    while True:
-        port = random.SystemRandom().randrange(20000, 32000)
-        with socket.socket() as probe, contextlib.suppress(OSError):
-            probe.bind(("", port))
-            return port
-
-
-class _Hasty(xmlrpc.client.Transport):
-    """Does not wait for ever for an answer: behind the port there may be anybody."""
-
-    def make_connection(self, host: Any) -> http.client.HTTPConnection:
-        made = super().make_connection(host)
-        made.timeout = 5
-        return made
-
-
 def _has_run_id(uri: str) -> bool:
     """True as soon as the master at this address is one that launched nodes can register with."""
     try:
-        code, _, found = xmlrpc.client.ServerProxy(uri, transport=_Hasty()).hasParam("/test", "/run_id")
+        code, _, found = xmlrpc.client.ServerProxy(uri, transport=Hasty()).hasParam("/test", "/run_id")
     except NO_ANSWER:
         return False
     return bool(code == 1 and found)
