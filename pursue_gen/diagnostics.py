@@ -44,17 +44,15 @@ class Diagnostic:
 
 
 class PursueError(Exception):
-    """The exception for all errors that the command line reports, with diagnostics: what was given has errors.
+    """The exception for all errors that the command line reports, with diagnostics: what was given cannot be used.
 
-    Other outcomes are its subclasses (outcomes.py); `exit_status` 2 is for a command line or file that cannot be used.
+    Other outcomes are its subclasses (outcomes.py).
     """
 
-    exit_status = 3
+    exit_status = 2
 
-    def __init__(self, diagnostics: Iterable[Diagnostic], exit_status: Optional[int] = None) -> None:
+    def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         self.diagnostics: Tuple[Diagnostic, ...] = tuple(diagnostics)
-        if exit_status is not None:
-            self.exit_status = exit_status
         super().__init__(self.diagnostics)  # what it is made of: so it can be sent from one process to another
 
     def __str__(self) -> str:
@@ -72,8 +70,8 @@ def warning(code: str, message: str, span: Optional[Span] = None, hint: str = ""
 
 
 def usage_error(message: str, hint: str) -> PursueError:
-    """The error of a command line that cannot be used (exit status 2)."""
-    return PursueError([error("CLI004", message, hint=hint)], exit_status=2)
+    """The error of a command line that cannot be used."""
+    return PursueError([error("CLI004", message, hint=hint)])
 
 
 def counted(number: int, noun: str) -> str:

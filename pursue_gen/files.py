@@ -28,10 +28,10 @@ def read_text(file: Path, what: str, most: int = named_files.TEXT) -> str:
         return named_files.read_text(file, most)
     except UnicodeDecodeError as problem:
         message = f"{file} is not text in UTF-8 (byte {problem.start + 1})"
-        raise PursueError([error("CLI002", message, hint=f"name {what}")], exit_status=2) from None
+        raise PursueError([error("CLI002", message, hint=f"name {what}")]) from None
     except (OSError, ValueError) as problem:
         message = f"cannot read {file}: {_reason(problem)}"
-        raise PursueError([error("CLI001", message, hint=f"name {what}")], exit_status=2) from None
+        raise PursueError([error("CLI001", message, hint=f"name {what}")]) from None
 
 
 def write_texts(texts: Mapping[Path, str]) -> None:
@@ -48,10 +48,10 @@ def check_new(file: Path, force: bool) -> None:
     """
     if file.is_symlink():
         message = f"cannot write {file}: it is a link"
-        raise PursueError([error("CLI003", message, hint="name the file that it leads to, or another one")], 2)
+        raise PursueError([error("CLI003", message, hint="name the file that it leads to, or another one")])
     if file.exists() and not force:
         message = f"cannot write {file}: it is there already"
-        raise PursueError([error("CLI003", message, hint="name another file, or replace it with --force")], 2)
+        raise PursueError([error("CLI003", message, hint="name another file, or replace it with --force")])
 
 
 def write_bytes(contents: Mapping[Path, bytes]) -> None:
@@ -78,7 +78,7 @@ def write_bytes(contents: Mapping[Path, bytes]) -> None:
             staged.pop(0)
     except OSError as problem:
         message = f"cannot write {file}: {_reason(problem)}"
-        raise PursueError([error("CLI003", message, hint="name another place with -o")], exit_status=2) from None
+        raise PursueError([error("CLI003", message, hint="name another place with -o")]) from None
     finally:
         for name, _ in staged:
             with contextlib.suppress(OSError):
@@ -97,7 +97,7 @@ def compose_yaml(text: str, file: str, code: str, hint: str) -> Any:
     except BadText as problem:
         line, column = max(1, problem.line), max(1, problem.column)
         place = Span(file, line, column, line, column + 1)
-        raise PursueError([error(code, problem.reason, place, hint)], exit_status=2) from None
+        raise PursueError([error(code, problem.reason, place, hint)]) from None
 
 
 def span_of(node: Any, file: str) -> Span:

@@ -1,12 +1,22 @@
 """How a command can end other than well: a type of error for each outcome, with the exit status that it gets.
 
-An error of no type here is a PursueError: what was given has errors, or (status 2) cannot be used. Programs catch these
-types; the numbers are for those who start a command (docs/commands.md lists them).
+An error of no type here is a PursueError: a command line or a file that cannot be used (status 2). Programs catch these
+types; the numbers are for those who start a command (docs/commands.md lists them), and stand nowhere else.
 """
 
 from __future__ import annotations
 
 from pursue_gen.diagnostics import PursueError
+
+INTERNAL, NO, INTERRUPTED, BROKEN_PIPE = 1, 1, 130, 141
+"""Exit statuses without findings: an internal error; the answer is no (`fmt --check`: a file would change); it was
+interrupted; stdout is closed."""
+
+
+class Invalid(PursueError):
+    """What was given (a scenario, a network, a plan) was read, and has errors."""
+
+    exit_status = 3
 
 
 class Lost(PursueError):

@@ -33,7 +33,7 @@ def check_name(file: Path) -> None:
     if file.suffix not in (".svg", ".html"):
         message = f"--picture {file}: the format is not known"
         hint = "name a file that ends with .svg (the picture), or .html (a page with the picture and the tables)"
-        raise PursueError([error("CAL004", message, hint=hint)], exit_status=2)
+        raise PursueError([error("CAL004", message, hint=hint)])
 
 
 def write(proposal: Proposal, verdicts: Sequence[Verdict], file: Path) -> None:

@@ -43,7 +43,7 @@ def samples_in(
         begun = len(found.unused)
         what = f"{begun} {'was' if begun == 1 else 'were'} begun, and none ended" if begun else "none was begun"
         message = f"no drive and no action was measured in {', '.join(file.name for file in files)}: {what}"
-        raise PursueError([error("CAL002", message, hint=_RECORD)], exit_status=2)
+        raise PursueError([error("CAL002", message, hint=_RECORD)])
     return found, tuple(findings)
 
 
@@ -70,7 +70,7 @@ def _check_names(part: Samples, scenario: Scenario, file: Path) -> None:
         return
     theirs, ours = ", ".join(part.agents[:_SOME]), ", ".join(sorted(known)[:_SOME])
     message = f"{file} was recorded with another scenario: it is about {theirs}, and {scenario.file} has {ours}"
-    raise PursueError([error("CAL001", message, hint="name the scenario that was played, or other recordings")], 2)
+    raise PursueError([error("CAL001", message, hint="name the scenario that was played, or other recordings")])
 
 
 def _unit(files: Sequence[Path], parts: Sequence[Samples]) -> float:
@@ -79,7 +79,7 @@ def _unit(files: Sequence[Path], parts: Sequence[Samples]) -> float:
         each = ", ".join(f"{unit:g} s in {name}" for unit, name in units.items())
         message = f"the recordings have different time units: {each}"
         hint = "say how many seconds a time unit is to be: --time-unit SECONDS"
-        raise PursueError([error("CAL003", message, hint=hint)], exit_status=2)
+        raise PursueError([error("CAL003", message, hint=hint)])
     return next((unit for unit in units if unit is not None), 1.0)
 
 

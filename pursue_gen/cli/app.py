@@ -30,6 +30,7 @@ from pursue_gen.cli.survey import survey
 from pursue_gen.cli.tga import tga
 from pursue_gen.cli.verify import verify
 from pursue_gen.cli.ws import ws
+from pursue_gen.outcomes import INTERRUPTED
 
 app = typer.Typer(
     name="pursue-gen",
@@ -59,7 +60,7 @@ def main() -> None:
     try:
         app(prog_name="pursue-gen")
     except KeyboardInterrupt:  # before or after the command itself
-        sys.exit(130)
+        sys.exit(INTERRUPTED)
 
 
 def _version(wanted: bool) -> None:

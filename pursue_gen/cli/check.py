@@ -10,7 +10,7 @@ from typing import List, Optional
 
 import typer
 
-from pursue_gen.cli.console import guarded, info, show, suggest
+from pursue_gen.cli.console import ended, guarded, info, show, suggest
 from pursue_gen.cli.options import SPOT_DISTANCE
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, as_json, counted
 from pursue_gen.files import shell_quoted
@@ -29,7 +29,7 @@ def check(
 
     Findings go to stdout; the exit status is 3 where there are errors, 2 where a file cannot be read.
     """
-    from pursue_gen.solving.inputs import exit_status, findings_in
+    from pursue_gen.solving.inputs import findings_in, outcome_of
 
     findings = [finding for file in files for finding in findings_in(file)]
     if floor is not None:
@@ -40,9 +40,10 @@ def check(
         show(findings, sys.stdout)
     errors = sum(finding.severity is Severity.ERROR for finding in findings)
     info(f"{counted(len(files), 'file')}: {counted(errors, 'error')}, {counted(len(findings) - errors, 'warning')}")
-    if errors:
-        suggest(f"pursue-gen explain {next(f.code for f in findings if f.severity is Severity.ERROR)}")
-        raise typer.Exit(exit_status(findings))
+    problem = outcome_of(findings)
+    if problem is not None:
+        suggest(f"pursue-gen explain {problem.diagnostics[0].code}")
+        raise ended(problem)
     for file in files:
         for sentence in (*_periods(file), *_moved(file, spot_distance)):
             info(f"{file}: {sentence}")

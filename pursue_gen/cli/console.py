@@ -10,10 +10,8 @@ from typing import Any, Callable, Dict, Iterable, Optional, TextIO
 import typer
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, render
+from pursue_gen.outcomes import BROKEN_PIPE, INTERNAL, INTERRUPTED
 from pursue_runtime.named_files import read_text
-
-INTERNAL, INTERRUPTED, BROKEN_PIPE = 1, 130, 141
-"""Exit statuses beside those of PursueError: an internal error; Ctrl-C; stdout is closed."""
 
 _COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33"}
 

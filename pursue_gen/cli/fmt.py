@@ -10,6 +10,7 @@ import typer
 
 from pursue_gen.cli.console import guarded, info
 from pursue_gen.diagnostics import Diagnostic, PursueError, counted, usage_error
+from pursue_gen.outcomes import NO, Invalid
 
 
 @guarded
@@ -56,6 +57,7 @@ def fmt(
         info(f"{counted(len(files), 'file')}: {len(changed)} {word}, {len(layouts) - len(changed)} unchanged")
     if problems:
         findings: List[Diagnostic] = [finding for problem in problems for finding in problem.diagnostics]
-        raise PursueError(findings, min(problem.exit_status for problem in problems))
+        outcome = Invalid if all(isinstance(problem, Invalid) for problem in problems) else PursueError
+        raise outcome(findings)
     if check and changed:
-        raise typer.Exit(1)
+        raise typer.Exit(NO)

@@ -8,7 +8,7 @@ import typer
 
 from pursue_gen.cli.console import guarded
 from pursue_gen.diagnostics import error
-from pursue_gen.outcomes import Unavailable
+from pursue_gen.outcomes import NO, Unavailable
 
 
 @guarded
@@ -31,6 +31,5 @@ def lsp(
         hint = "install it: pip install 'pursue-gen[lsp]', or pip install pygls"
         message = f"the language server needs the Python package pygls ({missing} was not found)"
         raise Unavailable([error("CLI006", message, hint=hint)]) from None
-    status = serve(docs)
-    if status:
-        raise typer.Exit(status)
+    if not serve(docs):
+        raise typer.Exit(NO)

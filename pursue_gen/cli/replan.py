@@ -8,8 +8,9 @@ import select
 import sys
 import threading
 
-from pursue_gen.cli.console import BROKEN_PIPE, guarded
+from pursue_gen.cli.console import guarded
 from pursue_gen.diagnostics import usage_error
+from pursue_gen.outcomes import BROKEN_PIPE
 
 
 @guarded

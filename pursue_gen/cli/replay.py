@@ -12,6 +12,7 @@ import typer
 from pursue_gen.cli.console import guarded, info
 from pursue_gen.cli.options import JSON, REQUEST, with_request
 from pursue_gen.diagnostics import usage_error
+from pursue_gen.outcomes import NO
 
 if TYPE_CHECKING:
     from pursue_gen.calibration.proposal import Proposal
@@ -65,7 +66,7 @@ def replay(
     proposal = of_mission(record, game.scenario, source.rules.slack, tolerance, recording.name)
     _print(findings, game, record, recording, proposal, quiet, as_json_)
     if not (findings.kept and findings.won):
-        raise typer.Exit(1)
+        raise typer.Exit(NO)
 
 
 def _draw(record: MissionRecord, game: Game, recording: Path, timeline: Path) -> None:

@@ -15,6 +15,7 @@ from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.options import JSON, REQUEST, SCENARIO, with_request
 from pursue_gen.diagnostics import counted, usage_error
 from pursue_gen.files import shell_quoted
+from pursue_gen.outcomes import NO
 
 if TYPE_CHECKING:
     from pursue_gen.simulation.runs import Case, Summary
@@ -102,7 +103,7 @@ def sim(
     facts = {"scenario": read.name, "seed": seed, "opponent": opponent.value, "faults": list(kinds)}
     _print(case, summary, facts, as_json_)
     if summary.failed:
-        raise typer.Exit(1)
+        raise typer.Exit(NO)
     suggest(f"pursue-gen ws {shell_quoted(scenario)}")
 
 

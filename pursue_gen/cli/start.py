@@ -5,10 +5,8 @@ from __future__ import annotations
 import sys
 
 from pursue_gen.needs import NEEDS
+from pursue_gen.outcomes import Unavailable
 from pursue_runtime.needs import NeedError, require
-
-_MISSING = 6
-"""The exit status where something that is needed is missing."""
 
 
 def main() -> None:
@@ -17,7 +15,7 @@ def main() -> None:
         require(*NEEDS)
     except NeedError as problem:
         print(f"pursue-gen: {problem}\n    help: {problem.hint}", file=sys.stderr)
-        sys.exit(_MISSING)
+        sys.exit(Unavailable.exit_status)
     from pursue_gen.cli.app import main as run
 
     run()

@@ -18,7 +18,7 @@ from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import condition_of_promise, objective_words, periods_found, promise_words
-from pursue_gen.outcomes import LimitHit, Lost
+from pursue_gen.outcomes import INTERRUPTED, LimitHit, Lost
 from pursue_gen.report.make import ReportOptions, lost_report, won_report
 from pursue_gen.report.whole import report_page
 from pursue_gen.solving.inputs import game_of, settled
@@ -92,7 +92,7 @@ def _end_with_parent() -> None:
 
         def watch() -> None:
             wait([parent.sentinel])
-            os._exit(1)
+            os._exit(INTERRUPTED)
 
         threading.Thread(target=watch, daemon=True).start()
 

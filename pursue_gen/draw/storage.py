@@ -70,4 +70,4 @@ def save(file: Path, text: str) -> str:
 
 
 def _cannot(file: Path, why: str, hint: str) -> PursueError:
-    return PursueError([error("CLI001", f"{file} cannot be drawn: {why}", hint=hint)], exit_status=2)
+    return PursueError([error("CLI001", f"{file} cannot be drawn: {why}", hint=hint)])

@@ -230,4 +230,4 @@ def _is_number(value: object) -> bool:
 
 def unusable(file: Path, what: str, expected: str) -> PursueError:
     """The error for a map that cannot be used (exit status 2)."""
-    return PursueError([error("REP001", f"the map {file} cannot be used: {what}", hint=f"expected: {expected}")], 2)
+    return PursueError([error("REP001", f"the map {file} cannot be used: {what}", hint=f"expected: {expected}")])

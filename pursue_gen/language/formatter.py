@@ -7,9 +7,10 @@ from typing import Any, FrozenSet, Iterator, List, Optional, Tuple
 
 from lark import Token
 
-from pursue_gen.diagnostics import PursueError, Severity
+from pursue_gen.diagnostics import Severity
 from pursue_gen.language.formatter_items import LINE, Item, items_of
 from pursue_gen.language.syntax import read_statements
+from pursue_gen.outcomes import Invalid
 
 WIDTH = 100
 """A statement that is longer goes on in the next line, where it can be broken; a comment is as long as it is."""
@@ -49,7 +50,7 @@ def format_text(text: str, file: str) -> str:
     trees, findings = read_statements(text, file)
     errors = [finding for finding in findings if finding.severity is Severity.ERROR]
     if errors:
-        raise PursueError(errors)
+        raise Invalid(errors)
     starts = frozenset(_start(tree) for tree in trees)
     blocks = [_block(group) for group in _groups(items_of(text), starts)]
     lines: List[str] = []

@@ -42,7 +42,7 @@ def layout_of(file: str) -> Layout:
     path = Path(file)
     if path.exists() and not path.is_file():
         message = f"{file} is not a file whose text could be changed"
-        raise PursueError([error("CLI001", message, hint="name scenario files; - stands for stdin")], exit_status=2)
+        raise PursueError([error("CLI001", message, hint="name scenario files; - stands for stdin")])
     return layout_of_bytes(read_bytes(file), file)
 
 
@@ -78,7 +78,7 @@ def replace_text(layout: Layout) -> None:
     except OSError as problem:
         message = f"cannot write {layout.file}: {problem.strerror or problem}"
         hint = "allow writing there, or print the text with: pursue-gen fmt - < FILE"
-        raise PursueError([error("CLI003", message, hint=hint)], exit_status=2) from None
+        raise PursueError([error("CLI003", message, hint=hint)]) from None
     finally:
         if staged:
             with contextlib.suppress(OSError):

@@ -16,6 +16,7 @@ from pursue_gen.language.number_messages import no_count, no_number
 from pursue_gen.language.numbers import Number, is_fine, read_number
 from pursue_gen.language.poses import PoseComment, read_poses
 from pursue_gen.language.syntax import MOST_LETTERS, cut, span_of, too_large
+from pursue_gen.outcomes import Invalid
 from pursue_runtime.named_files import read_start
 
 MOST = 1_000_000
@@ -68,13 +69,13 @@ def read_bytes(file: str) -> bytes:
     except (OSError, ValueError) as problem:
         reason = getattr(problem, "strerror", None) or str(problem)
         hint = "name a scenario file, by convention *.pur"
-        raise PursueError([error("PML001", f"cannot read {file}: {reason}", hint=hint)], exit_status=2) from None
+        raise PursueError([error("PML001", f"cannot read {file}: {reason}", hint=hint)]) from None
 
 
 def text_of(content: bytes, file: str) -> str:
     """The text in the bytes of a scenario. Raises PursueError where there are too many, or they are not text."""
     if len(content) > MOST_BYTES and b"\0" not in content:  # of a program or a picture that it is large says less
-        raise PursueError([too_large(file)])
+        raise Invalid([too_large(file)])
     hint = "save the scenario as plain text in UTF-8; a word processor's file is not plain text"
     try:
         text = content.decode("utf-8-sig")
@@ -82,10 +83,10 @@ def text_of(content: bytes, file: str) -> str:
         if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
             hint = "it is text in UTF-16: save it as UTF-8"
         message = f"{file} is not text in UTF-8 (byte {problem.start + 1})"
-        raise PursueError([error("PML002", message, hint=hint)], exit_status=2) from None
+        raise PursueError([error("PML002", message, hint=hint)]) from None
     if "\0" in text:
         message = f"{file} is not plain text: it holds bytes that are 0 (the first is byte {content.index(0) + 1})"
-        raise PursueError([error("PML002", message, hint=hint)], exit_status=2)
+        raise PursueError([error("PML002", message, hint=hint)])
     return text
 
 
@@ -125,7 +126,7 @@ def without_errors(scenario: Optional[pml.Scenario], findings: Tuple[Diagnostic,
     """The scenario. Raises PursueError with the errors among the findings, if there are any."""
     errors = [finding for finding in findings if finding.severity is Severity.ERROR]
     if errors or scenario is None:
-        raise PursueError(errors)
+        raise Invalid(errors)
     return scenario
 
 

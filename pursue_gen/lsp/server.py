@@ -34,18 +34,18 @@ MAP = "pursue/map"
 _REQUEST_FAILED = -32803
 
 
-def serve(pages: Optional[str] = None) -> int:
-    """Serve an editor until it exits; return the exit status: 0 after the protocol's shutdown request, else 1.
+def serve(pages: Optional[str] = None) -> bool:
+    """Serve an editor until it exits; return True after the protocol's shutdown request.
 
-    Raises PursueError (exit status 2) for a message that is refused (`framing`).
+    Raises PursueError for a message that is refused (`framing`).
     """
     logging.disable(logging.CRITICAL)  # what goes wrong is answered; on stderr editors show it as a failure
     session, messages = Session(pages), BoundedInput(sys.stdin.buffer)
     with suppress(SystemExit), os.fdopen(os.dup(sys.stdout.fileno()), "wb") as answers:  # how pygls 1 ends
         session.server.start_io(messages, answers)  # which it closes
     if messages.refusal is not None:
-        raise PursueError([messages.refusal], exit_status=2)
-    return 0 if session.is_shut_down else 1
+        raise PursueError([messages.refusal])
+    return session.is_shut_down
 
 
 class Session:

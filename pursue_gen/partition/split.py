@@ -13,7 +13,7 @@ from typing import Dict, List, Sequence, Tuple
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.network_names import is_reach_objective, is_safety_objective
 from pursue_gen.language.scenario import Agent
-from pursue_gen.outcomes import NotProven
+from pursue_gen.outcomes import Invalid, NotProven
 from pursue_gen.synthesis.strategy import Command, DiscreteState, Strategy
 from pursue_gen.tga.network import Network, is_end
 
@@ -129,13 +129,13 @@ def _check_options(controllers: str, reach_obj: str, robots: Tuple[str, ...]) ->
     shapes = (DISTRIBUTED, CENTRALIZED, GENERAL)
     if controllers not in shapes:
         message = f"there are no '{controllers}' controllers; expected {', '.join(shapes)}"
-        raise PursueError([error("PAR001", message, hint=f"choose {DISTRIBUTED} for one controller per robot")], 2)
+        raise PursueError([error("PAR001", message, hint=f"choose {DISTRIBUTED} for one controller per robot")])
     if reach_obj not in (DEDICATED, ALL, *robots):
         message = f"'{reach_obj}' cannot have reachObj's commands; expected {', '.join((DEDICATED, ALL, *robots))}"
-        raise PursueError([error("PAR002", message, hint=f"choose {DEDICATED} for a controller of their own")], 2)
+        raise PursueError([error("PAR002", message, hint=f"choose {DEDICATED} for a controller of their own")])
     if reach_obj == ALL and not robots:
         message = "no robot can have reachObj's commands: the scenario has no controllable robot"
-        raise PursueError([error("PAR002", message, hint=f"choose {DEDICATED} for a controller of their own")], 2)
+        raise PursueError([error("PAR002", message, hint=f"choose {DEDICATED} for a controller of their own")])
 
 
 def _check_senders(strategy: Strategy, network: Network, controlled: Tuple[str, ...]) -> None:
@@ -150,4 +150,4 @@ def _check_senders(strategy: Strategy, network: Network, controlled: Tuple[str, 
             what = "an agent or rule that nobody controls" if name in known else "no automaton of the network"
             message = f"the strategy commands {name}.{edge.source}->{name}.{edge.target}, but '{name}' is {what}"
             hint = f"use the plan with its own scenario, or make the agent '{name}' controllable"
-            raise PursueError([error("PAR004", message, hint=hint)])
+            raise Invalid([error("PAR004", message, hint=hint)])

@@ -85,7 +85,7 @@ def verify(
     if strategy.counter:
         return Report(False, "counter-strategy: it shows why the controller loses", (), frozenset(), 0)
     if reaction < 0:
-        raise PursueError([error("SYN103", f"the reaction time is {reaction}", hint="give 0 or more time units")], 2)
+        raise PursueError([error("SYN103", f"the reaction time is {reaction}", hint="give 0 or more time units")])
     prompt = reaction == 0 if prompt is None else prompt
     if strategy.in_parts:
         if strategy.stages and strategy.left_out_clocks:

@@ -6,7 +6,8 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import error
+from pursue_gen.outcomes import Invalid
 from pursue_gen.proof import reasons
 from pursue_gen.proof.delays import Act, Advice, Broken, Passage, Rules, pass_time
 from pursue_gen.proof.extrapolation import Described, MaxConstants
@@ -181,7 +182,7 @@ class ClosedLoop:
             return 0
         if clock not in self.arena.clock:
             hint = f"the clocks are {', '.join(self.arena.clock)}"
-            raise PursueError([error("SYN104", f"the strategy speaks of a clock {clock}", hint=hint)])
+            raise Invalid([error("SYN104", f"the strategy speaks of a clock {clock}", hint=hint)])
         return self.arena.clock[clock]
 
     def _raw(self, bound: Fraction, strict: bool) -> int:
@@ -224,7 +225,7 @@ def _same(some: Sequence[object], others: Sequence[object]) -> bool:
 def _places(network: Network, places: Sequence[Tuple[str, str]]) -> Tuple[Tuple[int, str], ...]:
     """Pairs (automaton, location) with the numbers of the automata."""
     if not places:
-        raise PursueError([error("SYN105", "the objective names no goal or no location to avoid")])
+        raise Invalid([error("SYN105", "the objective names no goal or no location to avoid")])
     return tuple((_number(network, name, location), location) for name, location in places)
 
 
@@ -233,7 +234,7 @@ def _number(network: Network, name: str, location: str) -> int:
         if automaton.name == name and any(other.name == location for other in automaton.locations):
             return k
     problem = f"the objective speaks of {name}.{location}, which the network does not have"
-    raise PursueError([error("SYN105", problem)])
+    raise Invalid([error("SYN105", problem)])
 
 
 def _zones_of(block: Block) -> Iterator[Zone]:

@@ -10,7 +10,8 @@ from functools import lru_cache, partial
 from itertools import product
 from typing import Callable, Dict, Iterable, List, Optional, Set, Tuple
 
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import error
+from pursue_gen.outcomes import Invalid
 from pursue_gen.synthesis.strategy import DiscreteState, Move
 from pursue_gen.tga.network import ClockBound, Constraint, Edge, Guard, Location, Network
 from pursue_gen.zones.dbm import Dbm, raw
@@ -89,7 +90,7 @@ class Arena:
             zone = None if zone is None or min(i, j) < 0 else zone.constrained(i, j, self._raw(c))
         if zone is None:
             hint = f"give bounds that the clocks {', '.join(self.clock)} can have together, all of them 0 or more"
-            raise PursueError([error("SYN106", "no values of the clocks satisfy the bounds at the start", hint=hint)])
+            raise Invalid([error("SYN106", "no values of the clocks satisfy the bounds at the start", hint=hint)])
         return zone
 
     def _raw(self, constraint: Constraint) -> int:
@@ -99,14 +100,14 @@ class Arena:
         for automaton in self.network.automata:
             for edge in automaton.edges:
                 if edge.sync is not None and not edge.sync.sends and edge.guard.clocks:
-                    raise PursueError([error(
+                    raise Invalid([error(
                         "SYN101",
                         f"the receiving edge {edge.source} -> {edge.target} of {automaton.name} has a guard on a clock",
                         hint="only senders may test clocks: move the guard to the sending edge",
                     )])
             for location in automaton.locations:
                 if any(bound.op not in ("<", "<=") for bound in location.invariant):
-                    raise PursueError([error(
+                    raise Invalid([error(
                         "SYN102",
                         f"the invariant of {automaton.name}.{location.name} is not an upper bound",
                         hint="an invariant may only say that a clock is < or <= a constant",

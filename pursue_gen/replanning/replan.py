@@ -59,7 +59,7 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
     try:
         game = played(ideal, request.rules)
     except PursueError as problem:  # a slack that is none
-        raise PursueError(problem.diagnostics, 2) from None
+        raise PursueError(problem.diagnostics) from None
     network = network_from(game, request)
     reason = _reason_lost(network, objective, request.scenario)
     if reason:

@@ -78,7 +78,7 @@ def read_request(data: object) -> Request:
 
 def wrong(message: str, expected: str) -> PursueError:
     """What is wrong with a request."""
-    return PursueError([error("RPL001", f"the request cannot be used: {message}", hint=f"expected {expected}")], 2)
+    return PursueError([error("RPL001", f"the request cannot be used: {message}", hint=f"expected {expected}")])
 
 
 @lru_cache(maxsize=4)  # simulated missions look for many plans of one scenario
@@ -89,7 +89,7 @@ def _scenario(name: str, text: str) -> Scenario:
         try:
             without_errors(reading.scenario, findings)
         except PursueError as problem:
-            raise PursueError(problem.diagnostics, 2) from None
+            raise PursueError(problem.diagnostics) from None
     assert reading.scenario is not None
     return reading.scenario
 

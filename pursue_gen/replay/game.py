@@ -82,7 +82,7 @@ def from_data(data: Mapping[str, Any], file: str, plan: Optional[Tuple[str, str]
         optimize = None if made.get("optimize") is None else str(made["optimize"])
     except (KeyError, TypeError, ValueError, AttributeError) as problem:
         message = f"{file} does not describe a game: {problem!r}"
-        raise PursueError([error("RPL005", message, hint=NAME_IT)], 2) from None
+        raise PursueError([error("RPL005", message, hint=NAME_IT)]) from None
     asked = SolveOptions(optimize=optimize, within=within)
     return Source(name, text, file, played_by, *shape, plan, asked, str(made.get("sha256", "")), given_up)
 
@@ -92,7 +92,7 @@ def from_workspace(folder: Path) -> Source:
     games = [path for path in sorted(folder.glob("src/*/config/game.yaml")) if path.is_file()]
     if not games:
         hint = "name a workspace that pursue-gen ws wrote, or the scenario: pursue-gen replay FILE SCENARIO"
-        raise PursueError([error("RPL006", f"{folder} holds no game (src/observer/config/game.yaml)", hint=hint)], 2)
+        raise PursueError([error("RPL006", f"{folder} holds no game (src/observer/config/game.yaml)", hint=hint)])
     text = read_text(games[0], "a workspace's game.yaml")
     path = folder / "UPPAAL_plan.txt"
     plan = (read_text(path, "a plan", LARGEST_TEXT), str(path)) if path.is_file() else None
@@ -104,9 +104,9 @@ def read_game(text: str, file: str) -> Mapping[str, Any]:
     try:
         data = read_yaml(text)
     except BadText as problem:
-        raise PursueError([error("RPL005", f"{file} does not describe a game: {problem}", hint=NAME_IT)], 2) from None
+        raise PursueError([error("RPL005", f"{file} does not describe a game: {problem}", hint=NAME_IT)]) from None
     if not isinstance(data, dict):
-        raise PursueError([error("RPL005", f"{file} does not describe a game", hint=NAME_IT)], 2)
+        raise PursueError([error("RPL005", f"{file} does not describe a game", hint=NAME_IT)])
     return data
 
 

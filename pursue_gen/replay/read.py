@@ -186,4 +186,4 @@ def _whole(value: Any) -> int:
 
 
 def _unreadable(message: str, code: str, hint: str = EXPECTED) -> PursueError:
-    return PursueError([error(code, message, hint=hint)], exit_status=2)
+    return PursueError([error(code, message, hint=hint)])

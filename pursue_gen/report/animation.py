@@ -47,7 +47,7 @@ def check_name(file: Path) -> None:
     if file.suffix not in (".svg", ".html"):
         message = f"--timeline {file}: the format is not known"
         hint = "name a file that ends with .svg (the timeline), or .html (a page with the timeline and an animation)"
-        raise PursueError([error("REP010", message, hint=hint)], exit_status=2)
+        raise PursueError([error("REP010", message, hint=hint)])
 
 
 def write(recording: Recording, file: Path) -> None:

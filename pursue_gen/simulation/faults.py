@@ -48,12 +48,12 @@ def read_faults(text: str) -> Tuple[str, ...]:
     wrong = [name for name in names if "=" in name and _rate(name) is None]
     if wrong:
         hint = f"a probability from 0 to 1 for {', '.join(RATES)}, such as loss=0.2"
-        raise PursueError([error("SIM002", f"{', '.join(wrong)} is no fault with a probability", hint=hint)], 2)
+        raise PursueError([error("SIM002", f"{', '.join(wrong)} is no fault with a probability", hint=hint)])
     kinds = {name.partition("=")[0]: name for name in names}
     unknown = [name for name in kinds if name not in FAULTS]
     if unknown:
         hint = f"names with commas between them: {', '.join(FAULTS)}; or all, or none"
-        raise PursueError([error("SIM002", f"there are no faults called {', '.join(unknown)}", hint=hint)], 2)
+        raise PursueError([error("SIM002", f"there are no faults called {', '.join(unknown)}", hint=hint)])
     return tuple(kinds[name] for name in FAULTS if name in kinds)
 
 

@@ -13,6 +13,7 @@ from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import Reading, read
 from pursue_gen.language.parser import read_text as read_scenario
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.outcomes import Invalid
 from pursue_gen.solving.assumed_alone import check_assumed_alone
 from pursue_gen.solving.forbidden import check_forbidden
 from pursue_gen.solving.periods import least_period, longest, with_period, without_period
@@ -45,10 +46,11 @@ def findings_of(reading: Reading) -> Tuple[Diagnostic, ...]:
     )
 
 
-def exit_status(findings: Iterable[Diagnostic]) -> int:
-    """The status with which a command ends that found this: 0 without errors, 2 where a file cannot be read, else 3."""
-    errors = {finding.code for finding in findings if finding.severity is Severity.ERROR}
-    return 2 if errors.intersection(_UNREADABLE) else 3 if errors else 0
+def outcome_of(findings: Iterable[Diagnostic]) -> Optional[PursueError]:
+    """How a command ends that found this: None without errors, Invalid unless a file cannot be read."""
+    errors = [finding for finding in findings if finding.severity is Severity.ERROR]
+    outcome = PursueError if any(finding.code in _UNREADABLE for finding in errors) else Invalid
+    return outcome(errors) if errors else None
 
 
 def are_scenario(files: Sequence[Path]) -> bool:

@@ -203,7 +203,7 @@ def check_goal(objective: Objective, option: str) -> None:
     """Raises PursueError (exit status 2) for an objective without a goal, where an option is about the time to it."""
     if objective.kind is Kind.SAFETY:
         hint = f"leave {option} out; it is for objectives with a goal: reach_objective: do ..."
-        raise PursueError([error("SYN022", "a safety objective has no time to the goal", hint=hint)], exit_status=2)
+        raise PursueError([error("SYN022", "a safety objective has no time to the goal", hint=hint)])
 
 
 def guaranteed(won: Solution, states: int = 500, limits: Limits = NO_LIMITS) -> Guarantee:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, PursueError, counted, error, in_order, usage_error
+from pursue_gen.diagnostics import Diagnostic, counted, error, in_order, usage_error
 from pursue_gen.drawing.ground import Ground
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.checks import check_reading
@@ -15,6 +15,7 @@ from pursue_gen.language.numbers import Number
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Connection, Pose, Ref, Scenario, Spot
 from pursue_gen.language.similar import closest
+from pursue_gen.outcomes import Invalid
 from pursue_gen.survey import findings as found_wrong
 from pursue_gen.survey.copying import SURVEY, Movement, others_windows, rounded, with_ways, written
 from pursue_gen.survey.graph import graph_of
@@ -151,14 +152,14 @@ def _plan(scenario: Scenario, grid: Grid, options: Options) -> Plan:
     if len(posed) < 2:
         message = f"{counted(len(posed), 'place')} of {len(scenario.pois)} with a pose: nothing can be measured"
         hint = 'write a pose behind each place: poi "desk" //[x, y, z, qx, qy, qz, qw], metres on the map'
-        raise PursueError([error("MAP001", message, span, hint)])
+        raise Invalid([error("MAP001", message, span, hint)])
     if len(posed) > MOST_PLACES:
         message = f"{len(posed)} places; at most {MOST_PLACES} can be surveyed at once"
-        raise PursueError([error("MAP001", message, span, "survey the floors of the building one by one")])
+        raise Invalid([error("MAP001", message, span, "survey the floors of the building one by one")])
     if not grid.free.any():
         message = f"the map has no free ground for a robot with a radius of {options.radius:g} m"
         hint = "look at negate, free_thresh and resolution of the map, or try a smaller --radius"
-        raise PursueError([error("MAP001", message, span, hint)])
+        raise Invalid([error("MAP001", message, span, hint)])
     points = {poi.name: (poi.pose.x, poi.pose.y) for poi in posed if poi.pose is not None}
     return Plan(graph_of(grid), {name: at for name, at in points.items() if grid.is_free(grid.cell(*at))}, options.room)
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, PursueError, error
+from pursue_gen.diagnostics import Diagnostic, error
+from pursue_gen.outcomes import Invalid
 from pursue_gen.synthesis.game import NO_CHANNEL, Bound, Clause, Game, GameAutomaton, GameEdge
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Network, Objective
 from pursue_gen.tga.scale import common_denominator
@@ -40,7 +41,7 @@ def compile_game(
         automata.append(tables.automaton(automaton, range(first, len(edges))))
     start = tables.start(network)
     if problems:
-        raise PursueError(problems)
+        raise Invalid(problems)
     return Game(
         kind=objective.kind,
         goal=goal if objective.kind is not Kind.SAFETY else (),

@@ -17,7 +17,7 @@ import re
 from typing import Dict, List, NoReturn, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
-from pursue_gen.outcomes import NotProven
+from pursue_gen.outcomes import Invalid, NotProven
 from pursue_gen.synthesis.plan_parts import left_out_lines, read_left_out_clocks, read_shares, read_stages, spoken_of
 from pursue_gen.synthesis.plan_text import (
     ALWAYS,
@@ -83,7 +83,7 @@ class _Reader:
     def fail(self, code: str, message: str, hint: str) -> NoReturn:
         """Raises a PursueError at the line that is being read."""
         span = Span(self.file, self.line, 1, self.line, len(self.text) + 1)
-        raise PursueError([error(code, message, span, hint)])
+        raise Invalid([error(code, message, span, hint)])
 
     def zones(self, text: str) -> Tuple[Zone, ...]:
         """The zones in `(a && b) || (c)`."""
@@ -340,7 +340,7 @@ def _no_strategy(text: str, file: str) -> PursueError:
     if verdict is None:
         span = Span(file, 1, 1, 1, 1)
         what = "the file is empty" if not text.strip() else "this is no plan: no line says `Strategy to …:`"
-        return PursueError([error("PLN001", what, span, _RUN_AGAIN)])
+        return Invalid([error("PLN001", what, span, _RUN_AGAIN)])
     line = text.count("\n", 0, verdict.start()) + 1
     column = verdict.start() - text.rfind("\n", 0, verdict.start())
     span = Span(file, line, column, line, column + len(verdict.group()))
@@ -349,7 +349,7 @@ def _no_strategy(text: str, file: str) -> PursueError:
         hint = "change the scenario; `verifytga -t0` prints the counter-strategy, which shows why it loses"
         return NotProven([error("PLN002", message, span, hint)])
     message = "the plan says that the objective is met, and holds no strategy"
-    return PursueError([error("PLN001", message, span, _RUN_AGAIN)])
+    return Invalid([error("PLN001", message, span, _RUN_AGAIN)])
 
 
 def _printed(location: str, named: bool) -> str:

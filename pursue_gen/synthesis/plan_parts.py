@@ -17,6 +17,7 @@ import re
 from typing import List, Match, Pattern, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
+from pursue_gen.outcomes import Invalid
 from pursue_gen.synthesis.strategy import Place, Strategy
 from pursue_gen.tga.ending import is_value
 from pursue_gen.tga.network import Network
@@ -92,7 +93,7 @@ def read_left_out_clocks(text: str, network: Network, file: str) -> Tuple[str, .
 def _unknown(text: str, match: Match[str], message: str, file: str) -> PursueError:
     line = text.count("\n", 0, match.start()) + 1
     span = Span(file, line, 1, line, len(match.group()) + 1)
-    return PursueError([error("PLN005", message, span, "read the plan with the network that it was made for")])
+    return Invalid([error("PLN005", message, span, "read the plan with the network that it was made for")])
 
 
 def spoken_of(text: str, network: Network, file: str) -> Network:

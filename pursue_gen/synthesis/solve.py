@@ -112,7 +112,7 @@ def solve(
         if engine is not None:
             hint = "leave the choice to pursue-gen, or use --engine python"
             message = f"the {engine} engine cannot hold the game: its times are too large, or it has too many clocks"
-            raise PursueError([error("SYN012", message, hint=hint)], exit_status=2)
+            raise PursueError([error("SYN012", message, hint=hint)])
         chosen = next(other for other in ENGINES if other.available() and other.holds(game))
     outcome = chosen.giving_first(first).solve(game, limits, progress, soonest)
     counts = outcome.counts

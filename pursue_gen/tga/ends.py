@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Dict, Mapping, Tuple
 
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import error
 from pursue_gen.language.network_names import is_under_way
 from pursue_gen.language.numbers import exact
+from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.network import Automaton, ClockBound, Location, Network, is_end, with_controllability
 
 
@@ -31,7 +32,7 @@ def ends_reported(network: Network, slack: Mapping[str, int]) -> Network:
         error("TGA021", f"the slack of {name} is {late}", hint=hint) for name, late in slack.items() if late < 0
     ]
     if problems:
-        raise PursueError(problems)
+        raise Invalid(problems)
     sharing = _sharing(network)
 
     def late(automaton: str, location: str) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import combinations
 from typing import Dict, List, Mapping, Sequence, Tuple
 
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import error
 from pursue_gen.language import network_names as names
 from pursue_gen.language.network_names import IDLE, LOSE, agent_position
 from pursue_gen.language.scenario import (
@@ -19,6 +19,7 @@ from pursue_gen.language.scenario import (
     Scenario,
     StatedObjective,
 )
+from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Objective, Sync, Test
 from pursue_gen.tga.patrols import patrol_automaton
@@ -42,7 +43,7 @@ def scenario_objective(scenario: Scenario) -> Objective:
     if bad:
         return Objective(Kind.SAFETY, bad=tuple(bad))
     message = f"{scenario.name} has no objective"
-    raise PursueError([error("TGA012", message, hint="add a line 'objective: …' or 'reach_objective: …'")])
+    raise Invalid([error("TGA012", message, hint="add a line 'objective: …' or 'reach_objective: …'")])
 
 
 def stated(scenario: Scenario) -> Dict[str, StatedObjective]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from typing import Mapping, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, PursueError, error, warning
+from pursue_gen.diagnostics import Diagnostic, error, warning
 from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.agents import Surroundings, agent_automaton
 from pursue_gen.tga.assumptions import assumed, assumption_clocks, assumption_variables
 from pursue_gen.tga.batteries import battery_variables, powered
@@ -113,4 +114,4 @@ def _check_names(network: Network) -> None:
         if count > 1
     ]
     if problems:
-        raise PursueError(problems)
+        raise Invalid(problems)

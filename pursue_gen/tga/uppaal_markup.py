@@ -11,7 +11,8 @@ from dataclasses import dataclass, field
 from typing import Dict, List, NoReturn, Optional, Tuple
 from xml.parsers import expat
 
-from pursue_gen.diagnostics import PursueError, Span, error
+from pursue_gen.diagnostics import Span, error
+from pursue_gen.outcomes import Invalid
 
 _LETTERS, _ELEMENTS, _DEPTH = 10_000_000, 100_000, 20
 """How much a text may hold. Networks of a hundred automata stay far below; UPPAAL's own files are 6 elements deep."""
@@ -47,7 +48,7 @@ class Element:
 
     def fail(self, code: str, message: str, hint: str = "") -> NoReturn:
         """Raises a PursueError at this element."""
-        raise PursueError([error(code, shortened(message), self.span, hint)])
+        raise Invalid([error(code, shortened(message), self.span, hint)])
 
 
 def shortened(text: str, most: int = _MESSAGE) -> str:
@@ -137,4 +138,4 @@ class _Reader:
         return Span(self._file, line, column, line, column + width)
 
     def _fail(self, line: int, column: int, message: str, hint: str) -> NoReturn:
-        raise PursueError([error("TGA001", message, self._span(line, column, 1), hint)])
+        raise Invalid([error("TGA001", message, self._span(line, column, 1), hint)])

@@ -13,7 +13,8 @@ from collections import Counter
 from fractions import Fraction
 from typing import Callable, Dict, List, Pattern, Tuple, TypeVar
 
-from pursue_gen.diagnostics import PursueError, Span, error
+from pursue_gen.diagnostics import Span, error
+from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
 from pursue_gen.tga.scale import scaled
 from pursue_gen.tga.uppaal_labels import (
@@ -107,7 +108,7 @@ def read_query(text: str, file: str) -> Objective:
     lines = text.rstrip().split("\n")
     span = Span(file, 1, 1, len(lines), len(lines[-1]) + 1)
     shown = lines[0].strip() if lines[0].strip() else "an empty file"
-    raise PursueError([error("TGA005", shortened(f"'{shown}' is not a query that this tool can play"), span, hint)])
+    raise Invalid([error("TGA005", shortened(f"'{shown}' is not a query that this tool can play"), span, hint)])
 
 
 def _uncommented(text: str, instead: str = " ") -> str:

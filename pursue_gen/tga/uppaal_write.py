@@ -12,7 +12,8 @@ from collections import Counter
 from typing import Dict, Iterable, Iterator, List, Optional, Tuple
 from xml.dom import minidom
 
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import error
+from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Network, Objective
 from pursue_gen.tga.scale import common_denominator, scaled
 from pursue_gen.tga.uppaal_words import renamed, uppaal_names
@@ -38,7 +39,7 @@ def write_network(network: Network, objective: Objective) -> str:
     """
     if network.start:
         message = "UPPAAL has no way to write a network whose clocks do not start at 0"
-        raise PursueError([error("TGA030", message, hint="write the network of the scenario, from its beginning")])
+        raise Invalid([error("TGA030", message, hint="write the network of the scenario, from its beginning")])
     factor = common_denominator(network.times)
     network = renamed(scaled(network, factor) if factor > 1 else network, uppaal_names(network))
     implementation = minidom.getDOMImplementation()

@@ -7,6 +7,7 @@ from typing import Dict, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.outcomes import Invalid
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.solution import Solution
 from pursue_gen.transport.keys import Ed25519PrivateKey  # first: it says what to do without cryptography
@@ -53,7 +54,7 @@ def placed(scenario: Scenario, poses: Optional[Path] = None, computed: bool = Fa
             'write poses behind the points: poi "a" //[x, y, z, qx, qy, qz, qw]; or name a file with --poses '
             "(a workspace's config/poses.yaml shows how it looks); for simulated robots use --computed-poses"
         )
-        raise PursueError([error("TRN010", message, missing[0].span, hint)])
+        raise Invalid([error("TRN010", message, missing[0].span, hint)])
     return scenario
 
 
@@ -64,7 +65,7 @@ def sign(manifest: Manifest, files: Mapping[str, bytes], key: Ed25519PrivateKey)
         unpack(content, {fingerprint(key.public_key()): key.public_key()})
     except Refused as problem:
         hint = "robots take at most 64 MiB, and names of at most 100 letters"
-        raise PursueError([error("TRN013", f"robots would not take this mission: {problem}", hint=hint)], 2) from None
+        raise PursueError([error("TRN013", f"robots would not take this mission: {problem}", hint=hint)]) from None
     return content
 
 
@@ -75,7 +76,7 @@ def read_bundle(file: Path, keys: Keys) -> Tuple[bytes, Bundle]:
     except (OSError, ValueError) as problem:
         message = f"cannot read {file}: {getattr(problem, 'strerror', None) or problem}"
         hint = "name a bundle, such as my_floor.pursue"
-        raise PursueError([error("CLI001", message, hint=hint)], exit_status=2) from None
+        raise PursueError([error("CLI001", message, hint=hint)]) from None
     try:
         return content, unpack(content, keys)
     except Refused as problem:
@@ -83,4 +84,4 @@ def read_bundle(file: Path, keys: Keys) -> Tuple[bytes, Bundle]:
         if problem.code == "unknown_key":
             hint = "if you trust who signed it, get their .pub file and put it into the folder of keys"
         message = f"{file} is not accepted: {problem}"
-        raise PursueError([error("TRN014", message, hint=hint)], exit_status=2) from None
+        raise PursueError([error("TRN014", message, hint=hint)]) from None

@@ -56,7 +56,7 @@ def new_key(name: str, folder: Path, force: bool = False) -> Tuple[Path, Path]:
     """
     if not _NAME.fullmatch(name):
         message = f"a key cannot be called '{name}'; expected letters, digits, _ and -, a letter or digit first"
-        raise PursueError([error("TRN002", message, hint="for example: pursue-gen keys new lab")], exit_status=2)
+        raise PursueError([error("TRN002", message, hint="for example: pursue-gen keys new lab")])
     private, public = folder / f"{name}{PRIVATE}", folder / f"{name}{PUBLIC}"
     key = Ed25519PrivateKey.generate()
     text = key.private_bytes(Encoding.PEM, PrivateFormat.PKCS8, NoEncryption())
@@ -68,10 +68,10 @@ def new_key(name: str, folder: Path, force: bool = False) -> Tuple[Path, Path]:
     except FileExistsError as problem:
         there = private if private.exists() else problem.filename or folder
         hint = "choose another name; or replace it with --force: robots then need the new public key"
-        raise PursueError([error("TRN005", f"{there} is there already", hint=hint)], exit_status=2) from None
+        raise PursueError([error("TRN005", f"{there} is there already", hint=hint)]) from None
     except OSError as problem:
         message = f"cannot write {private}: {problem.strerror or problem}"
-        raise PursueError([error("CLI003", message, hint="name another folder with --folder")], 2) from None
+        raise PursueError([error("CLI003", message, hint="name another folder with --folder")]) from None
     try:
         write_texts({public: write_public_key(key.public_key(), name)})
     except PursueError:
@@ -108,10 +108,10 @@ def default_key(folder: Path) -> str:
     names = key_names(folder)
     if not names:
         hint = "make one: pursue-gen keys new NAME; its public half then goes to the robots"
-        raise PursueError([error("TRN002", f"there is no key to sign with in {folder}", hint=hint)], exit_status=2)
+        raise PursueError([error("TRN002", f"there is no key to sign with in {folder}", hint=hint)])
     if len(names) > 1:
         message = f"there are several keys in {folder}: {', '.join(names)}"
-        raise PursueError([error("TRN006", message, hint=f"name one: --key {names[0]}")], exit_status=2)
+        raise PursueError([error("TRN006", message, hint=f"name one: --key {names[0]}")])
     return names[0]
 
 
@@ -129,14 +129,14 @@ def load_private(name_or_path: Optional[str] = None, folder: Optional[Path] = No
         key = load_pem_private_key(content, None, default_backend())
     except TypeError:
         message = f"{file} is locked with a password, and cannot be used"
-        raise PursueError([error("TRN004", message, hint=hint)], exit_status=2) from None
+        raise PursueError([error("TRN004", message, hint=hint)]) from None
     except (ValueError, UnsupportedAlgorithm):
         message = f"{file} is not a private key; expected PEM (PKCS8) with an ed25519 key"
         hint = f"the private key is {file.with_suffix(PRIVATE)}" if file.suffix == PUBLIC else hint
-        raise PursueError([error("TRN004", message, hint=hint)], exit_status=2) from None
+        raise PursueError([error("TRN004", message, hint=hint)]) from None
     if not isinstance(key, Ed25519PrivateKey):
         message = f"{file} is a private key of another kind; expected ed25519"
-        raise PursueError([error("TRN004", message, hint=hint)], exit_status=2)
+        raise PursueError([error("TRN004", message, hint=hint)])
     return key
 
 
@@ -147,13 +147,13 @@ def _read_private(file: Path, folder: Path) -> bytes:
             mode = os.fstat(stream.fileno()).st_mode
             if file.suffix != PUBLIC and mode & _OTHERS:
                 message = f"others may read or write the private key {file}"
-                raise PursueError([error("TRN003", message, hint=f"chmod 600 {file}")], exit_status=2)
+                raise PursueError([error("TRN003", message, hint=f"chmod 600 {file}")])
             return stream.read(_LONGEST)
     except (OSError, ValueError) as problem:
         names = key_names(folder)
         hint = f"there are: {', '.join(names)}" if names else "make one: pursue-gen keys new NAME"
         message = f"cannot read the key {file}: {getattr(problem, 'strerror', None) or problem}"
-        raise PursueError([error("TRN002", message, hint=hint)], exit_status=2) from None
+        raise PursueError([error("TRN002", message, hint=hint)]) from None
 
 
 def load_public(name: str, folder: Path) -> Ed25519PublicKey:
@@ -166,10 +166,10 @@ def load_public(name: str, folder: Path) -> Ed25519PublicKey:
     except (OSError, UnicodeDecodeError, Refused) as problem:
         message = f"{public} is not a public key: {getattr(problem, 'strerror', None) or problem}"
         hint = f"remove it if {private} is there: keys show then makes it again"
-        raise PursueError([error("TRN007", message, hint=hint)], exit_status=2) from None
+        raise PursueError([error("TRN007", message, hint=hint)]) from None
     if private.exists() and fingerprint(load_private(name, folder).public_key()) != fingerprint(key):
         message = f"{public} does not belong to {private}: robots that trust it would refuse what is signed here"
-        raise PursueError([error("TRN007", message, hint=f"remove it, then: pursue-gen keys show {name}")], 2)
+        raise PursueError([error("TRN007", message, hint=f"remove it, then: pursue-gen keys show {name}")])
     return key
 
 

@@ -55,7 +55,7 @@ def read_poses(file: Path, points: Tuple[str, ...], robots: Tuple[str, ...] = ()
     reader = _Reader(str(file), points, robots)
     poses = reader.poses(compose_yaml(text, str(file), "TRN011", _FORM))
     if reader.findings:
-        raise PursueError(reader.findings, exit_status=2)
+        raise PursueError(reader.findings)
     return poses
 
 

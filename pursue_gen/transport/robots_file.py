@@ -35,11 +35,11 @@ def read_robots(file: Path) -> Tuple[Robot, ...]:
     text = read_text(file, "a file of robots, such as robots.yaml")
     hint = f"write {_EXAMPLE}"
     if len(text) > _LARGEST:
-        raise PursueError([error("TRN021", f"{file} has more than {_LARGEST} letters", hint=hint)], 2)
+        raise PursueError([error("TRN021", f"{file} has more than {_LARGEST} letters", hint=hint)])
     reader = _Reader(file)
     robots = reader.robots(compose_yaml(text, str(file), "TRN021", hint))
     if reader.findings:
-        raise PursueError(reader.findings, 2)
+        raise PursueError(reader.findings)
     return robots
 
 
@@ -50,7 +50,7 @@ def chosen(robots: Sequence[Robot], names: str, file: Path) -> Tuple[Robot, ...]
     wrong = [name for name in wanted if name not in known]
     if wrong or not wanted:
         message = f"{file} has no robot {wrong[0]}" if wrong else "--only names no robot"
-        raise PursueError([error("TRN025", message, hint=_meant(wrong[0] if wrong else "", known))], 2)
+        raise PursueError([error("TRN025", message, hint=_meant(wrong[0] if wrong else "", known))])
     return tuple(robot for robot in robots if robot.name in wanted)
 
 

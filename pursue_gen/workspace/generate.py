@@ -12,11 +12,12 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 import jinja2
 
 from pursue_gen import __version__
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import error
 from pursue_gen.drawing import map_svg
 from pursue_gen.language.labels import in_markdown
 from pursue_gen.language.scenario import Reach, Safety, Scenario
 from pursue_gen.language.wording import condition_of_promise, listed, objective_text
+from pursue_gen.outcomes import Invalid
 from pursue_gen.partition import SubStrategy, partition, strategy_file, unneeded
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.synthesis.plan import write_plan
@@ -143,7 +144,7 @@ def _check_name(scenario: Scenario) -> None:
             f"the scenario is called '{scenario.name}', and {context.bringup_of(scenario)} cannot be a ROS package; "
             "expected letters, digits and underscores, a letter first"
         )
-        raise PursueError([error("WSP005", message, hint="rename the .pur file, for example to my_mission.pur")])
+        raise Invalid([error("WSP005", message, hint="rename the .pur file, for example to my_mission.pur")])
 
 
 def _check_packages(packages: Sequence[Package]) -> None:
@@ -152,7 +153,7 @@ def _check_packages(packages: Sequence[Package]) -> None:
     twice = sorted({package.name for package in packages if names.count(package.name.lower()) > 1})
     if twice:
         message = f"two packages would have the same name: {', '.join(twice)}"
-        raise PursueError([error("WSP006", message, hint="rename the robot, or the .pur file")])
+        raise Invalid([error("WSP006", message, hint="rename the robot, or the .pur file")])
 
 
 def _packages(

@@ -83,7 +83,7 @@ def parse_machines(text: str, file: str, nodes: Sequence[str]) -> Tuple[Machines
     reader = _Reader(file, nodes)
     found = reader.read(compose_yaml(text, file, "TRN040", _EXAMPLE))
     if reader.problems:
-        raise PursueError(in_order(reader.problems), 2)
+        raise PursueError(in_order(reader.problems))
     unplaced = [node for node in nodes if node not in reader.placed]
     if not unplaced:
         return found, ()

@@ -54,9 +54,8 @@ def write_tree(files: Mapping[str, bytes], folder: Path, force: bool = False) ->
     except OSError as problem:
         where = str(problem.filename or folder)
         reason = problem.strerror or str(problem)
-        raise PursueError(
-            [error("WSP003", f"cannot write {where}: {reason}", hint="name another folder with -o DIR")], 2
-        ) from problem
+        hint = "name another folder with -o DIR"
+        raise PursueError([error("WSP003", f"cannot write {where}: {reason}", hint=hint)]) from problem
 
 
 def manifest_of(files: Mapping[str, bytes], before: Optional[Known] = None) -> bytes:
@@ -75,7 +74,7 @@ def _is_new(parent: Folder, name: str) -> bool:
     if isinstance(found, File) or found.what != "a folder":
         what = "a file" if isinstance(found, File) else found.what
         hint = "name a folder with -o DIR" + (": the one that the link leads to, if you mean that" * (what == "a link"))
-        raise PursueError([error("WSP003", f"cannot write {parent.place / name}: it is {what}", hint=hint)], 2)
+        raise PursueError([error("WSP003", f"cannot write {parent.place / name}: it is {what}", hint=hint)])
     with parent.folder(name) as root:
         return not root.names()
 
@@ -118,7 +117,7 @@ def _plan(files: Mapping[str, bytes], root: Folder, force: bool) -> _Plan:
     if problems and not force:
         *others, last = {problem.message: problem for problem in problems}.values()
         hint = "move it away, write elsewhere with -o DIR, or replace it with --force"
-        raise PursueError([*others, replace(last, hint=hint)], 2)
+        raise PursueError([*others, replace(last, hint=hint)])
     write = {path: found[path] for path in files if found[path] != _as_written(files[path])}
     remove = {path: what for path, what in found.items() if path not in files and isinstance(what, File)}
     return _Plan(write, remove, known or {})
@@ -157,7 +156,7 @@ def _renew(files: Mapping[str, bytes], root: Folder, force: bool) -> None:
     """A workspace where there is one: everything is on the disk before the first old file is replaced."""
     if not root.lock():
         hint = "wait until it is done"
-        raise PursueError([error("WSP004", f"another run is writing to {root.place}", hint=hint)], 2)
+        raise PursueError([error("WSP004", f"another run is writing to {root.place}", hint=hint)])
     plan = _plan(files, root, force)
     manifest = manifest_of(files)
     staged = {MANIFEST: manifest, **files, _MIXED: manifest_of(files, plan.known)}
@@ -190,7 +189,7 @@ def _check_unchanged(root: Folder, path: str, found: Found, force: bool) -> None
         root.remove_all(now.path)
     elif now != found and not (now is None and isinstance(found, Obstacle)):  # the way was cleared for another file
         message = f"{root.place / path} would be replaced or removed, but it was edited just now"
-        raise PursueError([error("WSP001", message, hint="run the command again, which tells what is in the way")], 2)
+        raise PursueError([error("WSP001", message, hint="run the command again, which tells what is in the way")])
 
 
 def _remove(root: Folder, path: str) -> None:

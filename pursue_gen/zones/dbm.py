@@ -14,7 +14,8 @@ from fractions import Fraction
 from functools import cached_property, lru_cache
 from typing import Callable, Iterable, List, Optional, Sequence, Tuple, Union
 
-from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.diagnostics import error
+from pursue_gen.outcomes import Invalid
 
 INF = 1 << 256
 """The raw bound of "no bound". Finite raw bounds are far smaller: `raw` makes none beyond `MOST`, and sums of as many
@@ -33,7 +34,7 @@ def raw(c: int, strict: bool) -> int:
     """The raw form of `< c` (strict) or `<= c`. Raises PursueError for a number that no zone can hold."""
     if not -MOST < c < MOST:
         hint = "use smaller times, or fractions with smaller denominators"
-        raise PursueError([error("SYN013", "the times are too large, or too fine, to compute with", hint=hint)])
+        raise Invalid([error("SYN013", "the times are too large, or too fine, to compute with", hint=hint)])
     return 2 * c + (0 if strict else 1)
 
 

@@ -97,3 +97,49 @@ def test_another_file_that_cannot_be_read(folder: Path, command: str, what: str)
 def test_a_scenario_with_errors(folder: Path, command: str, text: str) -> None:
     (folder / "x.pur").write_text(text)
     assert status(COMMANDS[command], folder / "x.pur") == 3
+
+
+CANNOT_BE_USED: Dict[str, List[str]] = {
+    "fmt of several": ["fmt", "broken.pur", "none.pur"],
+    "check of several": ["check", "broken.pur", "none.pur"],
+    "a reaction below 0": ["verify", FIRST, "plan.txt", "--reaction=-1"],
+    "another key": ["bundle", FIRST, "--keys", "keys", "--key", "other"],
+    "a fault that is none": ["sim", FIRST, "--faults", "fire"],
+    "a recording that is none": ["replay", "plan.txt"],
+}
+INVALID: Dict[str, List[str]] = {
+    "a slack of nobody": ["solve", FIRST, "--slack", "nobody=1"],
+    "no XML": ["solve", "plan.txt.xml", "query.q"],
+    "no query": ["solve", "network.xml", "plan.txt"],
+    "no plan": ["verify", FIRST, "broken.pur"],
+    "a plan of another scenario": ["verify", "other.pur", "plan.txt"],
+    "a name that is no package": ["ws", "not-a-package.pur", "-o", "out"],
+    "places without poses": ["bundle", "other.pur", "--keys", "keys"],
+    "survey of places without poses": ["survey", "map.yaml", "other.pur"],
+}
+
+
+@pytest.fixture
+def with_errors(folder: Path) -> Path:
+    """That folder, with files that have errors."""
+    (folder / "broken.pur").write_text("poi a\n")
+    (folder / "plan.txt.xml").write_text("Strategy")
+    assert pursue("tga", FIRST, "-o", folder / "out").status == 0
+    shutil.copy(str(folder / "out" / "TGA.xml"), str(folder / "network.xml"))
+    shutil.rmtree(str(folder / "out"))
+    for name in ("other.pur", "not-a-package.pur"):
+        (folder / name).write_text(CALLED.format(deadline=5))
+    numbers = "resolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"
+    (folder / "map.yaml").write_text(f"image: map.pgm\n{numbers}")
+    (folder / "map.pgm").write_bytes(b"P5 2 2 255\n\xff\xff\xff\xff")
+    return folder
+
+
+@pytest.mark.parametrize("command", CANNOT_BE_USED)
+def test_what_cannot_be_used(with_errors: Path, command: str) -> None:
+    assert status(CANNOT_BE_USED[command], with_errors) == 2
+
+
+@pytest.mark.parametrize("command", INVALID)
+def test_what_has_errors(with_errors: Path, command: str) -> None:
+    assert status(INVALID[command], with_errors) == 3
