@@ -122,8 +122,7 @@ def _numbered_words(scenario: Scenario) -> Iterator[Word]:
         words += [(safety, names.rule_turn(automaton))] if isinstance(safety, Patrol) and safety.order else []
     for number, reach in enumerate(scenario.reach):
         automaton = names.reach_objective(number)
-        begins = names.movement(automaton, "going_initial_location", "unlocked")
-        words += [(reach, word) for word in (automaton, names.reach_clock(number), begins)]
+        words += [(reach, word) for word in (automaton, names.reach_clock(number), names.unlocking(number))]
     for objective, word in words:
         yield word, "a part of an objective", objective.span
     for number, assumption in enumerate(scenario.assumptions, start=1):

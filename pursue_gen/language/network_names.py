@@ -69,6 +69,14 @@ def is_reach_objective(automaton: str) -> bool:
     return _REACH.fullmatch(automaton) is not None
 
 
+def unlocking(number: int) -> str:
+    """The channel on which a reach objective is unlocked, where others are with it; else that edge has none.
+
+    It is the word that the edge has in any case.
+    """
+    return movement(reach_objective(number), "going_initial_location", "unlocked")
+
+
 def _numbered(name: str, number: int) -> str:
     return name if number == 0 else f"{name}{number + 1}"
 

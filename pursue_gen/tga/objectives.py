@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import combinations
-from typing import Dict, List, Mapping, Sequence, Tuple
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import error
 from pursue_gen.language import network_names as names
@@ -61,16 +61,29 @@ def clock_of(scenario: Scenario, automaton: str) -> str:
     return names.safety_clock(number) if number < count else names.reach_clock(number - count)
 
 
-def reach_automaton(reach: Reach, happened: Happened, number: int = 0) -> Automaton:
+def unlocking(scenario: Scenario) -> Tuple[Optional[Sync], ...]:
+    """For each reach objective the channel on which those with the same `after` are unlocked, all at once, so that what
+    happens then counts for each of them: the first one sends. None: nobody else has its `after`."""
+    times = [reach.after for reach in scenario.reach]
+    firsts = [times.index(time) for time in times]
+    return tuple(
+        Sync(names.unlocking(first), sends=k == first) if firsts.count(first) > 1 else None
+        for k, first in enumerate(firsts)
+    )
+
+
+def reach_automaton(reach: Reach, happened: Happened, number: int = 0, unlocking: Optional[Sync] = None) -> Automaton:
     """`do e1 and e2 after T within D`: unlocked once T has passed, won when each event has happened since then.
 
-    A deadline is the invariant of all locations before; `late` is what remains to do when it is reached.
+    A deadline is the invariant of all locations before; `late` is what remains to do when it is reached. `unlocking`:
+    the channel of the first step, if others are unlocked with it.
     """
     clock = names.reach_clock(number)
+    passed = (ClockBound(clock, ">", reach.after),) if unlocking is None or unlocking.sends else ()
     limit = () if reach.within is None else (ClockBound(clock, "<=", reach.within),)
     count = len(reach.events)
     places = [Location(_START, limit), Location(_UNLOCKED, limit, named=False)]
-    edges = [Edge(_START, _UNLOCKED, Guard((ClockBound(clock, ">", reach.after),)))]
+    edges = [Edge(_START, _UNLOCKED, Guard(passed), unlocking)]
     for size in range(count):
         for done in combinations(range(count), size):
             places += [Location(_done(done, count), limit)] if done else []

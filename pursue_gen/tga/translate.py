@@ -15,7 +15,7 @@ from pursue_gen.tga.batteries import battery_variables, powered
 from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.counts import count_automaton, counted
 from pursue_gen.tga.network import Network
-from pursue_gen.tga.objectives import reach_automaton, safety_automaton
+from pursue_gen.tga.objectives import reach_automaton, safety_automaton, unlocking
 from pursue_gen.tga.own_turns import bound, own_turns
 from pursue_gen.tga.patrols import arrivals, awaited, turns
 from pursue_gen.tga.positions import positions
@@ -43,7 +43,8 @@ def translate(scenario: Scenario) -> Network:
     agents = [powered(agent_automaton(agent, around), scenario) for agent in scenario.agents]
     automata += [assumed(bound(agent, own), scenario, conditions) for agent in agents]
     automata += [safety_automaton(each, scenario, codes, conditions, k) for k, each in enumerate(scenario.safety)]
-    automata += [reach_automaton(each, happened, k) for k, each in enumerate(scenario.reach)]
+    steps = unlocking(scenario)
+    automata += [reach_automaton(each, happened, k, steps[k]) for k, each in enumerate(scenario.reach)]
     automata += [automaton for automaton, _ in rules]
     variables = _variables(scenario, codes.pois) + _busy(around) + conditions.variables()
     variables += assumption_variables(scenario) + turns(scenario)
@@ -97,7 +98,8 @@ def _channels(scenario: Scenario) -> Tuple[str, ...]:
     ]
     for event in scenario.events:
         channels += [event.name] if event.duration is None else [event.name, names.done(event.name)]
-    return (*channels, *arrivals(scenario))
+    unlocks = (sync.channel for sync in unlocking(scenario) if sync is not None and sync.sends)
+    return (*channels, *arrivals(scenario), *unlocks)
 
 
 def _check_names(network: Network) -> None:

@@ -53,6 +53,25 @@ def test_missions_with_random_opponents_end_well(source: str) -> None:
     assert {outcome.end for outcome in outcomes} <= {GOAL, SAFE}, [outcome.reason for outcome in outcomes]
 
 
+def test_what_is_done_counts_for_every_goal() -> None:
+    """Nothing is done again because a goal did not count yet."""
+    ward = '''
+    poi "ward"
+    event "look" location ward
+    event "wash" location ward duration 1
+    agent "nurse" controllable mobile 1 location ward can_do look, wash
+    reach_objective: do wash{0}
+    reach_objective: do look and wash{0}
+    reach_objective: do look{0} within 60
+    '''
+    for after in ("", " after 5"):
+        won = solve_scenario(parse(ward.format(after), "x.pur", "x"), DEFAULT)
+        for block in won.strategy.blocks:
+            locked = [name for name, place in block.state.locations if place == "initial_location"]
+            senders = {command.moves[0].automaton for command in block.commands}
+            assert not locked or "nurse" not in senders, block.state
+
+
 def test_a_goal_with_a_deadline_is_guaranteed_by_then() -> None:
     for source, deadline in ((text("airport/last_call"), 26), (LATER, 60)):
         won = solve_scenario(parse(source, "x.pur", "x"), DEFAULT)

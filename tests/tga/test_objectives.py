@@ -36,6 +36,18 @@ def test_reach_waits_for_the_time_then_for_the_end_of_the_event() -> None:
     assert scenario_objective(scenario(text)) == REACH
 
 
+def test_what_counts_from_the_same_time_is_unlocked_in_one_step() -> None:
+    goals = ("do cook", "do call after 7", "do cook and call", "do cook after 7 within 30", "do cook after 8")
+    network = translate(scenario(BASE + "\n".join(f"reach_objective: {goal}" for goal in goals)))
+    first = [network.automaton(f"reachObj{number}").edges[0] for number in ("", 2, 3, 4, 5)]
+    one, other = (f"{name}_going_initial_location2unlocked" for name in ("reachObj", "reachObj2"))
+    sends, hears = [Sync(one, True), Sync(other, True)], [Sync(one, False), Sync(other, False)]
+    assert [edge.sync for edge in first] == [*sends, *hears, None]
+    after = [bound.bound for edge in first for bound in edge.guard.clocks]
+    assert after == [0, 7, 8]
+    assert network.channels[-2:] == (one, other)
+
+
 def test_respond_gives_a_deadline() -> None:
     text = BASE + "objective: if call then cook within 9"
     automaton = translate(scenario(text)).automaton("obj")
