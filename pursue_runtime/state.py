@@ -9,6 +9,7 @@ import re
 from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bounded import whole
+from pursue_runtime.orders import parse_orders
 from pursue_runtime.sentences import in_words, quoted
 
 WAITING, RUNNING, HOLDING, WON, LOST, STOPPED = "waiting", "running", "holding", "won", "lost", "stopped"
@@ -76,13 +77,18 @@ def older(state: SystemState, known: SystemState) -> bool:
     """True for a state that was published before the known one: a link that was cut brings it late.
 
     Only the stamp: an observer whose clock was set back. Only the number: one that has started anew. Each mission
-    counts from 0: of two missions the stamps alone tell which was later.
+    counts from 0: of two missions the stamps alone tell which was later. In simulated time two states may have one
+    stamp: under one number orders are only acknowledged.
     """
     if state.mission != known.mission:
         return state.stamp < known.stamp
     if state.seq == known.seq:
-        return state.stamp < known.stamp
-    return state.seq < known.seq and state.stamp <= known.stamp  # in simulated time two states may have one stamp
+        return (state.stamp, -_open_orders(state)) < (known.stamp, -_open_orders(known))
+    return state.seq < known.seq and state.stamp <= known.stamp
+
+
+def _open_orders(state: SystemState) -> int:
+    return sum(not order.acknowledged for order in parse_orders(state.orders))
 
 
 def rewinds(state: SystemState, known: SystemState) -> bool:

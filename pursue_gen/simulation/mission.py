@@ -193,11 +193,6 @@ class SimulatedMission:
     def _send_plan(self, node: ControllerNode, plan: Dict[str, Any]) -> None:
         self._connections.send(f"plan:{node.name}", 0.1, _to(node, lambda: node.on_plan(plan)), node.name)
 
-    def _send_word(self, connection: str, text: str, latest: float, machine: str) -> None:
-        """Sends a word to the observer."""
-        deliver = _to(self._observer, lambda: self._observer.call("hear", text))
-        self._connections.send(connection, latest, deliver, machine)
-
     def publish_plan(self, plan: Dict[str, Any]) -> None:
         """The observer publishes another plan."""
         self._plan = plan
@@ -217,7 +212,8 @@ class SimulatedMission:
         text = format_word(word)
         self._note(f"{node} publishes {text}")
         self._published.append(text)
-        self._send_word(f"word:{node}", text, max(0.0, latest - self.events.now), node)
+        deliver = _to(self._observer, lambda: self._observer.call("hear", text))
+        self._connections.send(f"word:{node}", max(0.0, latest - self.events.now), deliver, node)
 
     def command_robot(self, node: str, order: Order, seq: int, newest: int, again: bool) -> None:
         """A controller sends its robot an order."""
@@ -232,7 +228,12 @@ class SimulatedMission:
     def _report(self, agent: str, text: str) -> None:
         self._note(f"{agent} reports {text}")
         self._became_true.note(agent, text, self.events.now)
-        self._send_word(f"report:{agent}", text, 0.0, self._machine_of(agent))
+
+        def deliver() -> None:
+            self._became_true.hear(text, self.events.now)
+            self._observer.call("hear", text)
+
+        self._connections.send(f"report:{agent}", 0.0, _to(self._observer, deliver), self._machine_of(agent))
 
     def _machine_of(self, agent: str) -> str:
         return self._stage.controller_of(agent) or ""
@@ -348,7 +349,7 @@ class SimulatedMission:
 
     def _junk(self, draw: random.Random) -> None:
         """A word that must change nothing."""
-        text = junk_word(draw, self._observer.mission, self._published, self.events.now)
+        text = junk_word(draw, self._observer.mission, self._published, self.events.now, self._observer.is_returning)
         if text is None:
             return
         self.fault_plan.count("junk")

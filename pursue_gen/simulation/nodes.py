@@ -86,16 +86,21 @@ class ObserverNode:
             stage.model, stage.cover, self._log, on_uncovered="plan", controllers=tuple(stage.strategies)
         )
 
+    @property
+    def is_returning(self) -> bool:
+        """True while it hears first what happened when there was no observer."""
+        return self._inbox.returning is not None
+
     def call(self, name: str, *args: Any) -> None:
         """Calls the mission, and publishes what follows."""
         if self.alive:
-            self.looks_back = self._inbox.returning is not None
+            self.looks_back = self.is_returning
             self._publish(self._inbox.call(name, *args, now=self._links.events.now))
 
     def on_reported(self, node: str) -> None:
         """A node has reported all that it had to."""
         if self.alive:
-            self.looks_back = self._inbox.returning is not None
+            self.looks_back = self.is_returning
             self._publish(self._inbox.on_reported(node, self._links.events.now))
 
     def awaits(self, node: str) -> bool:
@@ -105,12 +110,12 @@ class ObserverNode:
 
     def _on_alarm(self) -> None:
         now = self._links.events.now
-        self.looks_back = self._inbox.returning is not None
+        self.looks_back = self.is_returning
         self._publish(self._inbox.on_alarm(now, now))
 
     def heartbeat(self) -> None:
         """Publishes the state again."""
-        if self.alive and self._inbox.returning is None:
+        if self.alive and not self.is_returning:
             if self.mission.proposal is not None:
                 self._proposed = 0
             self.looks_back = False

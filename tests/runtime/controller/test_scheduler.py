@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, List, Optional
+from typing import Any, List, Optional, Tuple
 
 import pytest
 
@@ -157,6 +157,21 @@ def test_an_instantaneous_action_goes_to_the_robot_too() -> None:
     bot.on_state(state(3, 114.0, bot="b"), 114.0)
     orders = bot.on_state(state(4, 116.0, bot="b", event="catch", orders=[CATCH]), 116.0)
     assert orders == [Order("bot", "catch", 4, "b", at_once=True)]
+
+
+@pytest.mark.parametrize("open_order, done", [(CATCH, ()), (GO, (f"{GO}+",))])
+def test_an_order_that_was_acknowledged_is_not_given_again_for_a_state_of_the_same_moment(
+    open_order: str, done: Tuple[str, ...]
+) -> None:
+    at = open_order.rstrip("!").partition("/")[2]
+    given = state(4, 116.0, bot=at, event="catch", orders=[open_order])
+    bot = player()
+    assert bot.on_state(given, 116.0) == [parse_order(open_order)]
+    assert bot.on_state(given._replace(orders=done), 116.0) == []
+    assert bot.on_state(given, 116.4) == [] and bot.counts["old"] == 1
+    late = player()
+    assert late.on_state(given._replace(orders=done), 116.0) == [each for each in map(parse_order, done) if each]
+    assert late.on_state(given, 116.4) == []
 
 
 def test_orders_of_other_robots_are_not_ours() -> None:
