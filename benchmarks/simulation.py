@@ -26,7 +26,7 @@ from pursue_gen.language import load
 from pursue_gen.simulation.faults import read_faults
 from pursue_gen.simulation.make import make_case
 from pursue_gen.simulation.mission import simulate_mission
-from pursue_gen.simulation.outcome import Settings
+from pursue_gen.simulation.outcome import FAILED, Settings
 from pursue_gen.simulation.runs import Case, MissionRunner
 from pursue_gen.solving.optional import promised
 from pursue_gen.solving.options import DEFAULT
@@ -34,6 +34,7 @@ from pursue_gen.solving.periods import least_period
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
+from pursue_runtime.state import LOST
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENARIOS = ROOT / "scenarios"
@@ -96,8 +97,9 @@ def cell(name: str, runner: MissionRunner, settings: Settings, faults: str, runs
         outcome = simulate_mission(runner.stage, settings, done, runner.remaining)
         ends[outcome.end] += 1
         latest = max(latest, outcome.lateness)
-        if outcome.end in ("lost", "failed"):
-            kind, example = kind_of(outcome.cause), {"seed": done, "cause": outcome.cause or outcome.reason}
+        if outcome.end in (LOST, FAILED):
+            kind = kind_of(outcome.end, outcome.cause)
+            example = {"seed": done, "cause": outcome.reason if outcome.end == FAILED else outcome.cause}
             causes[kind] += 1
             if kind == "ours":
                 examples.insert(0, example)
@@ -115,11 +117,12 @@ def cell(name: str, runner: MissionRunner, settings: Settings, faults: str, runs
     }
 
 
-def kind_of(cause: str) -> str:
-    """Which kind of fault was too long: a command, the end of an agent (late, lost, early), or none ("ours")."""
-    if "was due for" in cause:
-        return "command"
-    return "agent" if cause else "ours"
+def kind_of(end: str, cause: str) -> str:
+    """Why a mission ended so: it failed a check, whatever else was wrong ("ours"), or a fault was too long: of a
+    command, or of an agent (late, lost, early)."""
+    if end == FAILED:
+        return "ours"
+    return "command" if "was due for" in cause else "agent"
 
 
 def speed(name: str) -> Optional[float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, Dict, List
 
 import pytest
@@ -31,9 +32,23 @@ def test_a_scenario_that_cannot_be_won_has_no_cell() -> None:
 
 
 def test_causes_have_three_kinds() -> None:
-    assert kind_of("go in state 3 was due for 0.9 time units, the margin is 0.3; bot is late") == "command"
-    assert kind_of("bot has failed") == kind_of("bot_end came outside the model's window") == "agent"
-    assert kind_of("") == "ours"
+    command = "go in state 3 was due for 0.9 time units, the margin is 0.3; bot is late"
+    assert kind_of("lost", command) == "command"
+    assert kind_of("lost", "bot has failed") == kind_of("lost", "bot_end came outside the model's window") == "agent"
+    assert [kind_of("failed", cause) for cause in ("", command, "bot has failed")] == ["ours"] * 3
+
+
+def test_a_mission_that_fails_a_check_is_ours_whatever_fault_it_had(monkeypatch: pytest.MonkeyPatch) -> None:
+    ends = [("lost", "bot is late", "too late"), ("failed", "bot is late", "wrong command"), ("lost", "bot failed", "")]
+
+    def play(stage: Any, settings: Any, seed: int, remaining: Any) -> Any:
+        end, cause, reason = ends[seed - 1]
+        return SimpleNamespace(end=end, cause=cause, reason=reason, lateness=0.0)
+
+    monkeypatch.setattr(simulation, "simulate_mission", play)
+    (found,) = cells(("thesis/scenario_1", [("all", 3)], 600.0))
+    assert (found["ends"], found["causes"]) == ({"failed": 1, "lost": 2}, {"agent": 2, "ours": 1})
+    assert found["examples"][0] == {"seed": 2, "cause": "wrong command"}
 
 
 def test_tables_add_up() -> None:
