@@ -38,6 +38,7 @@ FILES = {
     "/missions.css": ("missions.css", "text/css"),
 }
 TICK = 0.5  # real seconds between two words on what time it is
+LAST_WORDS = 3.0  # real seconds for which one who closes the server waits for what was sent before
 REQUEST_TIMEOUT = 30.0  # real seconds that a request may take to arrive
 MAX_CONNECTION_TIME = 120.0  # real seconds that a connection may last that does not become a page that listens
 MAX_CONNECTIONS = 64  # of those at a time
@@ -137,7 +138,7 @@ class Web:
         with contextlib.suppress(RuntimeError):  # the loop has ended
             self._loop.call_soon_threadsafe(self._finish)
         if self._thread.is_alive():
-            self._thread.join(3.0)
+            self._thread.join(LAST_WORDS)
 
     # In the thread of the server --------------------------------------------------------------------------------------
 

@@ -19,9 +19,11 @@ from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
-from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
 from tests.proof.test_checker import SAFETY, automaton, block, edge, moves, network
 from tests.proof.test_checker_random import _all_keys, _changed, networks
+from tests.proof.test_parts import REACH, before, since
+from tests.proof.test_parts import block as goes_in
 from tests.synthesis import random_games
 from tests.synthesis.play_by_play import PlayByPlay
 from tests.synthesis.test_verdicts import published
@@ -59,6 +61,18 @@ def test_what_passes_passes_play_by_play(
         strategy = _changed(data.draw, strategy)
     if strategy is not None and covered(network, objective, strategy, reaction):
         assert verify(network, objective, strategy, reaction, prompt=False).ok
+
+
+def test_who_goes_round_for_ever_leaves_nothing_that_is_covered_and_reaches_no_goal(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(checker, "_LARGE", 0)
+    steps = [Edge(*pair, Guard((ClockBound("x", ">=", 1),)), resets=("x",)) for pair in (("a", "b"), ("b", "a"))]
+    places = Location("a"), Location("b"), Location("done"), Location("lost")
+    game = Network(("x",), (), (), (Automaton("A", places, "a", (*steps, Edge("a", "done"))),))
+    goes = [goes_in({"A": step.source}, (before("x", 1),), (since("x", 1), "A", step)) for step in steps]
+    assert verify(game, Objective(Kind.SAFETY, bad=(("A", "lost"),)), Strategy(tuple(goes))).ok
+    assert "for ever" in verify(game, REACH, Strategy(tuple(goes))).reason
 
 
 @needs_native

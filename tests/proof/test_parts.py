@@ -147,6 +147,21 @@ def test_a_stage_begins_with_the_values_that_variables_have_by_then_whoever_is_n
     assert not verify(switched(0), REACH, in_two_stages(switched(0), 0, **named)).ok
 
 
+@pytest.mark.parametrize(("edge", "why"), [
+    (Edge("here", "here", sync=Sync("turn", False), controllable=False), "takes turn out of the controller's hands"),
+    (Edge("here", "here", sync=Sync("turn", True), controllable=False), "sends turn"),
+    (Edge("here", "here", sync=Sync("turn", False)), ""),
+    (Edge("here", "here", sync=Sync("other", False), controllable=False), ""),
+    (Edge("here", "here", assign=(("v", 1),), controllable=False), "sets v"),
+])  # fmt: skip
+def test_whoever_may_be_noticed_is_not_left_out(edge: Edge, why: str) -> None:
+    turns = Strategy(in_two_stages(switched(1), 1).blocks[:1])
+    other = Automaton("O", (Location("here"),), "here", (edge,))
+    network = replace(switched(1), automata=(*switched(1).automata, other))
+    report = verify(network, Objective(Kind.REACH, goal=(("M", "m1"),)), turns)
+    assert report.ok == (not why) and why in report.reason
+
+
 def until_it_is_on(network: Network) -> Strategy:
     """The same stages, where the first one ends when v is 1."""
     strategy = in_two_stages(network, 1)

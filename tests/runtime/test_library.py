@@ -138,6 +138,13 @@ def test_a_zone_holds_with_slack_a_little_beside_it() -> None:
     assert not runtime_zones.holds(zone, {"Cx": 3.2, "Cy": 0.0}, slack=0.1)
 
 
+@pytest.mark.parametrize("text, clock, slack, is_held", [
+    ("Cx < 4", 4.0, 0.0, False), ("Cx <= 4", 4.0, 0.0, True), ("Cx < 4", 4.5, 0.5, True), ("Cx <= 4", 4.5, 0.5, True),
+])
+def test_a_strict_bound_is_strict_without_slack_alone(text: str, clock: float, slack: float, is_held: bool) -> None:
+    assert runtime_zones.holds(parse_zone(text), {"Cx": clock}, slack) == is_held
+
+
 # Words and states
 
 
@@ -259,6 +266,11 @@ def test_lines_that_nobody_knows_are_skipped() -> None:
 )
 def test_what_is_no_state_is_none(text: str) -> None:
     assert parse_state(text) is None
+
+
+def test_what_is_discrete_of_a_state_is_said_as_text() -> None:
+    found = SystemState(7, 100.0, {"bot": "a"}, {"Prule": -1}, {"Cbot": 3.0})
+    assert found.discrete() == {"bot": "a", "Prule": "-1"}
 
 
 def test_clocks_go_on_from_the_stamp_in_the_states_own_unit() -> None:

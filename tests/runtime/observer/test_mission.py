@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, Tuple
+from typing import Any, List, Tuple
 
 import pytest
 from hypothesis import given, settings
@@ -125,11 +125,6 @@ def chase() -> Journey:
     journey = Journey()
     journey.hear("_start_", 100.0)
     return journey
-
-
-def discrete(state: Any) -> Dict[str, str]:
-    result: Dict[str, str] = state.discrete()
-    return result
 
 
 def test_nothing_counts_before_the_start() -> None:

@@ -101,6 +101,13 @@ def test_only_what_was_prepared_counts(robot: Robot) -> None:
     assert robot.current == SECOND.digest
 
 
+def test_a_bundle_of_the_largest_size_is_taken_and_no_larger_one(robot: Robot) -> None:
+    robot.reader.robot = robot.reader.robot._replace(limit=len(FIRST.bundle))
+    assert robot.order("prepare", FIRST.digest, FIRST.bundle).ok
+    robot.reader.robot = robot.reader.robot._replace(limit=len(SECOND.bundle) - 1)
+    assert robot.order("prepare", SECOND.digest, SECOND.bundle).code == "too_large"
+
+
 # Orders that do not ---------------------------------------------------------------------------------------------------
 
 
@@ -496,6 +503,15 @@ def test_sent_again_with_a_trusted_key_it_counts(two_desks: Robot) -> None:
     robot.now += PATIENCE
     robot.reader.on_time(robot.now)
     assert robot.current == again.digest
+
+
+def test_keys_are_complete_where_every_file_of_a_key_can_be_read(tmp_path: Path) -> None:
+    assert KeyFolder(str(tmp_path / "nowhere")).complete(), "nobody has put a key there"
+    (tmp_path / "a.pub").write_text("")
+    assert KeyFolder(str(tmp_path)).complete()
+    assert not KeyFolder(str(tmp_path / "a.pub")).complete(), "it is no folder"
+    (tmp_path / "b.pub").symlink_to(tmp_path / "c.pub")
+    assert not KeyFolder(str(tmp_path)).complete()
 
 
 def test_keys_that_cannot_be_read_are_not_removed_keys(two_desks: Robot, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import io
+from types import SimpleNamespace
+from typing import Optional
 
 import pytest
 
 from pursue_runtime.parameters import ParameterError
 from pursue_runtime.ui import options as ui_options
+from pursue_runtime.ui import terminal as ui_terminal
 from pursue_runtime.ui.options import read_options
-from pursue_runtime.ui.terminal import GOOD, Terminal
+from pursue_runtime.ui.terminal import GOOD, Terminal, on_terminal
 
 
 def read(arguments=(), params=None, terminal: bool = False, nodes=("observer",)):
@@ -126,6 +129,23 @@ def written(stream: io.StringIO, environment: dict) -> str:
     terminal.line("done", GOOD)
     terminal.close()
     return stream.getvalue()
+
+
+def closed() -> Screen:
+    screen = Screen()
+    screen.close()
+    return screen
+
+
+@pytest.mark.parametrize("stdin, stdout, told", [
+    (Screen(), Screen(), True), (io.StringIO(), Screen(), False), (Screen(), io.StringIO(), False),
+    (None, Screen(), False), (Screen(), None, False), (closed(), Screen(), False), (Screen(), closed(), False),
+])
+def test_a_person_is_where_input_and_output_are_a_terminal(
+    stdin: Optional[io.StringIO], stdout: Optional[io.StringIO], told: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ui_terminal, "sys", SimpleNamespace(stdin=stdin, stdout=stdout))
+    assert on_terminal() == told
 
 
 def test_no_codes_and_no_progress_but_on_a_terminal() -> None:

@@ -87,6 +87,20 @@ def test_why_a_mission_was_stopped_is_listed(tmp_path: Path, fields: Dict[str, A
     assert only(tmp_path).why == why
 
 
+@pytest.mark.parametrize("unit, units", [(0.5, 100.0), (1e-10, 50.0), (1e10, 50.0)])
+def test_the_duration_is_in_the_time_units_of_the_mission_and_a_unit_that_none_has_is_a_second(
+    tmp_path: Path, unit: float, units: float
+) -> None:
+    write_journal(tmp_path / "journal-x.jsonl", unit=unit)
+    assert only(tmp_path).units == units
+
+
+@pytest.mark.parametrize("word, why", [("_start_", ""), ("thief_a2b@2", "with thief_a2b@2")])
+def test_a_mission_is_lost_with_a_word_but_not_with_its_start(tmp_path: Path, word: str, why: str) -> None:
+    write_journal(tmp_path / "journal-x.jsonl", "lost", args=[word])
+    assert only(tmp_path).why == why
+
+
 def test_one_whose_observer_was_killed_is_not_finished_and_one_that_never_began_is_none(tmp_path: Path) -> None:
     write_journal(tmp_path / "journal-killed.jsonl", "")
     (tmp_path / "journal-waits.jsonl").write_bytes(format_record(0, {"format": 2, "launch": "y"}))

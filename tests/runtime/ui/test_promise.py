@@ -101,6 +101,13 @@ def test_what_leaves_the_model_voids_the_guaranteed_time_until_the_next_mission(
     assert guarantee.now(start) == {"most": 21.5, "void": ""}
 
 
+def test_a_guarantee_of_no_time_is_one_and_what_is_no_time_is_refused() -> None:
+    assert read_promise({"guarantee": 0}).most == 0.0
+    for wrong in (-1, float("nan"), float("inf")):
+        with pytest.raises(DataError, match="expected a number of time units"):
+            read_promise({"guarantee": wrong})
+
+
 def test_under_another_plan_the_guaranteed_time_is_not_known() -> None:
     guarantee = Guarantee(PROMISE, MODEL)
     found = guarantee.now(state(MODEL, 7, 100.0, {})._replace(plan=1))

@@ -10,6 +10,7 @@ from pursue_runtime.data import DataError
 from pursue_runtime.model import Model
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.course import course
+from pursue_runtime.ui.outlook import Outlook
 from pursue_runtime.ui.page import Facts, FloorPlan, Page
 from pursue_runtime.ui.page_server import PageServer
 from pursue_runtime.ui.reasons import reason_text, reasons
@@ -134,6 +135,17 @@ def test_the_page_keeps_the_reason_as_long_as_the_robot_does_what_it_was_sent_fo
     assert bot["why"], "that was the reason"
     _, bot = sight(page, state(MODEL, 4, 13.0, {}, event="bot_going_a_to_b2b", agent="bot", bot="b"))
     assert bot["why"] == ""
+
+
+def test_what_is_seen_in_a_state_is_found_once() -> None:
+    outlook = Outlook(MODEL, (), (GOES,))
+    now = state(MODEL, 1, 0.0, {})
+    seen = outlook.sight(now, 0.0, ())
+    assert seen.planned and outlook.sight(now, 0.0, ()) is seen
+    assert outlook.sight(now, 1.0, ()) is not seen
+    later = outlook.sight(now._replace(seq=2), 1.0, ())
+    outlook.add_plan(1, ())
+    assert outlook.sight(now._replace(seq=2), 1.0, ()) is not later
 
 
 def answer(known: Strategy, now: Any) -> Any:

@@ -21,7 +21,7 @@ pytest.importorskip("tornado", reason="tornado is not installed")
 from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
 
-from pursue_runtime.ui.page_server import STATIC
+from pursue_runtime.ui.page_server import STATIC, format_address, read_address
 from tests.waiting import PATIENCE, connected, may_close, rest, until
 
 FOLDER = STATIC
@@ -356,6 +356,20 @@ def test_the_last_word_goes_out_before_the_end(serve: Serve) -> None:
     assert talk(web, script) == ['{"type": "view", "status": "won"}', None, 1000]
     web.send({"type": "view"})
     web.close()
+
+
+def test_the_server_has_ended_when_it_is_closed(serve: Serve, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ui_web, "LAST_WORDS", PATIENCE)
+    web = serve()
+    assert get(web).status == 200
+    web.close()
+    assert not web._thread.is_alive(), "else what was sent is lost with the process"
+
+
+@pytest.mark.parametrize("text", ["", "x token", "65536 token", "-1 token", "²"])
+def test_a_page_before_this_one_is_found_by_its_address_and_by_nothing_else(text: str) -> None:
+    assert read_address(format_address(65535, "its token")) == (65535, "its token")
+    assert read_address(text) == (0, "")
 
 
 # What cannot be served
