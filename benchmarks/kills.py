@@ -267,7 +267,8 @@ RECORDERS = (
     "before all nodes. What either has was published. A word that both have missed was published if the observer's",
     "journal has it as heard; the judge then does not know who published it. An order that both have missed was given",
     "if the robot's side has acknowledged its number. Any other order or word that is missing is wrong, and so",
-    "is an order without acknowledgement in a mission that was won, where one was needed.",
+    "is an order without acknowledgement in a mission that was won, where one was needed. Where both have missed how a",
+    "mission ended, it was won if they have the state of its goal and the observer's `Finish!` behind it.",
 )
 """What the page says of the recorders."""
 

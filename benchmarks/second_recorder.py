@@ -77,6 +77,10 @@ def merged(first: MissionRecord, second: MissionRecord) -> MissionRecord:
         plans={**second.plans, **first.plans},
         problems=(*first.problems, *(f"second recorder: {problem}" for problem in second.problems)),
         whole_from=-math.inf,
+        received={
+            seq: min(record.received.get(seq, math.inf) for record in (first, second))
+            for seq in {**first.received, **second.received}
+        },
     )
 
 

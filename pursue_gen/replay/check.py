@@ -10,7 +10,7 @@ from pursue_gen.replay.assumptions import newly_broken
 from pursue_gen.replay.beginnings import EXACT, with_beginnings
 from pursue_gen.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
 from pursue_gen.replay.game import Game
-from pursue_gen.replay.gaps import with_missing
+from pursue_gen.replay.gaps import with_end, with_missing
 from pursue_gen.replay.moves import Move, Moves, after, place_of
 from pursue_gen.replay.orders import Entry, Orders, in_time, of_plan, since_for
 from pursue_gen.replay.record import MissionRecord
@@ -58,7 +58,8 @@ def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings
     known = {state.seq for state in record.states}
     orders, unread = _orders_in(record, game)
     states, late = with_beginnings(with_missing(record.states, record.words, moves, orders), moves)
-    record = replace(record, states=tuple(states))
+    whole = with_end(states, record.words, game.objective.goal)
+    record = replace(record, states=tuple(whole))
     checker = _Checker(record, game, moves, orders, tolerance)
     checker.run()
     steps = checker.steps
@@ -68,6 +69,8 @@ def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings
     findings = [Finding(NOTE, "recorded late", seq, text.format(passed)) for seq, passed in late.items()]
     text = "not recorded: the words that were recorded lead to it"
     findings += [Finding(NOTE, "not recorded", seq, text) for seq in sorted({s.seq for s in states} - known)]
+    text = "no state was recorded that says how it ended: its observer said that the goal is reached"
+    findings += [Finding(NOTE, "not recorded", state.seq, text) for state in whole[len(states) :]]
     findings += [*unread, *checker.findings, *checker.timing(steps), *checker.commands(steps, said)]
     findings += unmatched_words(record, said, checker.moves)
     if not record.by_words:

@@ -12,13 +12,17 @@ from pursue_gen.replay.beginnings import EXACT
 from pursue_gen.replay.moves import DiscreteState, Move, Moves, after, place_of
 from pursue_gen.replay.orders import Entry, Orders, since_for
 from pursue_gen.replay.record import RecordedWord
-from pursue_runtime.state import LIVE, RUNNING, SystemState
+from pursue_runtime.state import LIVE, RUNNING, WON, SystemState
+from pursue_runtime.words import FINISH
 
 AROUND = 0.25
 """Seconds by which the recorder's clock may be beside the observer's."""
 
 Since = Mapping[Entry, int]
 """For blocks that hold in a state the number of the first state of which what they decided stands; else: its own."""
+
+OBSERVER = "observer"
+"""The node that shows the states, and says when the mission is over."""
 
 LONGEST = 5
 """The most states that are looked for in one gap."""
@@ -65,6 +69,18 @@ def _missing(
         if made:
             return made
     return []
+
+
+def with_end(
+    states: Sequence[SystemState], words: Sequence[RecordedWord], goal: Sequence[Tuple[str, str]]
+) -> Sequence[SystemState]:
+    """Add that the mission was won where no recorded state says so: it is at the goal, and then the observer has said
+    that it is over."""
+    last = states[-1]
+    said = any(word.event == FINISH and word.node == OBSERVER and word.at >= last.stamp - AROUND for word in words)
+    if not said or last.status not in LIVE or not goal or any(last.locations[name] != there for name, there in goal):
+        return states
+    return [*states, last._replace(status=WON)]
 
 
 class _Plays:

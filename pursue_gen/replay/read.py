@@ -93,6 +93,7 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
     plans: Dict[int, Mapping[str, Any]] = {}
     game: Optional[Mapping[str, Any]] = None
     drives: List[Drive] = []
+    received: Dict[int, float] = {}
     strange, latest = 0, -math.inf
     # without `seq`, which counts what was sent to one subscriber alone, too
     simple = {(message.topic.strip("/"), message.data[4:]) for message in messages if message.topic.endswith(_SIMPLE)}
@@ -114,6 +115,7 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
                 words.append(read_word(message.at, text, message.node))
             elif state is not None:
                 states.append(state)
+                received.setdefault(state.seq, message.at)
                 latest = state.stamp
             elif data is not None and topic.endswith("plan"):
                 plans[_whole(data.get("plan"))] = data
@@ -123,7 +125,9 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
                 strange += 1
     found = [*problems, *([f"{strange} messages on our topics could not be read"] if strange else [])]
     known = ordered(iter(states))
-    record = MissionRecord(known, tuple(words), tuple(orders), plans, game, tuple(found), drives=tuple(drives))
+    record = MissionRecord(
+        known, tuple(words), tuple(orders), plans, game, tuple(found), drives=tuple(drives), received=received
+    )
     return replace(record, whole_from=_connected(messages)) if known and record.is_late else record
 
 

@@ -59,6 +59,8 @@ class MissionRecord:
     `problems`: what could not be read of it, in sentences. `by_words`: a journal, which holds no states of its own and
     does not name the nodes that published its words. `drives`: those that were measured without a mission.
     `whole_from`: the moment (seconds) from which on it has everything, of a recorder that was started late.
+    `received`: when the first state of each number was received: long after its stamp, where an observer that was away
+    has shown later what had happened meanwhile.
     """
 
     states: Tuple[SystemState, ...]
@@ -70,6 +72,11 @@ class MissionRecord:
     by_words: bool = False
     drives: Tuple[Drive, ...] = ()
     whole_from: float = -math.inf
+    received: Mapping[int, float] = field(default_factory=dict)
+
+    def known_from(self, state: SystemState) -> float:
+        """Since when nodes may know of a state (seconds)."""
+        return max(state.stamp, self.received.get(state.seq, state.stamp))
 
     @property
     def is_late(self) -> bool:

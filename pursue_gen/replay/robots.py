@@ -27,7 +27,8 @@ Done = Tuple[SystemState, SystemState, str, bool]
 """The state before a step and after it, its mover, and whether it was a command."""
 
 Activity = Tuple[SystemState, float, str, str]
-"""The state in which it begins, its end (seconds), the robot, where it goes ("" for an action)."""
+"""The state in which it begins, its end as nodes may know of it (seconds), the robot, where it goes ("" for an
+action)."""
 
 
 def check_robots(
@@ -39,7 +40,7 @@ def check_robots(
     taken back.
     """
     robots = [agent.name for agent in game.scenario.agents if agent.is_robot]
-    activities = _activities(steps, robots, record.states[0] if record.is_late else None)
+    activities = _activities(steps, robots, record)
     where = {robot: _places(game.scenario, robot) for robot in robots}
     ways = {going(x.name, y.name): y.name for x in game.scenario.pois for y in game.scenario.pois}
     diary = _ActivityIndex(activities)
@@ -115,12 +116,13 @@ def _uncommanded(scenario: Scenario, steps: Sequence[Done], record: MissionRecor
     }
 
 
-def _activities(steps: Sequence[Done], robots: Sequence[str], first: Optional[SystemState]) -> List[Activity]:
-    """What robots began, and until when (the next step of the robot); `first`: the state in which a recorder came that
-    was late, and what was under way there."""
+def _activities(steps: Sequence[Done], robots: Sequence[str], record: MissionRecord) -> List[Activity]:
+    """What robots began, and until when (the next step of the robot); of a recorder that came late, also what was under
+    way then."""
     begun: List[Activity] = []
     open_: Dict[str, int] = {}
-    if first is not None:
+    if record.is_late:
+        first = record.states[0]
         for robot in robots:
             there = first.locations[robot]
             if is_going(there) or is_doing(there):
@@ -137,7 +139,7 @@ def _activities(steps: Sequence[Done], robots: Sequence[str], first: Optional[Sy
                 continue
             if robot in open_:
                 place = open_.pop(robot)
-                begun[place] = (begun[place][0], state.stamp, robot, begun[place][3])
+                begun[place] = (begun[place][0], record.known_from(state), robot, begun[place][3])
             if is_going(there):
                 open_[robot] = len(begun)
                 begun.append((state, float("inf"), robot, there))
@@ -197,7 +199,7 @@ def _far(one: Point, other: Point) -> bool:
 
 def _returns(record: MissionRecord, order: RobotOrder) -> bool:
     """True if a state had the robot return to its place about when it got the goal."""
-    ends = [*(state.stamp for state in record.states[1:]), float("inf")]
+    ends = [*(record.known_from(state) for state in record.states[1:]), float("inf")]
     return any(
         order.robot in state.returning and state.stamp - EARLY <= order.at <= end + LATE
         for state, end in zip(record.states, ends)

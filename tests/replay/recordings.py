@@ -56,6 +56,8 @@ class Mission:
     states: List[SystemState] = field(default_factory=list)
     heard: List[Tuple[float, str, str, Any]] = field(default_factory=list)
     unit: float = 1.0
+    received: Dict[int, float] = field(default_factory=dict)
+    """When states were published that have an earlier stamp, by their numbers."""
 
     def say(self, at: float, text: str, node: str) -> None:
         """A word."""
@@ -69,7 +71,8 @@ class Mission:
 
     def messages(self) -> List[Tuple[float, str, str, Any]]:
         """Everything, in order of receipt."""
-        shown = [(state.stamp, "/pursue/system_state", "observer", text_of(state)) for state in self.states]
+        times = (self.received.get(state.seq, state.stamp) for state in self.states)
+        shown = [(at, "/pursue/system_state", "observer", text_of(state)) for at, state in zip(times, self.states)]
         return sorted([*shown, *self.heard], key=lambda message: message[0])
 
     def change(self, seq: int, **values: Any) -> None:

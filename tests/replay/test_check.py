@@ -6,13 +6,14 @@ from dataclasses import replace
 from typing import Any, Dict, List, Tuple
 
 import pytest
-from recordings import PLAY, Mission, game, mission
+from recordings import PLAY, START, Mission, game, mission
 
 from pursue_gen.partition import partition, strategy_file
 from pursue_gen.replay import Findings, MissionRecord, check
 from pursue_gen.replay.bag import Message
 from pursue_gen.replay.finding import FAULT, NOTE, WORLD
 from pursue_gen.replay.read import from_messages
+from pursue_gen.replay.record import read_word
 from pursue_runtime.state import SystemState
 
 
@@ -215,6 +216,35 @@ def test_a_goal_without_a_state_is_a_fault() -> None:
     made.order(made.states[1].stamp + 0.05, "bot2", "a")  # a second before it sets out
     made.order(made.states[8].stamp + 0.05, "bot1", "c")
     assert kinds(found(made)) == [("order", 1), ("order", 8)]
+
+
+def test_a_standing_goal_may_be_given_again_until_a_state_shows_that_it_is_reached() -> None:
+    made = mission()
+    made.received = dict.fromkeys((5, 6, 7), START + 14.0)  # its observer was away
+    made.order(START + 13.9, "bot2", "a")  # its controller was killed, and is back
+    assert kinds(found(made)) == []
+    made.order(START + 16.1, "bot2", "a")
+    assert [kind for kind, _ in kinds(found(made))] == ["order"]
+    made.heard.pop()
+    made.received.clear()
+    assert kinds(found(made)) == [("order", 7)]
+
+
+@pytest.mark.parametrize("node, status", [("observer", "won"), ("UI", "running"), ("plain_words", "running")])
+def test_where_the_last_state_was_not_recorded_the_observers_word_tells_that_the_goal_is_reached(
+    node: str, status: str
+) -> None:
+    made = mission()
+    made.change(made.states[-1].seq, status="running")
+    assert found(made).status == "running"
+    words = (*record(made).words, read_word(made.states[-1].stamp + 0.01, "Finish!", node))
+    findings = found(made, words=words)
+    assert (findings.status, kinds(findings)) == (status, [])
+    notes = [note for note in kinds(findings, NOTE) if note[0] == "not recorded"]
+    assert notes == ([("not recorded", made.states[-1].seq)] if status == "won" else [])
+    early = mission()
+    del early.states[-1]
+    assert found(early, words=(*record(early).words, words[-1])).status == "running"
 
 
 def test_a_robot_that_returns_to_its_place_may_be_sent_there() -> None:
