@@ -6,7 +6,12 @@ types; the numbers are for those who start a command (docs/commands.md lists the
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Iterable, Sequence, Tuple
+
 from pursue_gen.diagnostics import PursueError
+
+if TYPE_CHECKING:
+    from pursue_gen.diagnostics import Diagnostic
 
 INTERNAL, NO, INTERRUPTED, BROKEN_PIPE = 1, 1, 130, 141
 """Exit statuses without findings: an internal error; the answer is no (`fmt --check`: a file would change); it was
@@ -20,9 +25,17 @@ class Invalid(PursueError):
 
 
 class Lost(PursueError):
-    """The solver found that the objective cannot be met."""
+    """The solver found that the objective cannot be met.
+
+    `parts`: promises that cannot be met even if nothing else is wanted, by the automata that watch them, a finding for
+    each part; () where only all together is known to be lost.
+    """
 
     exit_status = 4
+
+    def __init__(self, diagnostics: Iterable[Diagnostic], parts: Sequence[Tuple[str, ...]] = ()) -> None:
+        super().__init__(diagnostics)
+        self.parts = tuple(parts)
 
 
 class TooSlow(PursueError):

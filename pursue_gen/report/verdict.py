@@ -46,7 +46,7 @@ def section(
         words = unneeded_words(unneeded(scenario, won.strategy))
         parts += [f"<p>{safe(words)}</p>"] if words else []
     elif lost is not None:
-        parts += _lost(lost)
+        parts += _lost(lost, any(not agent.controllable for agent in scenario.agents))
     parts.append(f"<p class='quiet'>{safe(_game(rules))}</p>")
     parts.append(_agents(scenario))
     return Section("verdict", "The verdict", "\n".join(parts))
@@ -65,11 +65,13 @@ def _won(won: Solution, margin: str) -> List[str]:
     return parts
 
 
-def _lost(lost: Lost) -> List[str]:
+def _lost(lost: Lost, others: bool) -> List[str]:
+    """The verdict; `others`: there are agents whom nobody controls."""
     if lost.explanation is None:
         parts = ["<p class='verdict no'><strong>It was not decided whether it can be met.</strong></p>"]
     else:
-        parts = ["<p class='verdict no'><strong>It cannot be met: the others can always prevent it.</strong></p>"]
+        why = ": the others can always prevent it" if others else ""
+        parts = [f"<p class='verdict no'><strong>It cannot be met{why}.</strong></p>"]
     for finding in lost.findings:
         sentences = [text for text in (finding.message, finding.hint) if text]
         parts.append("<p>" + " ".join(f"{safe(text[:1].upper() + text[1:])}." for text in sentences) + "</p>")

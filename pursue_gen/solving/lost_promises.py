@@ -1,21 +1,26 @@
-"""Promises that cannot be kept even where nothing else is wanted: alone, or two of which one robot has to keep both.
+"""Promises that cannot be kept even where nothing else is wanted: alone, or two that exclude each other.
 
-With fewer promises the controller has less to do, so a loss of these is a loss of all.
+With fewer promises the controller has less to do, so a loss of these is a loss of all. It is looked for in games in
+which the environment has fewer moves, none of which it is ever obliged to make: what it wins so it wins. (Games with
+hidden agents, which have more moves than there are, say nothing about a loss.)
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from itertools import combinations
-from typing import Tuple
+from itertools import combinations, islice
+from typing import Iterable, List, Optional, Sequence, Tuple
 
-from pursue_gen.outcomes import LimitHit
+from pursue_gen.language.scenario import Scenario, StatedObjective
+from pursue_gen.language.wording import listed, objective_text
+from pursue_gen.outcomes import LimitHit, Lost
+from pursue_gen.solving.freer import without_turns
 from pursue_gen.solving.options import SolveOptions
-from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
-from pursue_gen.synthesis.strategy import Place
-from pursue_gen.tga.network import Edge, Kind, Network, Objective
+from pursue_gen.tga.ends import is_agent
+from pursue_gen.tga.network import Automaton, Kind, Network, Objective
+from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.part import part_of
 from pursue_gen.tga.pauses import acting_at_most
 from pursue_runtime.locations import is_movement
@@ -23,48 +28,131 @@ from pursue_runtime.locations import is_movement
 WORK = 60_000_000
 """The work that is spent on all games of one or two promises."""
 
-_SHARE = 0.1
-"""The part of what is left that one of them gets."""
+_ALONE, _SHARE = 0.5, 0.05
+"""The part of it for those of one, and the part of what is left that one game gets."""
 
 _STATES = 20_000
 """So many discrete states it may have."""
 
+_QUICK, _QUICK_GAME, _FEW_STATES = 6_000_000, 1_000_000, 4000
+"""The work of all games of single promises that are tried before anything else, that of each, and its states."""
+
+
+def promises(objective: Objective) -> Tuple[Objective, ...]:
+    """What the objective asks for, each alone: a place to be avoided, or one to be reached, in its own time."""
+    if objective.kind is Kind.SAFETY:
+        return tuple(Objective(Kind.SAFETY, bad=(place,)) for place in objective.bad)
+    return tuple(_together([goal], [late for late in objective.bad if late[0] == goal[0]]) for goal in objective.goal)
+
+
+def _together(goal: Sequence[Tuple[str, str]], bad: Sequence[Tuple[str, str]]) -> Objective:
+    kind = Kind.SAFETY if not goal else Kind.REACH_WHILE_SAFE if bad else Kind.REACH
+    return Objective(kind, tuple(goal), tuple(bad))
+
+
+def lost_alone(
+    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
+) -> Tuple[Objective, ...]:
+    """The promises that are lost alone, as far as very little work finds that."""
+    budget = Budget(replace(options.limits, work=_QUICK, states=_FEW_STATES), options.progress, options.engine)
+    found: List[Objective] = []
+    for wanted in promises(objective):
+        game = _games(only_promises(network, objective, wanted), wanted)[0]
+        if _won(game, wanted, reaction, budget, _QUICK_GAME / max(_QUICK_GAME, budget.work)) is False:
+            found.append(wanted)
+    return tuple(found)
+
 
 def lost_promises(
     network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
-) -> Tuple[Place, ...]:
-    """One or two of the places that a safety objective is to avoid, of which it is known that nobody can avoid them;
-    () where little work finds none."""
+) -> Tuple[Objective, ...]:
+    """The promises that are lost alone; where there are none, two that are lost together; () where little work finds
+    neither."""
     budget = Budget(replace(options.limits, work=WORK, states=_STATES), options.progress, options.engine)
-    for size in (1, 2):
-        for places in combinations(objective.bad, size):
-            game, wanted = only_promises(network, objective, places), Objective(Kind.SAFETY, bad=places)
-            for part in (acting_at_most(_standing(game), wanted, 1), game):
-                try:
-                    won = verdict_of(budget, part, wanted, reaction, _SHARE).won
-                except LimitHit:
-                    if budget.used_up:
-                        return ()
-                    continue
-                if not won:
-                    return places
-                if part is game:
-                    break
-    return ()
+    single, some = promises(objective), budget.split(_ALONE)
+    alone = tuple(wanted for wanted in single if _is_lost(network, objective, wanted, reaction, some))
+    if alone or len(single) < 3:
+        return alone
+    pairs = (_together((*a.goal, *b.goal), (*a.bad, *b.bad)) for a, b in combinations(single, 2))
+    lost = (wanted for wanted in pairs if _is_lost(network, objective, wanted, reaction, budget))
+    return tuple(islice(lost, 1))
 
 
-def _standing(network: Network) -> Network:
-    """The network in which agents whom nobody controls go nowhere: the environment need not begin a movement."""
+def _is_lost(network: Network, objective: Objective, wanted: Objective, reaction: Fraction, budget: Budget) -> bool:
+    """True if this part of the objective is known to be lost."""
+    game = only_promises(network, objective, wanted)
+    for part in _games(game, wanted):
+        won = _won(part, wanted, reaction, budget, _SHARE)
+        if won is False:
+            return True
+        if won and part == game:
+            return False
+    return False
 
-    def stands(edge: Edge) -> bool:
-        return edge.controllable or not is_movement(edge.target)
 
-    automata = (replace(a, edges=tuple(filter(stands, a.edges))) for a in network.automata)
-    return replace(network, automata=tuple(automata))
+def _won(game: Network, wanted: Objective, reaction: Fraction, budget: Budget, share: float) -> Optional[bool]:
+    """Whether it is won; None: that is not decided with that share of what is left of the budget."""
+    try:
+        return budget.verdict(game, wanted, reaction, share).won
+    except LimitHit:
+        return None
 
 
-def only_promises(network: Network, objective: Objective, places: Tuple[Place, ...]) -> Network:
-    """The network without the automata of other promises: these only watch, and time stops where they are broken."""
-    others = {name for name, _ in objective.bad}.difference(name for name, _ in places)
-    names = {automaton.name for automaton in network.automata} - others
+def _games(game: Network, wanted: Objective) -> Sequence[Network]:
+    """Games that are no harder for the controller, those that are likely to be small first, and the game itself."""
+    freer = without_turns(game, watched(wanted))
+    found = []
+    for some in (freer, game):
+        found += [acting_at_most(standing(some), wanted, 1), acting_at_most(some, wanted, 1), some]
+    return tuple(dict.fromkeys(found))
+
+
+def standing(network: Network) -> Network:
+    """The network in which agents whom nobody controls go nowhere unless they have to leave in time: the environment
+    need not begin another movement."""
+
+    def standing_still(automaton: Automaton) -> Automaton:
+        bounded = {place.name for place in automaton.locations if place.invariant}
+        kept = (e for e in automaton.edges if e.controllable or not is_movement(e.target) or e.source in bounded)
+        return replace(automaton, edges=tuple(kept))
+
+    return replace(network, automata=tuple(map(standing_still, network.automata)))
+
+
+def only_promises(network: Network, objective: Objective, wanted: Objective) -> Network:
+    """The network without the automata of what else the objective asks for: these only watch, and time stops where
+    they are broken."""
+    kept = {name for name, _ in (*wanted.goal, *wanted.bad)}
+    others = {name for name, _ in (*objective.goal, *objective.bad)} - kept
+    names = {each.name for each in network.automata if each.name not in others or not _only_watches(each)}
     return part_of(network, names, {name for name, _ in network.variables})
+
+
+def _only_watches(automaton: Automaton) -> bool:
+    return not is_agent(automaton) and not any(edge.assign for edge in automaton.edges)
+
+
+def watched(wanted: Objective) -> Tuple[str, ...]:
+    """The automata that watch what is wanted."""
+    return tuple(dict.fromkeys(name for name, _ in (*wanted.goal, *wanted.bad)))
+
+
+def cannot_be_promised(names: Iterable[str]) -> str:
+    """That these cannot be promised, even if nothing else is."""
+    some = tuple(dict.fromkeys(names))
+    return f"{listed(some)} cannot be promised{' together' if len(some) > 1 else ''}, even if nothing else is"
+
+
+def in_words(problem: Lost, scenario: Scenario) -> Lost:
+    """The error with the scenario's statements, and their places, in place of the automata that watch them."""
+    objectives, findings = stated(scenario), list(problem.diagnostics)
+    for k, names in enumerate(problem.parts):
+        some = [objectives[name] for name in names]
+        before, after = cannot_be_promised(names), cannot_be_promised(map(_quoted, some))
+        message = after + findings[k].message[len(before) :]
+        findings[k] = replace(findings[k], message=message, span=some[0].span)
+    return Lost(findings, problem.parts)
+
+
+def _quoted(objective: StatedObjective) -> str:
+    return f'"{objective_text(objective)}" (line {objective.span.line})'

@@ -18,6 +18,7 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit, Lost, NotProven, TooSlow
 from pursue_gen.solving.given_plan import Trial, try_plan
 from pursue_gen.solving.inputs import game_of
+from pursue_gen.solving.lost_promises import in_words
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest, solution_of
 from pursue_gen.solving.solution import Solution
@@ -48,7 +49,10 @@ def promised(scenario: Scenario, options: SolveOptions, solve: Solve) -> Promise
     """
     start, numbers = time.monotonic(), scenario.optional
     base = scenario.giving_up(numbers)
-    best = Promised(base, solve(base, options))
+    try:
+        best = Promised(base, solve(base, options))
+    except Lost as problem:
+        raise in_words(problem, base) if problem.parts else problem from None
     given_up: Dict[int, WhyGivenUp] = {}
     for place, number in enumerate(numbers):
         left = options.since(start)

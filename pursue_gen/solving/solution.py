@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Optional, Tuple, Union
+from typing import Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
@@ -15,7 +15,14 @@ from pursue_gen.proof.worst_case import LIMIT, with_counter, worst_case
 from pursue_gen.solving.crowds import has_parts, little_work, won_by_some, works_in_parallel
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.least_time import Guarantee, bounds, fastest, unscaled
-from pursue_gen.solving.lost_promises import lost_promises, only_promises
+from pursue_gen.solving.lost_promises import (
+    cannot_be_promised,
+    lost_alone,
+    lost_promises,
+    only_promises,
+    promises,
+    watched,
+)
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
@@ -27,6 +34,7 @@ from pursue_gen.synthesis.limits import NO_LIMITS, Limits
 from pursue_gen.synthesis.solve import Stats, Verdict, solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.tga.pauses import pauses
 
@@ -92,18 +100,19 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
         known = _with_little_work(game, objective, rules.reaction, options)
         if isinstance(known, Found):
             return Solution(game, objective, known.strategy, rules.reaction, known.stats, rules=rules)
-        if isinstance(known, Objective):
-            part = only_promises(network, objective, known.bad)
-            raise Lost([_cannot_be_met(part, known, rules, options.since(start), len(objective.bad))])
+        if isinstance(known, tuple):
+            raise _lost(network, objective, rules, options.since(start), known)
         verdict = known
     if verdict is None and in_parts and lost_to_few_calls(game, objective, rules.reaction, options.since(start)):
-        raise Lost([_cannot_be_met(network, objective, rules, options.since(start))])
+        raise _lost(network, objective, rules, options.since(start))
     if verdict is None:
         how = options.engine, options.since(start).in_one_piece, options.progress
         first = little_work(game) if alone else 0
         verdict = solve(game, objective, rules.reaction, *how, whole=options.whole, first=first)
     if verdict.strategy is None:
-        raise Lost([_cannot_be_met(network, objective, rules, options.since(start))])
+        left = options.since(start)
+        some = lost_promises(game, objective, rules.reaction, left) if in_parts and not options.most_work else ()
+        raise _lost(network, objective, rules, options.since(start), some)
     strategy = _proven(game, objective, rules.reaction, verdict, options.since(start))
     won = Solution(game, objective, strategy, rules.reaction, verdict.stats, rules=rules)
     return _smaller(won, options.since(start)) if in_parts and len(strategy.blocks) > _MANY else won
@@ -147,24 +156,28 @@ def _smaller(won: Solution, options: SolveOptions) -> Solution:
 
 def _with_little_work(
     game: Network, objective: Objective, reaction: Fraction, options: SolveOptions
-) -> Union[Verdict, Found, Objective, None]:
-    """The verdict in one piece, or a proven strategy that leaves out agents, or pauses of the environment, or a part of
-    the objective that is lost; None where little work finds neither (see `shares`, `lost_promises`, `crowds` and
+) -> Union[Verdict, Found, Tuple[Objective, ...], None]:
+    """The verdict in one piece, or a proven strategy that leaves out agents, or pauses of the environment, or parts of
+    the objective that are lost; None where little work finds neither (see `shares`, `lost_promises`, `crowds` and
     `without_pauses`)."""
     start, work, rests = time.monotonic(), little_work(game), bool(pauses(game))
-    shared = can_be_shared(game, objective)
-    verdict = verdict_with(game, objective, reaction, min(work, _EASY) if rests or shared else work, options)
-    if verdict is None and shared:
-        found = won_in_shares(game, objective, reaction, options.since(start))
+    several, shared = len(promises(objective)) > 1, can_be_shared(game, objective)
+    verdict = verdict_with(game, objective, reaction, min(work, _EASY) if rests or several else work, options)
+    if verdict is None and several:
+        lost = lost_alone(game, objective, reaction, options.since(start))
+        if lost:
+            return lost
+        found = won_in_shares(game, objective, reaction, options.since(start)) if shared else None
         if found is not None:
             return found
         lost = lost_promises(game, objective, reaction, options.since(start))
         if lost:
-            return replace(objective, bad=lost)
+            return lost
     if verdict is None and rests:
         found = won_without_pauses(game, objective, reaction, work, options.since(start))
         if found is not None:
             return found
+    if verdict is None and (rests or (several and not shared)):
         verdict = verdict_with(game, objective, reaction, work, options.since(start))
     if verdict is not None:
         return verdict
@@ -224,16 +237,27 @@ def solve_scenario(scenario: Scenario, rules: Rules, options: SolveOptions = DEF
     return solution(translate(scenario), scenario_objective(scenario), rules, options)
 
 
+def _lost(
+    network: Network, objective: Objective, rules: Rules, options: SolveOptions, parts: Sequence[Objective] = ()
+) -> Lost:
+    """That the objective cannot be met, because of each of these parts if there are any."""
+    some = [wanted for wanted in parts if wanted != objective]
+    if not some:
+        return Lost([_cannot_be_met(network, objective, rules, options, "the objective cannot be met")])
+    start, findings, names = time.monotonic(), [], [watched(wanted) for wanted in some]
+    for wanted, who in zip(some, names):
+        part = only_promises(network, objective, wanted)
+        findings.append(_cannot_be_met(part, wanted, rules, options.since(start), f"{cannot_be_promised(who)},"))
+    return Lost(findings, names)
+
+
 def _cannot_be_met(
-    network: Network, objective: Objective, rules: Rules, options: SolveOptions, promises: int = 0
+    network: Network, objective: Objective, rules: Rules, options: SolveOptions, what: str
 ) -> Diagnostic:
-    """That the objective cannot be met; `promises`: so many there are, of which those of the objective are lost."""
-    reaction = f"{float(rules.reaction):g}"
-    message = f"the objective cannot be met with ends {rules.ends} and a reaction of {reaction} time units"
-    if len(objective.bad) < promises:
-        which = " and ".join(name for name, _ in objective.bad)
-        message += f"; {which} alone cannot be kept, even if nothing else is wanted"
-    hint = "the agents that nobody controls can always prevent it: give the robots more time or speed, or fewer duties"
+    message = f"{what} with ends {rules.ends} and a reaction of {float(rules.reaction):g} time units"
+    hint = "give the robots more time or speed, or fewer duties"
+    if any(is_agent(each) and not any(edge.controllable for edge in each.edges) for each in network.automata):
+        hint = f"the agents that nobody controls can always prevent it: {hint}"
     alone = out_of_reach(network, objective)
     if alone:
         message += f"; no robot can do anything about it, as it depends on {' and '.join(alone)} alone"

@@ -11,11 +11,14 @@ import pytest
 
 from benchmarks.families import deliver_by_robots
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.explanation.explain import Explanation
 from pursue_gen.language import load, parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.report.make import ReportOptions, lost_report, solved_both, won_report
+from pursue_gen.report.verdict import Lost, section
 from pursue_gen.report.whole import report_page
 from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.rules import Rules
 from pursue_gen.synthesis.limits import NO_LIMITS
 
 pytest.importorskip("tornado", reason="tornado drives the browser")
@@ -129,6 +132,13 @@ def test_a_scenario_that_cannot_be_won_is_explained() -> None:
     text = report_page(lost_report(lost, problem.value, NO_LIMITS))
     assert "It cannot be met" in text and "What would change that" in text and 'id="strategy"' not in text
     assert "a deadline of 8 instead of 3 for bring (7 is not enough; line 12)" in text
+
+
+def test_the_others_prevent_it_only_where_there_are_any() -> None:
+    alone = parse('poi "a"\nagent "bot" controllable location a\nobjective: patrol a every 9 by bot\n', "x.pur")
+    lost = Lost((), Explanation((), (), (), ()))
+    assert "the others can always prevent it" in section(delivery(3), Rules(), None, lost=lost).body_html
+    assert "It cannot be met.</strong>" in section(alone, Rules(), None, lost=lost).body_html
 
 
 # In a browser ---------------------------------------------------------------------------------------------------------

@@ -1,0 +1,100 @@
+"""Games in which the controller may do more: what is lost there is lost.
+
+A rule says when something may begin. Where only the controller begins it, and what is wanted does not hear of it, a
+game without the rule is no harder for the controller, and often much smaller: who does such things matters no more.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import AbstractSet, Collection, Iterator, Set, Tuple
+
+from pursue_gen.tga.ends import is_agent
+from pursue_gen.tga.network import Automaton, Edge, Network, is_end
+from pursue_gen.tga.part import part_of
+
+
+def without_turns(game: Network, watching: Collection[str]) -> Network:
+    """The network without the rules that name nothing that these automata hear of, and that only say when the
+    controller may begin something; the network itself where there are none."""
+    heard = {channel for name in watching for channel in _channels(game.automaton(name))}
+    rules = [each for each in game.automata if each.name not in watching and _is_rule(each)]
+    gone = [rule for rule in rules if heard.isdisjoint(_channels(rule)) and _binds_commands_alone(game, rule)]
+    if not gone:
+        return game
+    variables = {name for rule in gone for name in _assigned(rule)}
+    automata = tuple(replace(a, edges=tuple(_free_of(edge, variables) for edge in a.edges)) for a in game.automata)
+    kept = {name for name, _ in game.variables} - variables
+    return part_of(replace(game, automata=automata), {a.name for a in automata} - {rule.name for rule in gone}, kept)
+
+
+def _is_rule(automaton: Automaton) -> bool:
+    """True if it only listens, tests nothing, and says in one variable where it is."""
+    listens = all(edge.sync is not None and not edge.sync.sends for edge in automaton.edges)
+    tests = any(edge.guard.integers or edge.guard.clocks for edge in automaton.edges)
+    bounded = any(place.invariant for place in automaton.locations)
+    return not is_agent(automaton) and listens and not tests and not bounded and len(_assigned(automaton)) == 1
+
+
+def _binds_commands_alone(game: Network, rule: Automaton) -> bool:
+    """True if its variable is tested where the controller begins something, and at the ends of that: then it is always
+    the turn of such an end, which has no more freedom without the rule."""
+    (variable,) = _assigned(rule)
+    for automaton in game.automata:
+        for edge in automaton.edges:
+            if variable not in _tested(edge) or _is_command(edge):
+                continue
+            if not is_end(edge) or edge.sync is None or not edge.sync.sends:
+                return False
+            begins = [begin for begin in automaton.edges if begin.target == edge.source]
+            if not all(_is_command(begin) and _is_followed(rule, begin, edge.sync.channel, edge) for begin in begins):
+                return False
+    return True
+
+
+def _is_followed(rule: Automaton, begin: Edge, ending: str, end: Edge) -> bool:
+    """True if the rule takes part in the begin, and is where the end has its turn from then on until it comes."""
+    if begin.sync is None:
+        return False
+    channel = begin.sync.channel
+    there = {edge.target for edge in rule.edges if edge.sync is not None and edge.sync.channel == channel}
+    before = -1
+    while before < len(there):
+        before = len(there)
+        there |= {e.target for e in rule.edges if e.source in there and e.sync is not None and e.sync.channel != ending}
+    starts = {edge.source for edge in rule.edges if edge.sync is not None and edge.sync.channel == channel}
+    return _turns(rule, begin) <= starts and there <= _turns(rule, end)
+
+
+def _turns(rule: Automaton, edge: Edge) -> Set[str]:
+    """The locations of the rule at which the edge may be taken."""
+    (variable,) = _assigned(rule)
+    places = {place.name for place in rule.locations}
+    numbers = {e.target: value for e in rule.edges for _, value in e.assign}
+    for clause in edge.guard.integers:
+        if any(test.variable == variable for test in clause):
+            values = {test.value for test in clause if test.variable == variable}
+            places &= {name for name, value in numbers.items() if value in values}
+    return places
+
+
+def _is_command(edge: Edge) -> bool:
+    return edge.controllable and (edge.sync is None or edge.sync.sends)
+
+
+def _channels(automaton: Automaton) -> Set[str]:
+    return {edge.sync.channel for edge in automaton.edges if edge.sync is not None}
+
+
+def _assigned(automaton: Automaton) -> Tuple[str, ...]:
+    return tuple(dict.fromkeys(name for edge in automaton.edges for name, _ in edge.assign))
+
+
+def _tested(edge: Edge) -> Iterator[str]:
+    return (test.variable for clause in edge.guard.integers for test in clause)
+
+
+def _free_of(edge: Edge, variables: AbstractSet[str]) -> Edge:
+    """The edge without what its guard says of these variables."""
+    clauses = tuple(c for c in edge.guard.integers if variables.isdisjoint(test.variable for test in c))
+    return edge if clauses == edge.guard.integers else replace(edge, guard=replace(edge.guard, integers=clauses))

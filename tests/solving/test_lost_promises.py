@@ -1,0 +1,182 @@
+"""Promises that are lost alone, or two of them together: named as they are written, and only where that is true."""
+
+from __future__ import annotations
+
+import pickle
+from typing import Sequence, Tuple
+
+import pytest
+
+from benchmarks.lab_scenarios import Size, lab_scenario
+from pursue_gen.language import parse
+from pursue_gen.outcomes import Lost
+from pursue_gen.solving.freer import without_turns
+from pursue_gen.solving.lost_promises import lost_alone, lost_promises, only_promises, promises, standing, watched
+from pursue_gen.solving.optional import promised_of
+from pursue_gen.solving.options import DEFAULT
+from pursue_gen.solving.request import SolveRequest
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.synthesis.native import engine as native
+from pursue_gen.synthesis.solve import solve
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Network, Objective
+from pursue_runtime.locations import is_movement
+
+NIGHT = """poi "station"
+poi "corridor"
+poi "room1"
+poi "room3"
+connect station and corridor distance 5
+connect corridor and room1 distance 4
+connect corridor and room3 distance 12
+event "ring1"
+event "ring3"
+event "fall"
+agent "nora" controllable mobile 2 location station
+agent "otto" controllable mobile 2 location room1
+agent "resident1" location room1 can_do ring1
+agent "resident3" location room3 can_do ring3
+agent "walker" mobile 3 location corridor can_do fall
+objective: if ring1 then nora at room1 within {first}
+objective: if ring3 then nora at room3 within {second}
+objective: if walker at room3 then any robot at corridor within 40
+objective: patrol corridor every 80 by any robot
+"""
+
+SUPPLY = """poi "store"
+poi "hall"
+poi "m1"
+poi "m2"
+connect store and hall distance 10
+connect hall and m1 distance 5
+connect hall and m2 distance 8
+event "empty"
+event "load" location store duration 12
+event "fill" location m2 duration 4
+event "prune" location hall duration 40
+event "scrap"
+rule "supply": load before fill
+agent "cart" controllable mobile 1 location store can_do load, fill
+agent "tug" controllable mobile 2 location hall can_do prune, fill
+agent "line" location m2 can_do empty
+agent "mechanic" mobile 1 location {start} can_do scrap
+objective: patrol store every 90 by cart
+objective: avoid mechanic at hall and tug doing prune
+objective: if scrap then prune within 200
+"""
+
+GUARDED = """poi "gate"
+poi "hall"
+poi "yard"
+connect gate and hall distance 3
+connect hall and yard distance 3
+event "ring"
+event "open" location gate
+agent "bot" controllable mobile 1 location gate can_do open
+agent "aide" controllable mobile 1 location gate
+agent "guest" mobile 1 location hall can_do ring
+assume: guest leaves hall within 6
+assume: guest never at hall
+assume: guest never at gate
+objective: avoid bot at hall and guest at hall
+objective: patrol hall every 30 by bot
+objective: if ring then open within 50
+"""
+
+
+def game(text: str) -> Tuple[Network, Objective]:
+    scenario = parse(text, "x.pur")
+    return played(translate(scenario), Rules()), scenario_objective(scenario)
+
+
+def lost(text: str) -> Lost:
+    with pytest.raises(Lost) as raised:
+        promised_of(parse(text, "x.pur"), SolveRequest())
+    return raised.value
+
+
+def named(parts: Sequence[Objective]) -> Tuple[Tuple[str, ...], ...]:
+    return tuple(watched(part) for part in parts)
+
+
+def test_each_promise_that_is_lost_alone_is_named_as_it_is_written_with_its_place() -> None:
+    problem = lost(NIGHT.format(first=15, second=30))
+    first, second = problem.diagnostics
+    assert first.message.startswith(
+        '"if ring1 then nora at room1 within 15" (line 16) cannot be promised, even if nothing else is, with ends'
+    )
+    assert second.message.startswith('"if ring3 then nora at room3 within 30" (line 17) cannot be promised, even')
+    assert [(one.code, one.span and one.span.line) for one in problem.diagnostics] == [("SYN021", 16), ("SYN021", 17)]
+    assert problem.parts == (("obj",), ("obj2",))
+    assert pickle.loads(pickle.dumps(problem)).parts == problem.parts
+
+
+def test_two_promises_that_exclude_each_other_are_named_with_their_lines() -> None:
+    (finding,) = lost(SUPPLY.format(start="m1")).diagnostics
+    assert finding.message.startswith(
+        '"avoid mechanic at hall and tug doing prune" (line 19) and "if scrap then prune within 200" (line 20) cannot '
+        "be promised together, even if nothing else is"
+    )
+    assert finding.span is not None and finding.span.line == 19
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        NIGHT.format(first=120, second=120),
+        SUPPLY.format(start="m1").replace("mobile 1 location m1 can_do scrap", "location m1 can_do scrap"),
+        GUARDED,
+    ],
+)
+def test_what_is_won_alone_and_in_pairs_is_not_called_lost(text: str) -> None:
+    network, objective = game(text)
+    assert lost_alone(network, objective, Rules().reaction, DEFAULT) == ()
+    assert lost_promises(network, objective, Rules().reaction, DEFAULT) == ()
+
+
+def test_who_has_to_leave_in_time_does_not_stand_still() -> None:
+    network, _ = game(GUARDED)
+    still = standing(network).automaton("guest")
+    sources = {edge.source for edge in still.edges if is_movement(edge.target)}
+    assert "hall" in sources and "yard" not in sources
+
+
+def test_a_milestone_that_cannot_be_reached_is_named_among_others() -> None:
+    text = NIGHT.split("objective")[0].replace('event "fall"', 'event "fall"\nevent "sign" location room3').replace(
+        "location station", "location station can_do sign"
+    )
+    text = text.replace("mobile 3 location corridor can_do", "location corridor can_do")
+    problem = lost(text + "reach_objective: do sign within 300\nreach_objective: do fall\n")
+    (finding,) = problem.diagnostics
+    assert finding.message.startswith('"do fall" (line 18) cannot be promised, even if nothing else is, with ends')
+
+
+def test_nobody_prevents_it_where_all_are_controlled() -> None:
+    text = NIGHT.split("agent \"resident1\"")[0]
+    (finding,) = lost(text + "objective: patrol room3 every 10 by nora\n").diagnostics
+    assert "nobody controls" not in finding.hint and finding.hint.startswith("give the robots more time")
+    (finding, _) = lost(NIGHT.format(first=15, second=30)).diagnostics
+    assert "nobody controls" in finding.hint
+
+
+def test_a_rule_that_only_says_when_robots_may_begin_something_else_is_left_out() -> None:
+    network, objective = game(SUPPLY.format(start="m1"))
+    wanted = promises(objective)[2]
+    part = only_promises(network, objective, wanted)
+    assert "supply" not in {each.name for each in without_turns(part, watched(wanted)).automata}
+
+
+@pytest.mark.skipif(not native.available(), reason="takes minutes in the Python engine")
+@pytest.mark.parametrize("seed", (0, 3, 6, 9))
+def test_promises_of_random_scenarios_that_are_called_lost_are_lost(seed: int) -> None:
+    text = lab_scenario(seed, Size(places=4, robots=2, people=1, promises=3))
+    for factor in (1, 2, 4):
+        network, objective = game("\n".join(shortened(line, factor) for line in text.splitlines()))
+        for wanted in lost_promises(network, objective, Rules().reaction, DEFAULT):
+            part = only_promises(network, objective, wanted)
+            assert not solve(part, wanted, Rules().reaction).won, (seed, factor, watched(wanted))
+
+
+def shortened(line: str, factor: int) -> str:
+    head, within, time = line.partition(" within ")
+    return f"{head}{within}{int(time) // factor}" if within and line.startswith("objective") else line
