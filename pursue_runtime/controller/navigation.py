@@ -5,7 +5,7 @@ Times are seconds of ROS time, `real` of the monotonic clock; distances are metr
 
 from __future__ import annotations
 
-from typing import Callable, FrozenSet, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Callable, List, Optional, Sequence, Tuple
 
 from pursue_runtime.controller.goal import (
     ABORTED,
@@ -21,7 +21,8 @@ from pursue_runtime.controller.goal import (
 from pursue_runtime.controller.reports import Report
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.trip import Trip
-from pursue_runtime.controller.whereabouts import Place, Position, Whereabouts
+from pursue_runtime.controller.view import Due, View
+from pursue_runtime.controller.whereabouts import Position, Whereabouts
 from pursue_runtime.locations import is_action, is_movement
 from pursue_runtime.orders import Order
 from pursue_runtime.sentences import in_words, marked
@@ -38,31 +39,6 @@ from pursue_runtime.words import (
 
 GRACE = 2.0
 """Seconds for which the position of a robot may be missing, or the robot may move about, before that is reported."""
-
-
-class View(NamedTuple):
-    """What a state says about one robot: its location ("": the mission does not run), and the movement (`way`) or the
-    place (`post`) that it stands for; `lost` to `returning` are the lists of the state that name the robot. `seq` is
-    the number of the state, `unanswered` has those of the orders to the robot that were not acknowledged."""
-
-    location: str = ""
-    way: Optional[Movement] = None
-    post: Optional[Place] = None
-    running: bool = True
-    lost: bool = False
-    held: bool = False
-    displaced: bool = False
-    returning: bool = False
-    seq: int = 0
-    unanswered: FrozenSet[int] = frozenset()
-
-
-class Due(NamedTuple):
-    """What is to be sent to a robot now, and the word to publish."""
-
-    goal: Optional[Goal] = None
-    actions: Tuple[Order, ...] = ()
-    word: Optional[str] = None
 
 
 Log = Callable[[str, str], None]

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.controller.goal import Answer, Goal, Movement
-from pursue_runtime.controller.navigation import Log, Navigation, View
+from pursue_runtime.controller.navigation import Log, Navigation
 from pursue_runtime.controller.settings import Settings
+from pursue_runtime.controller.view import View
 from pursue_runtime.controller.whereabouts import Place, Position
 from pursue_runtime.drives.actions import DONE, MOST_FAILURES, Act, Acts, Rules, location_of
 from pursue_runtime.drives.report import ARRIVED, FAILED, INTERRUPTED, LATE, Drive

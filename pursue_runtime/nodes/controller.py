@@ -18,9 +18,10 @@ from pursue_runtime.controller.follower import Follower
 from pursue_runtime.data import DataError, Package
 from pursue_runtime.folders import ros_home
 from pursue_runtime.missions import Missions, own_source
+from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.exeggutor import LOGS, Exeggutor
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Alarm, Diagnostics, Ending, Report, run_node, subscribe
+from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, Report, run_node, subscribe
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.nodes.state_printer import StatePrinter
 from pursue_runtime.nodes.witness import Witness

@@ -34,7 +34,8 @@ from pursue_runtime.drives.robots import Driven, driven_robots
 from pursue_runtime.drives.session import Due, Session
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.missions import own_source
-from pursue_runtime.nodes.node import Alarm, Ending, Later, run_node, subscribe
+from pursue_runtime.nodes.alarm import Alarm, Later
+from pursue_runtime.nodes.node import Ending, run_node, subscribe
 from pursue_runtime.nodes.recorder import CHUNK, stamp
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.orders import Order

@@ -12,12 +12,14 @@ import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.controller.goal import Answer, Movement
-from pursue_runtime.controller.navigation import Navigation, View
+from pursue_runtime.controller.navigation import Navigation
 from pursue_runtime.controller.settings import read_settings
+from pursue_runtime.controller.view import View
 from pursue_runtime.controller.whereabouts import Place, Position, place_of
 from pursue_runtime.locations import is_end, is_movement, is_under_way, movement
 from pursue_runtime.locations import place_of as poi_of
-from pursue_runtime.nodes.node import Alarm, Ending, Later
+from pursue_runtime.nodes.alarm import Alarm, Later
+from pursue_runtime.nodes.node import Ending
 from pursue_runtime.nodes.publishing import Newcomers, ServedFirst, listeners
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.orders import Order, parse_orders

@@ -24,16 +24,15 @@ from pursue_runtime.data import DataError, Package
 from pursue_runtime.folders import ros_home, scenario_folder
 from pursue_runtime.missions import Missions, Source, own_source
 from pursue_runtime.model import Model
+from pursue_runtime.nodes.alarm import Alarm, Later
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.newest import Newest
 from pursue_runtime.nodes.node import (
     ERROR,
     OK,
     WARN,
-    Alarm,
     Diagnostics,
     Ending,
-    Later,
     Report,
     restart_process,
     run_node,

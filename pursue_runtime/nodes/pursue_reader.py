@@ -24,8 +24,9 @@ from pursue_runtime.arguments import KEYS
 from pursue_runtime.bundle import LIMIT, MISSION, mission_id
 from pursue_runtime.data import Package
 from pursue_runtime.folders import keys_folder, missions_folder
+from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import OK, WARN, Alarm, Diagnostics, Ending, Report, run_node, subscribe
+from pursue_runtime.nodes.node import OK, WARN, Diagnostics, Ending, Report, run_node, subscribe
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import number, whole
 from pursue_runtime.reader.contents import StoreError

@@ -16,13 +16,13 @@ from std_msgs.msg import String
 
 from pursue_runtime.arguments import CONFIG
 from pursue_runtime.data import Package
+from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import (
     ERROR,
     OK,
     WARN,
-    Alarm,
     Diagnostics,
     Ending,
     Report,

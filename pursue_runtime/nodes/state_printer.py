@@ -8,7 +8,8 @@ from typing import Callable, Optional, Sequence, Tuple
 
 import rospy
 
-from pursue_runtime.nodes.node import Ending, Later
+from pursue_runtime.nodes.alarm import Later
+from pursue_runtime.nodes.node import Ending
 from pursue_runtime.parameters import flag
 from pursue_runtime.state import SystemState, state_lines
 

@@ -6,7 +6,7 @@ import os
 import sys
 import threading
 import time
-from typing import Dict, Iterator, List, Optional, Sequence, Set, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -14,20 +14,19 @@ from std_msgs.msg import String
 
 from pursue_runtime.data import DataError, Package
 from pursue_runtime.model import Model
+from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import (
     ERROR,
     OK,
     WARN,
-    Alarm,
     Diagnostics,
     Ending,
     Report,
     init_node,
     lower_priority,
     restart_process,
-    start_thread,
     subscribe,
     warn_of_ignored,
 )
@@ -35,25 +34,12 @@ from pursue_runtime.nodes.publishing import Newcomers, listeners
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.nodes.ui_page import UIPage
 from pursue_runtime.nodes.ui_traffic import Traffic
+from pursue_runtime.nodes.ui_typed import Typed
 from pursue_runtime.state import STOPPED, WAITING, WON, SystemState
 from pursue_runtime.strategy import Strategy, parse_plan
 from pursue_runtime.ui.environment import make_player
-from pursue_runtime.ui.mission_view import (
-    Environment,
-    MissionView,
-    PossibleWord,
-    Readiness,
-    Task,
-    done_hints,
-    menu,
-    possible_words,
-    read_line,
-    report_text,
-    reporters,
-    tasks,
-)
+from pursue_runtime.ui.mission_view import Environment, MissionView, Readiness, reporters
 from pursue_runtime.ui.options import ARGUMENTS, Options, read_options, read_told
-from pursue_runtime.ui.requests import numbered
 from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, Terminal, on_terminal
 from pursue_runtime.ui.trace import TraceError
 from pursue_runtime.ui.verdict import ALONE, INTERRUPTED, NOT_STARTED, Verdict, drop_interrupted, write_verdict
@@ -80,8 +66,6 @@ class UI:
     ) -> None:
         """`reporting`: the agents whose ends are reported here."""
         self.options, self.membership, self.ending, self.model = options, membership, ending, model
-        self.reporting = reporting
-        self.words: Set[str] = {edge.word for automaton in model.automata for edge in automaton.edges}
         self.mission = MissionView(model, player, membership.people())
         self.readiness = Readiness(options.nodes)
         self.terminal = Terminal(sys.stdout, os.environ)
@@ -89,9 +73,8 @@ class UI:
         self.phase = GATHERING
         self.observer = ""
         self.tries = 0
-        self.offers: List[PossibleWord] = []
-        self.given: List[Task] = []
         self.verdict: Optional[Tuple[int, str]] = None
+        self.typed = Typed(self, reporting)
         self.page = UIPage(self)
         self.finish_received: Optional[float] = None
         self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
@@ -150,7 +133,7 @@ class UI:
                     self.phase = RUNNING
                     self.terminal.line(self.mission.first_line(rospy.get_time()), BOLD)
                 self.act()
-                self.offer()
+                self.typed.show()
             self.page.show()
 
     def on_plan(self, message: String) -> None:
@@ -176,24 +159,6 @@ class UI:
                 self.finish_received = time.monotonic()
                 self.act()
 
-    def on_line(self, text: str) -> None:
-        """The person at the terminal typed a line."""
-        with self.lock:
-            if self.verdict is not None:
-                self.terminal.line("          the mission has ended; Ctrl-C ends the page as well")
-            elif self.phase == READY and not text.strip():
-                self.start()
-            elif self.phase == RUNNING and not text.strip():
-                self.offer(again=True)
-            else:
-                self.find_offers()
-                word, answer_text = read_line(text, self.offers, self.words, self.given)
-                if answer_text:
-                    self.terminal.line(f"          {answer_text}")
-                if word:
-                    state, ends = self.mission.state, {task.word for task in self.given}
-                    self.events.publish(numbered(word, state.seq) if state is not None and word in ends else word)
-
     # What is done -----------------------------------------------------------------------------------------------------
 
     def gathered(self) -> None:
@@ -204,9 +169,9 @@ class UI:
         if self.options.autostart:
             self.start()
         elif self.page.url:
-            here = ", or press Enter" if self.reads() else ""
+            here = ", or press Enter" if self.typed.is_read else ""
             self.terminal.line(f"All nodes are ready. Start the mission on the page{here}.", BOLD)
-        elif self.reads():
+        elif self.typed.is_read:
             self.terminal.line("All nodes are ready. Press Enter to start the mission.", BOLD)
         else:
             self.terminal.line("All nodes are ready; the mission starts when _start_ is published.", BOLD)
@@ -266,25 +231,6 @@ class UI:
             deadlines.append(real + REDRAW)
         self.alarm.set(moment, max(0.0, min(deadlines) - real) if deadlines else None)
 
-    def offer(self, again: bool = False) -> None:
-        """Show in mode ask what can be typed, if that has changed."""
-        before, given = [offer.word for offer in self.offers], self.given
-        self.find_offers()
-        if self.given and self.given != given and self.reads():
-            for hint in done_hints(self.given):
-                self.terminal.line(f"          {hint}")
-        if self.options.mode == "ask" and (again or before != [offer.word for offer in self.offers]):
-            for line in menu(self.offers):
-                self.terminal.line(line)
-
-    def find_offers(self) -> None:
-        """What the uncontrollable agents can do now, and which ends can be reported here."""
-        state = self.mission.state
-        if state is not None:
-            self.given = tasks(self.model, state, self.reporting)
-            reports = [PossibleWord(task.word, 0.0, float("inf"), task.agent, report_text(task)) for task in self.given]
-            self.offers = [*possible_words(self.model, state, state.clocks_at(rospy.get_time())), *reports]
-
     def conclude(self, outcome: str, sentence: str) -> None:
         """End with this outcome and sentence; only the first call counts."""
         if self.verdict is not None:
@@ -307,6 +253,11 @@ class UI:
         """The nodes for which the start of the mission waits."""
         return self.readiness.missing() if self.phase == GATHERING else []
 
+    @property
+    def is_running(self) -> bool:
+        """True from the first state of the mission under way on."""
+        return self.phase == RUNNING
+
     def can_start(self) -> bool:
         """True where every node is ready and the mission was not started."""
         return self.phase == READY
@@ -314,10 +265,6 @@ class UI:
     def connected(self) -> bool:
         """True when the observer and this node are connected both ways."""
         return bool(self.observer) and self.observer in listeners(self.events)
-
-    def reads(self) -> bool:
-        """True when a person may type here."""
-        return sys.stdin is not None and not sys.stdin.closed and (self.options.mode == "ask" or on_terminal())
 
     def master_lost(self, why: str) -> None:
         """End the node: without a master no node can start or join."""
@@ -341,8 +288,7 @@ class UI:
         """Runs until the mission ends; returns the exit status."""
         if self.page.url:
             self.terminal.line(f"The page is at {self.page.url}", BOLD)
-        if self.reads():
-            start_thread("typed", self.read, self.ending)
+        self.typed.start()
         status = self.ending.wait(linger=0.3)
         if self.ending.reason:
             self.master_lost(self.ending.reason)
@@ -355,19 +301,6 @@ class UI:
             self.terminal.close()
             return status or ALONE
         return max(status, self.verdict[0])
-
-    def read(self) -> None:
-        """Handle what is typed, until the input ends."""
-        for line in typed_lines():
-            self.on_line(line)
-
-
-def typed_lines() -> Iterator[str]:
-    """Yield the lines of standard input; where it fails, log why and end: the mission goes on without a terminal."""
-    try:
-        yield from sys.stdin
-    except (OSError, ValueError) as problem:  # the terminal is gone, or what was typed is no text
-        rospy.logwarn("standard input is not read any more: %s", problem)
 
 
 def save_verdict(path: str, outcome: str, sentence: str) -> None:

@@ -154,9 +154,9 @@ class UIPage:
             return ""
         if not request.word or state is None:
             return f"{request.word or request.do} is not possible now."
-        ui.find_offers()
-        ends = {task.word for task in ui.given}
-        begins = {offer.word for offer in ui.offers if offer.opens <= MARGIN}
+        ui.typed.find()
+        ends = {task.word for task in ui.typed.given}
+        begins = {offer.word for offer in ui.typed.offers if offer.opens <= MARGIN}
         word, remark = self._presses.word(request, state, ends if request.do == "done" else begins)
         if word:
             ui.events.publish(word)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, List, Mapping, Optional, Tuple
+from typing import List, Optional, Tuple
 
 from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Assumption, Move, Position
@@ -14,8 +14,7 @@ from pursue_runtime.observer.planning import stays
 from pursue_runtime.orders import Order
 from pursue_runtime.phrases import phrase
 from pursue_runtime.sentences import MARKED, as_sentence, in_words, marked, quoted
-from pursue_runtime.state import ENDED, HOLDING, LIVE, RUNNING, SystemState
-from pursue_runtime.state_checks import adoptable
+from pursue_runtime.state import HOLDING, LIVE, RUNNING, SystemState
 from pursue_runtime.words import (
     BLOCKED,
     FAILED,
@@ -137,35 +136,6 @@ class Mission(MissionStatus):
                 self._mark_lost(name, f"is late by {self._lost_after:g} time units")
         states = self._after_losses(now)
         return states or (self._new_state(now) if has_broken else [])  # no two states have one number
-
-    def stop(self, why: str, now: float) -> List[SystemState]:
-        """Stop the mission safely: no further commands are taken. `why`: a sentence, or any text."""
-        return self._end(life.STOP, as_sentence(why), now) if self._life.may(life.STOP) else []
-
-    def adopt(self, found: Mapping[str, Any], now: float) -> List[SystemState]:
-        """Continue from a state (its fields by name) that other nodes have seen. Raises DataError."""
-        state = adoptable(found, self.model, self._unit, self.plan)
-        self._automata.adopt(state)
-        self._life.take(life.ADOPT, state.reason, state.status)
-        self.seq, self._since = state.seq, {}
-        self._event, self._agent, self._ended = state.event, state.agent, state.stamp if state.status in ENDED else None
-        self.late, self.lost, self.silent = set(state.late), dict.fromkeys(state.lost, "was lost before"), set()
-        self._early, self._warned = {}, False
-        self.ways.turns.clear()
-        self._planning.adopt(self.late.union(self.lost))
-        self.robots.adopt(state)
-        self.orders.adopt(state.orders, now)
-        self.shared_ends.adopt(state)
-        self._beginnings.forget()
-        self._commanded = state.commanded
-        self._shown = self.robots.revision()
-        return [self.state(now), *self._status_changes(now)]
-
-    def on_restart(self, now: float) -> List[SystemState]:
-        """Take that the observer was restarted: what it has done last may not be known."""
-        if self.status in LIVE:
-            self._planning.renumber()
-        return []
 
     def _start(self, now: float) -> List[SystemState]:
         if not self._life.may(life.START):

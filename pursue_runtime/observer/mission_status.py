@@ -1,4 +1,4 @@
-"""Whether a mission runs or holds, and the plans that let it go on. Times are seconds of ROS time."""
+"""Whether a mission runs, holds or is stopped, and the plans that let it go on. Times are seconds of ROS time."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from pursue_runtime.observer.assumptions import broken_reason
 from pursue_runtime.observer.mission_state import MissionState
 from pursue_runtime.observer.planning import PlanRequest, covers, is_uncovered
 from pursue_runtime.observer.uncovered import uncovered_position, uncovered_reason
-from pursue_runtime.sentences import in_words, marked
-from pursue_runtime.state import HOLDING, LIVE, RUNNING, SystemState
+from pursue_runtime.sentences import as_sentence, in_words, marked
+from pursue_runtime.state import ENDED, HOLDING, LIVE, RUNNING, SystemState
+from pursue_runtime.state_checks import adoptable
 from pursue_runtime.strategy import Entry
 
 COVER_GRACE = 2.0
@@ -66,6 +67,35 @@ class MissionStatus(MissionState):
         """Take that the planner has searched for so many seconds for the request of this number, and goes on."""
         self._planning.on_long_search(number, seconds)
         return self._status_changes(now)
+
+    def stop(self, why: str, now: float) -> List[SystemState]:
+        """Stop the mission safely: no further commands are taken. `why`: a sentence, or any text."""
+        return self._end(life.STOP, as_sentence(why), now) if self._life.may(life.STOP) else []
+
+    def adopt(self, found: Mapping[str, Any], now: float) -> List[SystemState]:
+        """Continue from a state (its fields by name) that other nodes have seen. Raises DataError."""
+        state = adoptable(found, self.model, self._unit, self.plan)
+        self._automata.adopt(state)
+        self._life.take(life.ADOPT, state.reason, state.status)
+        self.seq, self._since = state.seq, {}
+        self._event, self._agent, self._ended = state.event, state.agent, state.stamp if state.status in ENDED else None
+        self.late, self.lost, self.silent = set(state.late), dict.fromkeys(state.lost, "was lost before"), set()
+        self._early, self._warned = {}, False
+        self.ways.turns.clear()
+        self._planning.adopt(self.late.union(self.lost))
+        self.robots.adopt(state)
+        self.orders.adopt(state.orders, now)
+        self.shared_ends.adopt(state)
+        self._beginnings.forget()
+        self._commanded = state.commanded
+        self._shown = self.robots.revision()
+        return [self.state(now), *self._status_changes(now)]
+
+    def on_restart(self, now: float) -> List[SystemState]:
+        """Take that the observer was restarted: what it has done last may not be known."""
+        if self.status in LIVE:
+            self._planning.renumber()
+        return []
 
     # Whether it holds -------------------------------------------------------------------------------------------------
 

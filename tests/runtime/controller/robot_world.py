@@ -6,8 +6,9 @@ import math
 from typing import Any, List, Optional, Set, Tuple
 
 from pursue_runtime.controller.goal import Answer, Movement
-from pursue_runtime.controller.navigation import Navigation, View
+from pursue_runtime.controller.navigation import Navigation
 from pursue_runtime.controller.settings import read_settings
+from pursue_runtime.controller.view import View
 from pursue_runtime.controller.whereabouts import Place, Position
 from pursue_runtime.locations import is_action
 from pursue_runtime.orders import Order

@@ -13,7 +13,8 @@ pytest.importorskip("rospy", reason="ROS is not installed")
 
 import rospy
 
-from pursue_runtime.nodes.node import FAILED, Later
+from pursue_runtime.nodes.alarm import Later
+from pursue_runtime.nodes.node import FAILED
 
 
 class Ending:

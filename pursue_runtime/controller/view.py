@@ -1,0 +1,34 @@
+"""What navigation gets to know from a state, and what it gives back: what is to be sent and published."""
+
+from __future__ import annotations
+
+from typing import FrozenSet, NamedTuple, Optional, Tuple
+
+from pursue_runtime.controller.goal import Goal, Movement
+from pursue_runtime.controller.whereabouts import Place
+from pursue_runtime.orders import Order
+
+
+class View(NamedTuple):
+    """What a state says about one robot: its location ("": the mission does not run), and the movement (`way`) or the
+    place (`post`) that it stands for; `lost` to `returning` are the lists of the state that name the robot. `seq` is
+    the number of the state, `unanswered` has those of the orders to the robot that were not acknowledged."""
+
+    location: str = ""
+    way: Optional[Movement] = None
+    post: Optional[Place] = None
+    running: bool = True
+    lost: bool = False
+    held: bool = False
+    displaced: bool = False
+    returning: bool = False
+    seq: int = 0
+    unanswered: FrozenSet[int] = frozenset()
+
+
+class Due(NamedTuple):
+    """What is to be sent to a robot now, and the word to publish."""
+
+    goal: Optional[Goal] = None
+    actions: Tuple[Order, ...] = ()
+    word: Optional[str] = None
