@@ -6,11 +6,10 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Dict, Optional, Tuple
 
-from pursue_gen.language.numbers import Number
+from pursue_gen.language.numbers import Number, at_most
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit, Lost
 from pursue_gen.solving.inputs import settled
-from pursue_gen.solving.least_time import decimal
 from pursue_gen.solving.optional import promised_of
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.solution import guaranteed
@@ -41,7 +40,7 @@ class Verdict:
         """In half a sentence."""
         text = self.verdict
         if self.verdict == WON and self.has_goal:
-            worst = "not found out" if self.takes is None else f"at most {decimal(self.takes)} time units"
+            worst = "not found out" if self.takes is None else f"at most {at_most(self.takes)} time units"
             text += f", to the goal {worst}"
         if self.period is not None:
             text += f", patrols every {self.period}"

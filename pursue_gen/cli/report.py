@@ -158,15 +158,15 @@ def _made(scenario: Scenario, options: ReportOptions, solving: SolveOptions) -> 
     """The report, with lines of progress while it is made."""
     from pursue_gen.cli.mission_count import counting
     from pursue_gen.cli.progress import progress_line
+    from pursue_gen.language.numbers import decimal_text
     from pursue_gen.report.make import lost_report, solved_both, won_report
-    from pursue_gen.solving.least_time import decimal
 
     try:
         with progress_line() as progress:
             scenario, both = solved_both(scenario, replace(solving, progress=progress))
     except (Lost, LimitHit) as problem:
         show(problem.diagnostics)
-        option = "" if solving.within is None else f"--within {decimal(solving.within)}"
+        option = "" if solving.within is None else f"--within {decimal_text(solving.within)}"
         with progress_line() as progress:
             return lost_report(scenario, problem, solving.limits, progress, options.floor, option)
     with counting(2 * options.runs) as count:

@@ -49,6 +49,16 @@ def decimal_text(number: Number) -> str:
     return f"{'-' if number < 0 else ''}{digits[:-places]}.{digits[-places:]}"
 
 
+def at_most(number: Number) -> str:
+    """An upper bound for people, rounded up to tenths: less is not guaranteed."""
+    return decimal_text(Fraction(ceil(number * 10), 10))
+
+
+def at_least(number: Number) -> str:
+    """A lower bound for people, rounded down to tenths."""
+    return decimal_text(Fraction(floor(number * 10), 10))
+
+
 def read_number(text: str) -> Optional[Number]:
     """The number that digits say, perhaps with a point between them; None where the text says none, or is endless."""
     return exact(Fraction(text)) if len(text) <= _LONGEST and _FORM.fullmatch(text) else None

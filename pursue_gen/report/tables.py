@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Callable, List, Optional, Sequence, Tuple
 
 from pursue_gen.drawing.look import safe
+from pursue_gen.language.numbers import at_most
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition.split import ALL, CENTRALIZED, DEDICATED, DISTRIBUTED
 from pursue_gen.report.commands import CommandsTable, Game, commands_table
@@ -122,7 +122,7 @@ def _policy(one: CommandsTable, first: bool) -> str:
 def _times(won: Solution, missions: Sequence[Measured], thesis: Optional[Times]) -> str:
     heads = ["", "least", "median", "worst", *(["thesis (seconds)"] if thesis else [])]
     worst = won.guarantee.worst if won.guarantee else None
-    rows: List[List[object]] = [["guaranteed", "", "", "not found out" if worst is None else _decimal(worst)]]
+    rows: List[List[object]] = [["guaranteed", "", "", "not found out" if worst is None else at_most(worst)]]
     rows[0] += [""] if thesis else []
     for one in missions:
         reached = [row for row in one.summary.rows if row.end == "goal"]
@@ -154,10 +154,6 @@ def _safety(missions: Sequence[Measured]) -> str:
 
 def _share(part: int, whole: int) -> str:
     return f"{100 * part / whole:.1f}" if whole else "-"
-
-
-def _decimal(value: Fraction) -> str:
-    return _number(float(value))
 
 
 def _number(value: float) -> str:

@@ -10,11 +10,11 @@ from pursue_gen.drawing.look import safe
 from pursue_gen.explanation.costs import Costs, in_words
 from pursue_gen.explanation.explain import Explanation, attempt_texts, endless_texts
 from pursue_gen.explanation.texts import time_text
+from pursue_gen.language.numbers import decimal_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import assumption_words, kind_words, objective_words, promise_words, speed_words, units
 from pursue_gen.partition import unneeded, unneeded_words
 from pursue_gen.report.html import Section, table
-from pursue_gen.solving.least_time import decimal
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import Solution
 
@@ -53,7 +53,7 @@ def section(
 
 
 def _won(won: Solution, margin: str) -> List[str]:
-    kept = "" if won.within is None else f" within {decimal(won.within)} time units"
+    kept = "" if won.within is None else f" within {decimal_text(won.within)} time units"
     parts = [
         f"<p class='verdict'><strong>It can be met{kept}, whatever the others do.</strong> The strategy that does it "
         "was proven by a second, independent program.</p>"

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any, Dict, List, Optional, Sequence
 
+from pursue_gen.language.numbers import at_most
 from pursue_gen.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome
 from pursue_gen.simulation.runs import Summary
 from pursue_runtime.state import LOST, STOPPED
@@ -49,7 +51,8 @@ def _notes(summary: Summary, guaranteed: Optional[str]) -> List[str]:
     lines = ["Times are in time units from the start."]
     lines += [guaranteed] if guaranteed else []
     if summary.bound is not None:
-        lines.append(f"With the workspace's controllers, and without faults: at most {summary.bound:.3f} time units.")
+        bound = at_most(Fraction(f"{summary.bound:.6f}"))
+        lines.append(f"With the workspace's controllers, and without faults: at most {bound} time units.")
     if summary.happened:
         faults = ", ".join(f"{kind} {times:,}" for kind, times in summary.happened.items())
         lines += [f"Faults: {faults}.", f"Missions that went on with a new plan: {summary.planned:,}."]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from math import ceil
 from typing import FrozenSet, Optional, Tuple
 
 from pursue_gen.outcomes import LimitHit, NotProven
@@ -16,13 +17,20 @@ from pursue_gen.solving.solution import Solution, with_clocks_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Edge, Network, Objective
-from pursue_gen.tga.scale import least_common_multiple, scaled
+from pursue_gen.tga.scale import common_denominator, least_common_multiple, scaled
 
 STATES = 20_000
 """Symbolic states of the checker that a worst-case time may take."""
 
 Moves = FrozenSet[Tuple[str, Edge]]
 """Edges of agents."""
+
+
+def in_units(time: Fraction, won: Solution) -> Fraction:
+    """The least deadline from this time on that is a multiple of the game's unit, in which its constants and its
+    reaction are integers: the bounds of the strategy are multiples, too."""
+    unit = common_denominator([won.reaction, *won.part.times])
+    return Fraction(ceil(time * unit), unit)
 
 
 def in_time(

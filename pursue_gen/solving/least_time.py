@@ -21,6 +21,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Dict, Mapping, Optional, Tuple
 
+from pursue_gen.language.numbers import at_least, at_most
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.proof.worst_case import with_counter, with_deadline
 from pursue_gen.solving.options import DEFAULT, SolveOptions
@@ -60,9 +61,9 @@ class Guarantee:
         return self.least == self.most
 
     def in_words(self) -> str:
-        """A line for people."""
-        here = "not found out" if self.worst is None else f"at most {decimal(self.worst)} time units"
-        return f"Time to the goal: {here}; nothing below {decimal(self.least)} can be promised."
+        """A line for people, in tenths that hold."""
+        here = "not found out" if self.worst is None else f"at most {at_most(self.worst)} time units"
+        return f"Time to the goal: {here}; nothing below {at_least(self.least)} can be promised."
 
     def as_json(self) -> Dict[str, Any]:
         """For programs: numbers of time units; null where it was not found out."""
@@ -196,8 +197,3 @@ def unscaled(strategy: Strategy, network: Network, factor: int) -> Strategy:
         return replace(one, wait=tuple(map(zone, one.wait)), commands=tuple(map(command, one.commands)))
 
     return replace(strategy, blocks=tuple(map(block, strategy.blocks)))
-
-
-def decimal(value: Fraction) -> str:
-    """A time for people, with six digits."""
-    return f"{float(value):.6g}"

@@ -14,12 +14,23 @@ from fractions import Fraction
 from typing import Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, error
+from pursue_gen.language.numbers import at_most, decimal_text
 from pursue_gen.outcomes import TooSlow
 from pursue_gen.proof.checker import pruned, verify
 from pursue_gen.proof.worst_case import with_counter
 from pursue_gen.solving import soonest
-from pursue_gen.solving.deadlines import STATES, Moves, better, in_time, keeping_to, moves_of, proven_in_time, tried
-from pursue_gen.solving.least_time import Faster, Guarantee, bounds, decimal, unscaled
+from pursue_gen.solving.deadlines import (
+    STATES,
+    Moves,
+    better,
+    in_time,
+    in_units,
+    keeping_to,
+    moves_of,
+    proven_in_time,
+    tried,
+)
+from pursue_gen.solving.least_time import Faster, Guarantee, bounds, unscaled
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.solution import Solution, guaranteed
 from pursue_gen.synthesis.budget import Budget
@@ -124,7 +135,7 @@ def _in_less_time(
         return replace(won, guarantee=known), decided
     some = with_counter(keeping_to(won.part, moves))
     for part, late in _DELAYED:
-        deadline = kept * part
+        deadline = in_units(kept * part, won)
         if known.worst is not None and deadline >= known.worst:
             break
         if late > 1 and not won.reaction:
@@ -158,11 +169,11 @@ def within(won: Solution, deadline: Fraction, options: SolveOptions) -> Solution
 
 
 def _too_short(deadline: Fraction, known: Guarantee) -> Diagnostic:
-    message = f"the goal cannot be guaranteed within {decimal(deadline)} time units"
+    message = f"the goal cannot be guaranteed within {decimal_text(deadline)} time units"
     if known.worst is None:
         hint = "it can be reached, but how long that takes at worst was not found out; leave out --within"
     else:
-        hint = f"it can be guaranteed within {decimal(known.worst)}: --within {decimal(known.worst)}, or leave it out"
+        hint = f"it can be guaranteed within {at_most(known.worst)}: --within {at_most(known.worst)}, or leave it out"
     return error(_NOT_WITHIN, message, hint=hint)
 
 

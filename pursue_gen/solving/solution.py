@@ -113,9 +113,9 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
         left = options.since(start)
         some = lost_promises(game, objective, rules.reaction, left) if in_parts and not options.most_work else ()
         raise _lost(network, objective, rules, options.since(start), some)
-    strategy = _proven(game, objective, rules.reaction, verdict, options.since(start))
-    won = Solution(game, objective, strategy, rules.reaction, verdict.stats, rules=rules)
-    return _smaller(won, options.since(start)) if in_parts and len(strategy.blocks) > _MANY else won
+    won = Solution(game, objective, verdict.strategy, rules.reaction, verdict.stats, rules=rules)
+    smaller = _smaller(won, options.since(start)) if in_parts and len(verdict.strategy.blocks) > _MANY else None
+    return smaller or replace(won, strategy=_proven(game, objective, rules.reaction, verdict, options.since(start)))
 
 
 def _proven(
@@ -139,19 +139,20 @@ def _proven(
     return prove(game, objective, again.strategy, reaction, again.ranks, left, otherwise=again.cautious)
 
 
-def _smaller(won: Solution, options: SolveOptions) -> Solution:
-    """The solution, or one in stages that is much smaller and hardly slower.
+def _smaller(won: Solution, options: SolveOptions) -> Optional[Solution]:
+    """A proven solution in stages that is much smaller than this one, which is not proven yet, and hardly slower.
 
-    Robots that work at the same time arrive in any order, and a strategy in one piece has blocks for each order.
+    Robots that work at the same time arrive in any order, and a strategy in one piece has blocks for each order: to
+    prove it first would take most of the time.
     """
     if len(won.objective.goal) != 1 or not works_in_parallel(won.network, won.objective.goal[0]):
-        return won
+        return None
     some = won_by_some(won.network, won.objective, won.reaction, options)
     if some is None or 2 * len(some.strategy.blocks) > len(won.strategy.blocks):
-        return won
+        return None
     smaller = replace(won, strategy=some.strategy, stats=some.stats)
     takes, took = (guaranteed(each, limits=options.limits).worst for each in (smaller, won))
-    return smaller if takes is not None and (took is None or takes <= _SLOWER * took) else won
+    return smaller if takes is not None and (took is None or takes <= _SLOWER * took) else None
 
 
 def _with_little_work(

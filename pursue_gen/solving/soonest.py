@@ -16,7 +16,7 @@ from typing import Mapping, Optional
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import pruned, verify
 from pursue_gen.proof.worst_case import with_counter, worst_case
-from pursue_gen.solving.deadlines import STATES, better, keeping_to, moves_of, tried
+from pursue_gen.solving.deadlines import STATES, better, in_units, keeping_to, moves_of, tried
 from pursue_gen.solving.least_time import Guarantee
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
@@ -122,7 +122,7 @@ class _Small:
 
     def within(self, deadline: Fraction, options: SolveOptions) -> Optional[Solution]:
         """A proven solution for the deadline that is much quicker than what is known; None: none is found."""
-        worst, reaction = self.known.worst, self.won.reaction
+        worst, reaction, deadline = self.known.worst, self.won.reaction, in_units(deadline, self.won)
         if worst is not None and deadline * MUCH > worst:
             return None
         game = with_counter(self.network), self.won.objective, reaction * _LATE[0], deadline

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Dict, List, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError, as_json, counted
+from pursue_gen.language.numbers import decimal_text
 from pursue_gen.language.objectives import WhyGivenUp
 from pursue_gen.language.scenario import Patrol, Scenario
 from pursue_gen.outcomes import LimitHit, NotProven
@@ -12,7 +13,6 @@ from pursue_gen.proof.checker import LIMIT
 from pursue_gen.proof.margin import USUAL, Margin, decides_ends, describe, game_margin, strategy_margin
 from pursue_gen.proof.margin import as_json as margin_json
 from pursue_gen.proof.margin import in_words as margin_in_words
-from pursue_gen.solving.least_time import decimal
 from pursue_gen.solving.rules import Rules, rules_text
 from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.limits import Limits
@@ -31,7 +31,7 @@ def verdict_text(won: Solution) -> str:
     """The verdict of a game that is won: what it took, and how long a play takes, where that is known."""
     stats = won.stats
     took = f"; {stats.discrete_states} states in {stats.seconds:.3f} s, {stats.engine} engine" if stats else ""
-    kept = "" if won.within is None else f" within {decimal(won.within)} time units"
+    kept = "" if won.within is None else f" within {decimal_text(won.within)} time units"
     stages, shares = len(won.strategy.stages), len(won.strategy.shares)
     order = f" in {stages} stages" if stages else f" in {shares} shares" if shares else ""
     text = f"won{kept}: {rules_text(won.rules)}{took}; {counted(_commands(won), 'command')}{order}, proven"

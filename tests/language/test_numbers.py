@@ -10,7 +10,16 @@ from hypothesis import strategies as st
 
 from pursue_gen.language import parse
 from pursue_gen.language.checks import check
-from pursue_gen.language.numbers import decimal_text, exact, is_fine, read_number, whole_above, whole_below
+from pursue_gen.language.numbers import (
+    at_least,
+    at_most,
+    decimal_text,
+    exact,
+    is_fine,
+    read_number,
+    whole_above,
+    whole_below,
+)
 
 NUMBERS = st.builds(lambda thousandths: Fraction(thousandths, 1000), st.integers(0, 10**9))
 
@@ -39,6 +48,11 @@ def test_a_number_is_read_as_it_is_written(number: Fraction) -> None:
     assert read_number(decimal_text(number)) == number
     assert read_number(f"0{decimal_text(number)}{'.' if number.denominator == 1 else ''}000") == number
     assert is_fine(number)
+
+
+def test_bounds_are_shown_in_tenths_that_hold() -> None:
+    assert (at_most(Fraction("21.004")), at_most(Fraction(21)), at_most(Fraction("21.1"))) == ("21.1", "21", "21.1")
+    assert (at_least(Fraction("20.99")), at_least(Fraction(20)), at_least(Fraction("20.9"))) == ("20.9", "20", "20.9")
 
 
 @given(NUMBERS, NUMBERS)

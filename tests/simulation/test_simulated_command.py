@@ -45,7 +45,7 @@ def test_a_table_and_what_is_guaranteed() -> None:
     lines = done.stdout.splitlines()
     assert lines[0].split() == ["outcome", "missions", "%", "min", "median", "worst"]
     assert lines[2].split()[:4] == ["goal", "reached", "30", "100.0"]
-    assert "Time to the goal: at most 20.803 time units" in done.stdout
+    assert "Time to the goal: at most 20.9 time units" in done.stdout
     assert f"next: pursue-gen ws {shlex.quote(str(THIEF))}" in done.stderr
 
 

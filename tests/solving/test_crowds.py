@@ -71,6 +71,17 @@ def test_twenty_robots_cost_twenty_small_games() -> None:
     assert len(many.strategy.blocks) < 5 * len(few.strategy.blocks)
 
 
+def test_a_strategy_that_gives_way_to_one_in_stages_is_not_proven_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*_: Any, **__: Any) -> Strategy:
+        raise AssertionError("it is proven in one piece")
+
+    scenario = scenario_of(deliver_by_robots(4))
+    monkeypatch.setattr("pursue_gen.solving.solution.prove", refused)
+    won = solution(translate(scenario), scenario_objective(scenario), Rules())
+    assert won.strategy.stages
+    assert verify(won.network, won.objective, won.strategy, DELAY).ok
+
+
 def test_visitors_are_met_one_after_the_other() -> None:
     won = won_so(hand_to_visitors(4))
     assert [milestone for (milestone,) in won.strategy.stages] == [

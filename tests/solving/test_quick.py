@@ -83,6 +83,15 @@ def test_where_the_order_of_time_does_not_help_games_with_a_deadline_do(file: st
 
 
 @needs_native
+def test_plans_hold_multiples_of_the_unit_and_of_the_reaction() -> None:
+    for file in ("catch_the_thief/one_officer", "fields/two_robot_farm", "thesis/catch_the_thief"):
+        strategy = solved(*_game(FIRST.parent.parent / f"{file}.pur"), Rules()).strategy
+        zones = [zone for block in strategy.blocks for zone in block.wait]
+        zones += [zone for block in strategy.blocks for command in block.commands for zone in command.zones]
+        assert all((10 * constraint.bound).denominator == 1 for zone in zones for constraint in zone), file
+
+
+@needs_native
 def test_the_same_strategy_comes_out_however_long_it_takes() -> None:
     game = _game(THIEF)
     assert solved(*game, Rules()).strategy == solved(*game, Rules(), SolveOptions(Limits(3600.0))).strategy
@@ -160,7 +169,7 @@ def test_the_command_answers_with_a_sentence_and_a_status(tmp_path: Path) -> Non
     verdict = json.loads(lost.out)
     assert verdict["won"] is False
     assert verdict["diagnostics"][0]["code"] == "SYN023"
-    assert "it can be guaranteed within 23.302" in verdict["diagnostics"][0]["hint"]
+    assert "it can be guaranteed within 23.4: --within 23.4" in verdict["diagnostics"][0]["hint"]
     assert pursue("ws", FIRST, "--within", 20, "-o", tmp_path / "ws").status == 4
     assert not (tmp_path / "ws").exists()
 
