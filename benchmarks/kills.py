@@ -34,7 +34,7 @@ from benchmarks.second_recorder import NAME, bag_of, command, heard_in, merged, 
 from benchmarks.synthesis import machine, version
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.replay import Findings, check, game_of, read_recording
-from pursue_gen.replay.finding import FAULT, UNRECORDED
+from pursue_gen.replay.finding import FAULT, UNRECORDED, WORLD
 from pursue_gen.replay.game import Game, from_workspace
 from pursue_gen.replay.journal import Journal
 from pursue_gen.solving.rules import Rules
@@ -82,6 +82,7 @@ BAD = ("wrong", "no end")
 OUTCOMES = {
     "goal": "the goal was reached, and each step was the strategy's or the world's",
     "stopped": "stopped safely, with a reason",
+    "lost": "a deadline has passed, and before that a robot was late by its model (its simulator was dead)",
     "wrong": "a step, a command or an order that the strategy does not hold, or a verdict that is not true",
     "no end": "no verdict in time",
 }
@@ -176,7 +177,10 @@ def outcome(findings: Findings) -> Tuple[str, str]:
         return "goal", ""
     if findings.status == "stopped":
         return "stopped", findings.reason
-    return ("wrong", "the mission was lost") if findings.status == "lost" else ("no end", findings.status)
+    if findings.status != "lost":
+        return "no end", findings.status
+    late = [each for each in findings.findings if (each.level, each.kind) == (WORLD, "late")]
+    return ("lost", f"{late[0].text}; {findings.reason}") if late else ("wrong", "the mission was lost")
 
 
 def mission(
@@ -225,7 +229,7 @@ def results(done: Sequence[Mission]) -> Dict[str, Any]:
     for each in done:
         row = table.setdefault(each.scenario, dict.fromkeys(OUTCOMES, 0))
         row[each.outcome] += 1
-    reasons = collections.Counter(each.why for each in done if each.outcome == "stopped")
+    reasons = collections.Counter(each.why for each in done if each.outcome in ("stopped", "lost"))
     kills = sum(len(each.kills) for each in done)
     bad = [each._asdict() for each in done if each.outcome in BAD]
     missed = [{"number": each.number, "missed": each.missed} for each in done if each.missed]
@@ -312,7 +316,7 @@ def page(found: Dict[str, Any]) -> str:
         *(f"- **{head}**: {meaning}." for head, meaning in OUTCOMES.items()),
     ]
     if found["reasons"]:
-        lines += ["", "| reason of a stop | missions |", "| --- | --- |"]
+        lines += ["", "| reason of a stop or a loss | missions |", "| --- | --- |"]
         lines += [f"| {why.replace('|', '/')} | {count} |" for why, count in found["reasons"].items()]
     return "\n".join(lines) + "\n"
 

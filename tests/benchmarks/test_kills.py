@@ -53,6 +53,15 @@ def test_a_mission_is_wrong_where_a_node_did_what_it_must_not(
     assert outcome(findings(status, *levels))[0] == expected
 
 
+def test_a_mission_is_lost_by_right_where_a_robot_was_late_by_its_model_before() -> None:
+    late = Finding(WORLD, "late", 7, "bot_end by bot comes 4.29 time units late for the model")
+    lost = replace(findings("lost", reason="a deadline has passed"), findings=(late,))
+    assert outcome(lost) == ("lost", f"{late.text}; a deadline has passed")
+    for other in (replace(late, level=NOTE), replace(late, kind="early")):
+        assert outcome(replace(lost, findings=(other,))) == ("wrong", "the mission was lost")
+    assert outcome(replace(lost, findings=(late, replace(late, level=FAULT))))[0] == "wrong"
+
+
 @pytest.mark.parametrize("level", [FAULT, UNRECORDED])
 @pytest.mark.parametrize("kind", ["unsaid", "untold", "command", "gap", "unacknowledged"])
 def test_no_kind_of_fault_is_passed_over(kind: str, level: str) -> None:
@@ -170,8 +179,8 @@ def test_the_page_counts_each_outcome_and_names_the_reasons_of_stops() -> None:
     assert found["kills"] == 4
     assert [each["number"] for each in found["bad"]] == [2]
     text = page(found)
-    assert "| one | 1 | 0 | 1 | 0 |" in text
-    assert "| two | 0 | 1 | 0 | 0 |" in text
+    assert "| one | 1 | 0 | 0 | 1 | 0 |" in text
+    assert "| two | 0 | 1 | 0 | 0 | 0 |" in text
     assert "| a/b | 1 |" in text
     assert all(f"**{head}**" in text for head in OUTCOMES)
     assert max(map(len, text.splitlines())) <= 120
