@@ -83,7 +83,7 @@ def explained(
         show_periods(scenario, won=False)
         info("Looking for what would change that (--no-explain leaves it out) …")
         with progress_line(quiet) as progress:
-            explanation = explain(scenario, rules, limits, progress)
+            explanation = explain(scenario, rules, limits, progress, problem.parts)
         info(render(explanation).rstrip())
         return {"explanation": as_json(explanation)}
     if isinstance(problem, LimitHit) and request.plan is None and request.options.solver is None:

@@ -17,7 +17,6 @@ from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
-from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 
@@ -63,11 +62,8 @@ class Findings:
     helpful: Tuple[Strategy, ...] = ()
 
 
-def findings(
-    scenario: Scenario, rules: Rules, limits: Limits, progress: Optional[Listener] = None
-) -> Findings:
-    """Tries all that is small, for a scenario that is lost under these rules, within the limits."""
-    budget = Budget(limits, progress, phase=EXPLAINING)
+def findings(scenario: Scenario, rules: Rules, budget: Budget) -> Findings:
+    """Tries all that is small, for a scenario that is lost under these rules, within the budget."""
     tried = list(knobs(scenario, rules))
     won: Dict[int, _Win] = {}
     lost: Dict[int, str] = {}

@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from pursue_gen.explanation.lesser import Part, without_each
+from pursue_gen.explanation.part import rules_for
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
@@ -136,9 +137,7 @@ def _without_several(scenario: Scenario, parts: Sequence[Part]) -> List[Tuple[Tu
 
 
 def _game(scenario: Scenario, rules: Rules) -> _Game:
-    names = {agent.name for agent in scenario.agents}
-    slack = {name: late for name, late in rules.slack.items() if name in names}
-    return played(translate(scenario), replace(rules, slack=slack)), scenario_objective(scenario)
+    return played(translate(scenario), rules_for(scenario, rules)), scenario_objective(scenario)
 
 
 def _size(network: Network, objective: Objective) -> int:

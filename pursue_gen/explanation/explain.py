@@ -8,19 +8,22 @@ so.
 from __future__ import annotations
 
 import textwrap
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from fractions import Fraction
-from typing import Any, Dict, List, Optional, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 from pursue_gen.explanation.changes import Change, findings
 from pursue_gen.explanation.endless import PAUSE, Endless, endless
+from pursue_gen.explanation.part import part_of_scenario, rules_for, statements_of
 from pursue_gen.explanation.play import Play, counter_plays
 from pursue_gen.explanation.texts import Attempt, TimedLine, attempt, describe, time_text
 from pursue_gen.explanation.together import Conflict, conflict
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import statement_text
+from pursue_gen.language.wording import listed, statement_text
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import EXPLAINING, NO_LIMITS, Limits, Listener
 from pursue_gen.tga import scenario_objective, translate
@@ -28,10 +31,15 @@ from pursue_gen.tga import scenario_objective, translate
 WORK = 150_000_000
 """The work of an explanation: ten to thirty seconds."""
 
-_FOR_CHANGES, _FOR_ENDLESS, _FOR_CONFLICT = 0.5, 0.05, 0.1
-"""The part of the limits that the search for changes may take, whether time has to pass, and which objectives exclude
-each other; the rest is for plays."""
+_FOR_WHOLE, _FOR_CHANGES, _FOR_CONFLICT, _FOR_ENDLESS = 0.03, 0.5, 0.2, 0.1
+"""The part of what is left of the budget for the scenario as it is, where fewer promises are known to be lost; for
+changes; for which objectives exclude each other; and for whether time has to pass. The rest is for plays."""
 
+_LINES, _FIRST_LINES = 10, 3
+"""So many lines of a play are shown, and so many of its beginning where it is longer."""
+
+_SHOWN = 6
+"""So many of the changes are named that do not help."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +48,8 @@ class Explanation:
     decided within the limits; a play that is lost whatever the controller does (empty: not found within them); what
     else the controller could begin with, and why that fails too; and who prevents the objective without time passing
     (empty: it is prevented in plays in which time passes, or that is not decided). `conflict`: of several objectives
-    those that cannot be promised together.
+    those that cannot be promised together. `preventing`: whom nobody controls and who acts in the play. `alone`: all
+    this is about the objectives of the first finding, with nothing else promised.
     """
 
     changes: Tuple[Change, ...]
@@ -50,6 +59,8 @@ class Explanation:
     attempts: Tuple[Attempt, ...] = ()
     endless: Tuple[Endless, ...] = ()
     conflict: Optional[Conflict] = None
+    preventing: Tuple[str, ...] = ()
+    alone: bool = False
 
 
 def explain(
@@ -57,39 +68,50 @@ def explain(
     rules: Rules,
     limits: Limits = NO_LIMITS,
     progress: Optional[Listener] = None,
+    parts: Sequence[Tuple[str, ...]] = (),
 ) -> Explanation:
     """Explains a scenario that is lost under these rules (that it is lost is not looked at), within the limits.
 
     Their seconds (none that nobody has set) and their work (WORK where they name none) are for everything, the memory
-    for each game that is solved, which `progress` reports.
+    for each game that is solved, which `progress` reports. `parts`: as in `Lost`; where several are lost alone, or all
+    is too large to be looked at, the explanation is about the first one.
     """
     limits = replace(limits.chosen, work=limits.work or WORK)
-    found = findings(scenario, rules, _share(limits, _FOR_CHANGES), progress)
+    budget, alone = Budget(limits, progress, phase=EXPLAINING), False
+    if parts and (len(parts) > 1 or not _is_small(scenario, rules, budget)):
+        scenario, alone = part_of_scenario(scenario, statements_of(scenario, parts[0]), rules), True
+        rules = rules_for(scenario, rules)
+    found = findings(scenario, rules, budget.split(_FOR_CHANGES))
     network, objective = played(translate(scenario), rules), scenario_objective(scenario)
     together: Optional[Conflict] = None
     if len(scenario.objectives) > 1:
-        together = conflict(scenario, rules, Budget(_share(limits, _FOR_CONFLICT), progress, phase=EXPLAINING))
+        together = conflict(scenario, rules, budget.split(_FOR_CONFLICT))
     repeating: Tuple[Endless, ...] = ()
     plays: List[Play] = []
-    try:
-        budget = Budget(_share(limits, _FOR_ENDLESS), progress, phase=EXPLAINING)
-        repeating = endless(network, objective, rules.reaction, budget)
-    except LimitHit:
-        pass
-    rest = _share(limits, 1 - _FOR_CHANGES - _FOR_ENDLESS - (_FOR_CONFLICT if together else 0))
-    try:
-        game = network, objective, rules.reaction
-        plays.extend(counter_plays(*game, rest, found.helpful, progress, bool(repeating)))
-    except LimitHit:
-        pass
+    with suppress(LimitHit):
+        repeating = endless(network, objective, rules.reaction, budget.split(_FOR_ENDLESS))
+    with suppress(LimitHit):
+        plays.extend(counter_plays(network, objective, rules.reaction, budget, found.helpful, bool(repeating)))
     main = describe(scenario, plays[0]) if plays else ()
     attempts = tuple(attempt(scenario, play) for play in plays[1:])
-    return Explanation(found.changes, found.lost, found.undecided, main, attempts, repeating, together)
+    how = found.changes, found.lost, found.undecided, main, attempts, repeating, together
+    return Explanation(*how, _preventing(scenario, main), alone)
 
 
-def _share(limits: Limits, share: float) -> Limits:
-    """That share of what is left of them."""
-    return replace(limits, seconds=limits.left * share, spent=0.0, work=max(1, int(limits.work * share)))
+def _is_small(scenario: Scenario, rules: Rules, budget: Budget) -> bool:
+    """True if the whole scenario is decided with little work, and so can be changed in many ways."""
+    try:
+        network, objective = played(translate(scenario), rules), scenario_objective(scenario)
+        verdict_of(budget, network, objective, rules.reaction, _FOR_WHOLE)
+    except LimitHit:
+        return False
+    return True
+
+
+def _preventing(scenario: Scenario, play: Sequence[TimedLine]) -> Tuple[str, ...]:
+    """The agents whom nobody controls that do something in the play, as people read their names."""
+    acting = {line.who for line in play}
+    return tuple(agent.shown for agent in scenario.agents if not agent.controllable and agent.shown in acting)
 
 
 def render(explanation: Explanation, width: int = 110) -> str:
@@ -98,16 +120,12 @@ def render(explanation: Explanation, width: int = 110) -> str:
     texts += [explanation.conflict.in_words()] if explanation.conflict else []
     lines = [line for text in texts for line in textwrap.wrap(text, width)]
     if explanation.changes:
-        lines.append("Each of these alone would change that, the smallest change first (found by solving again):")
+        lines.append(f"Each of these alone would change that, the smallest change first ({how_found(explanation)}):")
         lines += [f"  - {_change(change)}" for change in explanation.changes]
     else:
         lines.append("No single small change that was tried would change that.")
     if explanation.play:
-        lines.append("How it goes wrong, for example (times in units):")
-        times = [time_text(line.at) for line in explanation.play]
-        widest = max(map(len, times))
-        for at, line in zip(times, explanation.play):
-            lines.append(f"  {at:>{widest}}  {line.who + ': ' if line.who else ''}{line.text}")
+        lines += [f"{play_title(explanation)} (times in units):", *_told(explanation.play)]
     else:
         lines.append("A play that shows it was not found within the limits.")
     if explanation.attempts:
@@ -116,6 +134,29 @@ def render(explanation: Explanation, width: int = 110) -> str:
     lines += _listed("Not enough alone:", explanation.lost, width)
     lines += _listed("Not decided within the limits:", explanation.undecided, width)
     return "\n".join(lines) + "\n"
+
+
+def how_found(explanation: Explanation) -> str:
+    """How the changes were found."""
+    return f"found by solving again{', with nothing else promised' if explanation.alone else ''}"
+
+
+def play_title(explanation: Explanation) -> str:
+    """What stands above the play: who prevents the objective in it."""
+    who = explanation.preventing
+    title = "How it goes wrong, for example"
+    return f"{title}: {listed(who)} prevent{'s' if len(who) == 1 else ''} it" if who else title
+
+
+def _told(play: Sequence[TimedLine]) -> List[str]:
+    """The play, of a long one its beginning and its end."""
+    times = [time_text(line.at) for line in play]
+    widest = max(map(len, times))
+    lines = [f"  {at:>{widest}}  {line.who + ': ' if line.who else ''}{line.text}" for at, line in zip(times, play)]
+    left_out = len(lines) - _LINES + 1
+    if left_out > 1:
+        lines[_FIRST_LINES : _FIRST_LINES + left_out] = [f"  {'…':>{widest}}  ({left_out} more steps)"]
+    return lines
 
 
 def endless_texts(explanation: Explanation) -> List[str]:
@@ -150,6 +191,8 @@ def as_json(explanation: Explanation) -> Dict[str, Any]:
         "play": [{"at": float(line.at), "who": line.who, "text": line.text} for line in explanation.play],
         "attempts": [asdict(one) for one in explanation.attempts],
         "endless": [asdict(one) for one in explanation.endless],
+        "preventing": list(explanation.preventing),
+        "alone": explanation.alone,
         "conflict": [statement_text(one) for one in explanation.conflict.objectives] if explanation.conflict else [],
     }
 
@@ -166,7 +209,10 @@ def _change(change: Change) -> str:
 def _listed(title: str, entries: Tuple[str, ...], width: int) -> List[str]:
     if not entries:
         return []
-    return textwrap.wrap(f"{title} {'; '.join(entries)}.", width, subsequent_indent="  ", break_on_hyphens=False)
+    some = list(dict.fromkeys(entries))
+    more = f"; and {len(some) - _SHOWN} more" if len(some) > _SHOWN else ""
+    text = f"{title} {'; '.join(some[:_SHOWN])}{more}."
+    return textwrap.wrap(text, width, subsequent_indent="  ", break_on_hyphens=False)
 
 
 def _change_json(change: Change) -> Dict[str, Any]:

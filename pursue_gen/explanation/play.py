@@ -13,7 +13,7 @@ from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Set, Tup
 
 from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.policy import COARSE, Choice, Controller, Window, longest, moments, window
-from pursue_gen.explanation.position import Position, PositionSolver
+from pursue_gen.explanation.position import Position, PositionSolver, won_against_few
 from pursue_gen.language.network_names import is_going
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.without_pauses import verdict_of
@@ -28,14 +28,15 @@ from pursue_gen.synthesis.game import (
     is_goal,
     joint_moves,
 )
-from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Edge, Kind, Network, Objective, is_end
+from pursue_gen.tga.pauses import pauses
 
 _MOST_STEPS, _MOST_BEGINNINGS = 60, 8
 
-_FOR_MAIN = 0.5
-"""The part of the limits for the play in which the controller begins as it likes."""
+_FOR_MAIN, _FOR_FEW = 0.7, 0.1
+"""The parts of the budget for the play in which the controller begins as it likes, and for whether few events of the
+environment are enough for one."""
 
 _FINE = Fraction(1, 1000)
 
@@ -74,20 +75,20 @@ def counter_plays(
     network: Network,
     objective: Objective,
     reaction: Fraction,
-    limits: Limits,
+    budget: Budget,
     helpful: Sequence[Strategy] = (),
-    progress: Optional[Listener] = None,
     needs_no_time: bool = False,
 ) -> Iterator[Play]:
     """A play that shows why a lost game is lost, then one for each other way in which the controller could begin.
 
     The network is that of the game as it is played. `helpful` are strategies for games that differ in numbers only, for
     the controller to go by; `needs_no_time`: the game is lost by actions without end alone (see `endless`). Raises
-    LimitHit if no play is found within the limits; they end the rest.
+    LimitHit if no play is found within the budget; it ends the rest.
     """
-    budget = Budget(limits, progress, phase=EXPLAINING)
-    spared = _spared(network, objective, reaction, budget)
-    player = _CounterPlayer(network, spared, objective, reaction, helpful, needs_no_time)
+    few = _lost_to_few(network, objective, reaction, budget)
+    spared = _spared(network, objective, reaction, budget, few)
+    oracle = PositionSolver(spared, objective, reaction, budget, few)
+    player = _CounterPlayer(network, oracle, objective, reaction, helpful, needs_no_time)
     main = player.play(budget.split(_FOR_MAIN))
     yield main
     beginnings = list(_beginnings(main))
@@ -114,7 +115,15 @@ def _beginnings(main: Play) -> Iterator[Tuple[int, ...]]:
     yield from found[:_MOST_BEGINNINGS]
 
 
-def _spared(network: Network, objective: Objective, reaction: Fraction, budget: Budget) -> Network:
+def _lost_to_few(network: Network, objective: Objective, reaction: Fraction, budget: Budget) -> bool:
+    """True if the environment is known to win where each agent that rests between events does no more than one."""
+    try:
+        return bool(pauses(network)) and not won_against_few(budget, network, objective, reaction, _FOR_FEW)
+    except LimitHit:
+        return False
+
+
+def _spared(network: Network, objective: Objective, reaction: Fraction, budget: Budget, few: bool) -> Network:
     """The network without what the environment can do without, so that the play has less of what does not matter.
 
     It only loses moves that it need not make (no invariant drives them), so what is lost there is lost in the whole.
@@ -127,9 +136,14 @@ def _spared(network: Network, objective: Objective, reaction: Fraction, budget: 
         groups = [starts] + [[e for e in free if e.sync == s] for s in {e.sync: 0 for e in free if e not in starts}]
         for group in groups:
             fewer = _without(network, automaton.name, group)
-            if group and not verdict_of(budget, fewer, objective, reaction).won:
+            won = won_against_few if few else _won
+            if group and not won(budget, fewer, objective, reaction):
                 network = fewer
     return network
+
+
+def _won(budget: Budget, network: Network, objective: Objective, reaction: Fraction) -> bool:
+    return verdict_of(budget, network, objective, reaction).won
 
 
 def _without(network: Network, name: str, edges: Sequence[Edge]) -> Network:
@@ -143,7 +157,7 @@ class _CounterPlayer:
     def __init__(
         self,
         whole: Network,
-        spared: Network,
+        oracle: PositionSolver,
         objective: Objective,
         reaction: Fraction,
         helpful: Sequence[Strategy],
@@ -151,8 +165,8 @@ class _CounterPlayer:
     ) -> None:
         self._game = game = compile_game(whole, objective)
         self._reaction, self._helpful = reaction, helpful
-        self._oracle = PositionSolver(spared, objective, reaction)
-        self._kept = _kept(whole, spared)
+        self._oracle = oracle
+        self._kept = _kept(whole, oracle.network)
         self._robots = {edge.automaton for edge in game.edges if edge.controllable}
         self._repeated = {k for k, edge in enumerate(game.origins) if may_repeat(edge)} if needs_no_time else set()
         self._horizon: Optional[int] = None

@@ -18,6 +18,7 @@ from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import State
 from pursue_gen.synthesis.limits import NO_LIMITS
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Network, Objective, Sync
+from pursue_gen.tga.pauses import acting_at_most
 from pursue_gen.tga.scale import common_denominator, scaled
 
 _PARKED, _OVER, _PROLOGUE = "@parked", "@over", "@prologue"
@@ -34,20 +35,26 @@ class Position:
 class PositionSolver:
     """Decides of positions of one game whether they are lost for the controller; answers are remembered.
 
-    `budget`: what that may take; by default as much as it needs.
+    `budget`: what that may take; by default as much as it needs. `few`: only those count as lost in which no agent that
+    rests between events needs to do more than one (see `acting_at_most`): fewer are, and it is quickly decided.
     """
 
     def __init__(
-        self, network: Network, objective: Objective, reaction: Fraction, budget: Optional[Budget] = None
+        self,
+        network: Network,
+        objective: Objective,
+        reaction: Fraction,
+        budget: Optional[Budget] = None,
+        few: bool = False,
     ) -> None:
-        self._network, self._objective, self._reaction = network, objective, reaction
+        self.network, self._objective, self._reaction, self._few = network, objective, reaction, few
         self.budget = Budget(NO_LIMITS) if budget is None else budget
         self._largest = _largest_constants(network)
         self._known: Dict[Tuple[Position, Fraction, Optional[int]], bool] = {}
 
     def same(self, position: Position) -> Position:
         """The position with clocks that no guard can tell from larger ones made equal."""
-        bounds = (self._largest.get(name, 0) for name in self._network.clocks)
+        bounds = (self._largest.get(name, 0) for name in self.network.clocks)
         return replace(position, clocks=tuple(min(v, Fraction(top + 1)) for v, top in zip(position.clocks, bounds)))
 
     def lost(self, position: Position, elapsed: Fraction = Fraction(0), horizon: Optional[int] = None) -> bool:
@@ -59,14 +66,22 @@ class PositionSolver:
         position = self.same(position)
         key = (position, elapsed if horizon is not None else Fraction(0), horizon)
         if key not in self._known:
-            network, clocks = self._network, position.clocks
+            network, clocks = self.network, position.clocks
             if horizon is not None:
                 network = with_horizon(network, horizon)
                 clocks = (*clocks, elapsed)
             scale = common_denominator(clocks)
             begun = beginning_at(scaled(network, scale), position.state, [int(v * scale) for v in clocks])
-            self._known[key] = not verdict_of(self.budget, begun, self._objective, self._reaction * scale).won
+            game = self.budget, begun, self._objective, self._reaction * scale
+            self._known[key] = not (won_against_few(*game) if self._few else verdict_of(*game).won)
         return self._known[key]
+
+
+def won_against_few(
+    budget: Budget, network: Network, objective: Objective, reaction: Fraction, share: float = 1.0
+) -> bool:
+    """True if the game is won where each agent that rests between events does no more than one. Raises LimitHit."""
+    return budget.verdict(acting_at_most(network, objective, 1), objective, reaction, share).won
 
 
 def with_horizon(network: Network, horizon: int) -> Network:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import List, Optional, Tuple
 
-from pursue_gen.language.scenario import Reach, Scenario, StatedObjective
+from pursue_gen.explanation.part import with_objectives
+from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.language.wording import listed, statement_text
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
@@ -59,9 +60,7 @@ def conflict(scenario: Scenario, rules: Rules, budget: Budget) -> Optional[Confl
 
 def _won(scenario: Scenario, objectives: List[StatedObjective], rules: Rules, budget: Budget) -> Optional[bool]:
     """Whether these alone can be promised; None: not decided within the budget."""
-    safety = tuple(each for each in scenario.safety if any(each is kept for kept in objectives))
-    reach = tuple(each for each in objectives if isinstance(each, Reach))
-    fewer = replace(scenario, safety=safety, reach=reach)
+    fewer = with_objectives(scenario, objectives)
     try:
         network = played(translate(fewer), rules)
         return verdict_of(budget, network, scenario_objective(fewer), rules.reaction, _SHARE).won

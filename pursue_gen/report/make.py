@@ -93,7 +93,7 @@ def lost_report(
     """
     rules, scenario = Rules(), scenario.giving_up(scenario.optional)
     if isinstance(problem, outcomes.Lost):
-        lost = Lost(problem.diagnostics, explain(scenario, rules, limits, progress))
+        lost = Lost(problem.diagnostics, explain(scenario, rules, limits, progress, problem.parts))
     else:
         lost = Lost(problem.diagnostics, None, costs(scenario, rules, limits, progress, option))
     return Report(scenario, played(translate(scenario), rules), rules, lost=lost, floor=floor)

@@ -8,7 +8,7 @@ from typing import List, Optional, Sequence
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.drawing.look import safe
 from pursue_gen.explanation.costs import Costs, in_words
-from pursue_gen.explanation.explain import Explanation, attempt_texts, endless_texts
+from pursue_gen.explanation.explain import Explanation, attempt_texts, endless_texts, how_found, play_title
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.numbers import decimal_text
 from pursue_gen.language.scenario import Scenario
@@ -92,14 +92,14 @@ def _explained(explanation: Explanation) -> List[str]:
                 notes.insert(0, f"{change.next_lost} is not enough")
             note = f" ({'; '.join(notes)})" if notes else ""
             items.append(f"<li>{safe(change.sentence + note)}</li>")
-        parts.append("<p>Each of these alone, the smallest change first (found by solving again):</p>")
+        parts.append(f"<p>Each of these alone, the smallest change first ({how_found(explanation)}):</p>")
         parts.append(f"<ul>{''.join(items)}</ul>")
     else:
         parts.append("<p>No single small change that was tried would change that.</p>")
     for title, entries in (("Not enough alone", explanation.lost), ("Not decided", explanation.undecided)):
         if entries:
             parts.append(f"<p>{title}: {safe('; '.join(entries))}.</p>")
-    parts.append("<h3>How it goes wrong, for example</h3>")
+    parts.append(f"<h3>{safe(play_title(explanation))}</h3>")
     rows = [(time_text(line.at), line.who, line.text) for line in explanation.play]
     none = "<p>A play that shows it was not found within the limits.</p>"
     parts.append(table(("time (units)", "who", "what"), rows) if rows else none)

@@ -273,7 +273,7 @@ def test_the_claims_about_the_published_scenarios_hold(reference_dir: Path, name
         assert sum(line.text.startswith("callBot") for line in explanation.play) == 2
     if name == "CT3a":
         assert found["agent", "thief"][0] == "2"
-        assert "it can be prevented whatever the robots do" in explanation.play[-1].text
+        assert explanation.play[-1].text.endswith("catch can always be prevented")
 
 
 def rendered(name: str) -> str:
@@ -292,7 +292,7 @@ def tried(name: str) -> str:
 
 def test_a_missed_deadline_is_reported_step_by_step() -> None:
     assert told("deadline 3") == (
-        "How it goes wrong, for example (times in units):\n"
+        "How it goes wrong, for example: visitor prevents it (times in units):\n"
         "  1.1  visitor: callBot (fetch is due by 4.1)\n"
         "  1.1  bot: sets off from desk to shelf\n"
         "  4.1  bot: arrives at shelf\n"

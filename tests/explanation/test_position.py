@@ -81,7 +81,7 @@ def test_what_comes_after_the_horizon_does_not_count_however_slow_the_controller
     left = Position(replace(begin, locations=(0, 1)), zero)
     assert [oracle.lost(left, Fraction(1), horizon) for horizon in (2, 3)] == [False, False]
     assert oracle.lost(left, Fraction(1), 4) and not oracle.lost(left, Fraction(5), 4)
-    assert next(counter_plays(network, objective, Fraction(1), Limits(PLENTY))).end == "overdue"
+    assert next(counter_plays(network, objective, Fraction(1), Budget(Limits(PLENTY)))).end == "overdue"
 
 
 @given(networks(), st.sampled_from((0, 1)))
@@ -98,7 +98,7 @@ def test_a_game_that_begins_at_its_beginning_is_the_same_game(drawn, delay):
 def test_a_counter_play_follows_the_rules_and_never_leaves_what_is_lost(drawn, delay):
     network, objective = drawn
     assume(not solve(network, objective, Fraction(delay)).won)
-    play = next(counter_plays(network, objective, Fraction(delay), Limits(PLENTY)))
+    play = next(counter_plays(network, objective, Fraction(delay), Budget(Limits(PLENTY))))
     regions = RegionGame(compile_game(network, objective, Fraction(delay)))
     winning = regions.winning()
     for state, clocks in replayed(play):

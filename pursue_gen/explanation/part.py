@@ -1,0 +1,81 @@
+"""The part of a scenario that decides whether some of its objectives can be promised."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Collection, FrozenSet, Sequence, Set, Tuple
+
+from pursue_gen.explanation.lesser import without_agent
+from pursue_gen.language.names import events_used, refs_of
+from pursue_gen.language.scenario import Rule, Scenario, StatedObjective
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.synthesis.cone import cone_of_influence
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.objectives import stated
+
+
+def with_objectives(scenario: Scenario, kept: Collection[StatedObjective]) -> Scenario:
+    """The scenario with these of its objectives alone."""
+    safety = tuple(each for each in scenario.safety if any(each is other for other in kept))
+    reach = tuple(each for each in scenario.reach if any(each is other for other in kept))
+    return replace(scenario, safety=safety, reach=reach)
+
+
+def statements_of(scenario: Scenario, automata: Collection[str]) -> Tuple[StatedObjective, ...]:
+    """The objectives that these automata watch, of a patrol in order with all of its places."""
+    named = [objective for name, objective in stated(scenario).items() if name in automata]
+    some = (statement for statement in scenario.statements if any(a is b for a in statement for b in named))
+    return tuple(objective for statement in some for objective in statement)
+
+
+def part_of_scenario(scenario: Scenario, objectives: Sequence[StatedObjective], rules: Rules) -> Scenario:
+    """The scenario with these objectives alone, without the events and agents that cannot matter to them: it can be
+    won if and only if they can be promised."""
+    part = _without_events(with_objectives(scenario, objectives))
+    network = played(translate(part), rules_for(part, rules))
+    matter = {automaton.name for automaton in cone_of_influence(network, scenario_objective(part)).automata}
+    for agent in part.agents:
+        if agent.name not in matter:
+            part = without_agent(part, agent.name) or part
+    return part
+
+
+def rules_for(scenario: Scenario, rules: Rules) -> Rules:
+    """The rules with the slack of the agents that the scenario has."""
+    names = {agent.name for agent in scenario.agents}
+    return replace(rules, slack={name: late for name, late in rules.slack.items() if name in names})
+
+
+def _without_events(scenario: Scenario) -> Scenario:
+    """The scenario without the events with which robots only pass their time, and without the rules of these alone.
+
+    A robot does such an event alone, and nothing says so. As it takes part in nothing else and has no battery, it can
+    as well stand still meanwhile, and is ready sooner then.
+    """
+    idle = _pastimes(scenario)
+    while True:
+        bound = {name for rule in scenario.rules for name in _named(rule) if not _named(rule) <= idle}
+        if bound.isdisjoint(idle):
+            break
+        idle -= bound
+    return replace(
+        scenario,
+        events=tuple(event for event in scenario.events if event.name not in idle),
+        rules=tuple(rule for rule in scenario.rules if not _named(rule) <= idle),
+        dependencies=tuple(need for need in scenario.dependencies if need.event.name not in idle),
+        agents=tuple(replace(a, can_do=tuple(r for r in a.can_do if r.name not in idle)) for a in scenario.agents),
+    )
+
+
+def _pastimes(scenario: Scenario) -> Set[str]:
+    """The events, rules aside, that only robots do, each alone, who take part in nothing else and have no battery; and
+    that change no state, and are named in no condition and by no objective."""
+    charged = {battery.agent.name for battery in scenario.batteries}
+    busy = [a for a in scenario.agents if not a.controllable or a.reacts_to or a.name in charged]
+    used = events_used(replace(scenario, rules=(), dependencies=(), agents=()))
+    used = used.union(ref.name for agent in busy for ref in (*agent.can_do, *agent.reacts_to))
+    return {event.name for event in scenario.events if not event.collaborative} - used
+
+
+def _named(rule: Rule) -> FrozenSet[str]:
+    return frozenset(ref.name for ref in refs_of(rule.body))

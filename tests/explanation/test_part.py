@@ -1,0 +1,146 @@
+"""The part of a scenario in which promises are lost: explained alone where all is too large, or several are lost."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from pursue_gen.explanation.explain import Explanation, as_json, explain, render
+from pursue_gen.explanation.part import part_of_scenario, statements_of
+from pursue_gen.explanation.play import counter_plays
+from pursue_gen.explanation.texts import TimedLine, describe
+from pursue_gen.language import parse
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.solve import solve
+from pursue_gen.tga import scenario_objective, translate
+
+RULES = Rules()
+
+SHOP = """poi "dock"
+poi "aisle"
+poi "rackA"
+poi "rackB"
+poi "packing"
+connect dock and aisle distance 3
+connect aisle and rackA distance 4
+connect aisle and rackB distance 9
+connect aisle and packing distance 5
+event "orderA"
+event "orderB"
+event "pickA" location rackA duration 6
+event "packA" location packing duration 5
+event "pickB" location rackB duration 8
+event "packB" location packing duration 5
+event "sweep" location dock duration 2
+event "dust" location aisle duration 2
+rule "serveA": pickA before packA
+rule "serveB": pickB before packB
+rule "tidy": sweep before dust
+agent "cart1" controllable mobile 1 location packing can_do pickA, packA, pickB, packB
+agent "cart2" controllable mobile 1 location dock can_do pickA, packA, sweep, dust
+agent "shop" location packing can_do orderA, orderB
+agent "worker" mobile 2 location dock can_do orderA
+objective: if orderA then packA within 90
+objective: if orderB then packB within {deadline}
+objective: avoid any robot at rackA and worker at rackA
+"""
+
+
+def shop(deadline: int) -> Scenario:
+    return parse(SHOP.format(deadline=deadline), "shop.pur")
+
+
+def part_of(deadline: int) -> Scenario:
+    scenario = shop(deadline)
+    return part_of_scenario(scenario, statements_of(scenario, ("obj2",)), RULES)
+
+
+def is_won(scenario: Scenario) -> bool:
+    return solve(played(translate(scenario), RULES), scenario_objective(scenario), RULES.reaction).won
+
+
+def test_the_part_has_what_matters_to_the_promise_and_nothing_else() -> None:
+    part = part_of(60)
+    assert [event.name for event in part.events] == ["orderA", "orderB", "pickB", "packB"]
+    assert [agent.name for agent in part.agents] == ["cart1", "shop"]
+    assert [rule.name for rule in part.rules] == ["serveB"]
+    assert len(part.objectives) == 1
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("pickB, packB\n", "pickB, packB reacts_to wave\n"),
+        ("pickA before packA", "pickA before packB"),
+        ("if orderB then", "if cart1 doing pickA then"),
+        ("location shelf", ""),
+    ],
+)
+def test_an_event_that_may_matter_stays(before: str, after: str) -> None:
+    text = SHOP.format(deadline=60).replace('event "sweep"', 'event "wave" collaborative\nevent "sweep"')
+    text = text.replace("can_do orderA\n", "can_do orderA, wave\n").replace(before, after)
+    if not after:
+        text = text.replace("objective", 'battery "cart1" capacity 60 uses 1 per unit\nobjective', 1)
+    scenario = parse(text, "shop.pur")
+    part = part_of_scenario(scenario, statements_of(scenario, ("obj2",)), RULES)
+    assert "pickA" in {event.name for event in part.events}
+
+
+def test_the_least_deadline_is_that_of_the_part_and_of_the_promise_in_the_whole_game() -> None:
+    explanation = explain(shop(40), RULES, parts=(("obj2",), ("obj",)))
+    (change,) = (one for one in explanation.changes if one.what == "deadline")
+    assert explanation.alone and change.least and (change.before, change.after, change.next_lost) == ("40", "55", "54")
+    assert not is_won(part_of(int(change.next_lost))) and is_won(part_of(int(change.after)))
+    text = render(explanation)
+    assert "with nothing else promised" in text and "How it goes wrong, for example: shop prevents it" in text
+    assert json.loads(json.dumps(as_json(explanation)))["preventing"] == ["shop"]
+
+
+def test_a_small_scenario_is_explained_as_a_whole() -> None:
+    left_out = "orderA then", "worker", "cart2"
+    lines = (line for line in SHOP.format(deadline=40).splitlines() if not any(word in line for word in left_out))
+    text = "\n".join(lines) + "\nobjective: patrol packing every 500 by cart1"
+    explanation = explain(parse(text, "shop.pur"), RULES, parts=(("obj",),))
+    assert not explanation.alone and "deadline" in {change.what for change in explanation.changes}
+
+
+def test_a_long_play_is_told_by_its_beginning_and_its_end() -> None:
+    play = tuple(TimedLine(k, "bot", f"step {k}") for k in range(30))  # type: ignore[arg-type]
+    lines = render(Explanation((), (), (), play)).split("units):\n")[1].splitlines()
+    assert [line.split(" step ")[-1] for line in lines] == [
+        "0", "1", "2", "   …  (21 more steps)", "24", "25", "26", "27", "28", "29",
+    ]  # fmt: skip
+
+
+def test_changes_that_do_not_help_are_named_once_and_not_all_of_them() -> None:
+    text = render(Explanation((), tuple("abcdefgh"), ("later", "later"), ()))
+    assert "Not enough alone: a; b; c; d; e; f; and 2 more." in text
+    assert "Not decided within the limits: later." in text
+
+
+CARE = """poi "station"
+poi "corridor"
+poi "room1"
+poi "room3"
+connect station and corridor distance 5
+connect corridor and room1 distance 4
+connect corridor and room3 distance 12
+event "ring1"
+event "ring3"
+agent "nora" controllable mobile 1 location station
+agent "resident1" location room1 can_do ring1
+agent "resident3" location room3 can_do ring3
+objective: if ring1 then nora at room1 within 40
+objective: if ring3 then nora at room3 within 30
+"""
+
+
+def test_a_play_against_few_calls_is_found_where_the_game_of_all_calls_is_too_large() -> None:
+    scenario = parse(CARE, "care.pur")
+    network, objective = played(translate(scenario), RULES), scenario_objective(scenario)
+    play = next(counter_plays(network, objective, RULES.reaction, Budget(Limits(work=60_000_000))))
+    assert play.end == "overdue" and describe(scenario, play)[-1].text.startswith("too late")
