@@ -27,7 +27,7 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
-from pursue_gen.synthesis.limits import Limits, Listener
+from pursue_gen.synthesis.limits import Limits, Listener, careful_memory
 
 _WORK = 50_000_000
 """Enough for a first scenario: ten seconds or so."""
@@ -192,4 +192,4 @@ def checked(text: str, file: str) -> Scenario:
 
 def tried(scenario: Scenario, progress: Optional[Listener] = None) -> None:
     """Solves it in the default game. Raises PursueError where it is lost, or not decided with so much `_WORK`."""
-    solve_scenario(scenario, Rules(), SolveOptions(Limits(work=_WORK), progress=progress))
+    solve_scenario(scenario, Rules(), SolveOptions(Limits(work=_WORK, memory=careful_memory()), progress=progress))

@@ -23,7 +23,7 @@ def draw(
     port: int = typer.Option(0, metavar="N", min=0, max=65535, help="The port of the page; 0: any that is free."),
     browser: bool = typer.Option(False, "--browser", help="Open the page in your browser."),
     limit: float = typer.Option(
-        _LIMIT, metavar="SECONDS", min=1, max=86400, help="So long the page's button Solve may take."
+        _LIMIT, metavar="SECONDS", min=1, max=86400, help="So much processor time the page's button Solve may take."
     ),
     force: bool = typer.Option(
         False, "--force", help="Without SCENARIO: begin anew, and let Save replace the file that is there."

@@ -114,13 +114,16 @@ EXPLAIN = typer.Option(
     "scenario so large.",
 )
 LIMIT = typer.Option(
-    None, metavar="SECONDS|none", help="Give up after so long (none: never); 600 by default.", callback=_seconds
+    None,
+    metavar="SECONDS|none",
+    help="Give up after so much processor time (none: never); 60 by default.",
+    callback=_seconds,
 )
 MEMORY = typer.Option(
     None,
     metavar="MIB",
     min=0,
-    help="Give up when so much memory is in use (0: no limit); by default 4096, or 80 % of what is available.",
+    help="Give up when so much memory is in use (0: no limit); by default 1024, or 80 % of what is available.",
 )
 MARGIN = typer.Option(
     False,

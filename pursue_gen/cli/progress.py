@@ -86,7 +86,7 @@ class _Lines:
 def in_words(progress: Progress, elapsed: float) -> str:
     """One line; `elapsed` are the seconds since all of the work began."""
     words = [f"{progress.states} states", f"{progress.waiting} waiting"]
-    if progress.seconds >= _REDRAW:  # of less time a rate says nothing
+    if progress.seconds > _REDRAW:  # of less time a rate says nothing
         words.append(f"{progress.states / progress.seconds:.0f} states/s")
     return f"{progress.phase}: {', '.join(words)}, {progress.memory} MiB, {elapsed:.0f} s"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import traceback
 from typing import Any, Dict, Iterator
 
 from pursue_gen.cli.console import ended, info, show
@@ -74,6 +75,7 @@ def explained(
     Returns {"explanation": …} or {"costs": …} for JSON. Prints nothing, and returns an empty dict, where the problem is
     another one, or another solver or a given plan has it.
     """
+    traceback.clear_frames(problem.__traceback__)  # what the search that has ended holds, else counts as in use
     scenario = scenario.giving_up(scenario.optional)
     limits, rules = request.options.limits, request.rules(translate(scenario))
     if isinstance(problem, Lost) and request.options.solver is None:

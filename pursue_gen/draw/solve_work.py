@@ -99,7 +99,8 @@ def _end_with_parent() -> None:
 
 def _solve(given: Work, pipe: Connection) -> None:
     floor = None if given.floor is None else read_floor(given.floor)
-    limits, start = Limits(given.seconds, given.memory), time.monotonic()
+    limits = Limits(given.seconds, given.memory)
+    start = limits.now()
     progress = Progressing(pipe)
     request = SolveRequest(options=SolveOptions(limits=limits, progress=progress))
     scenario = settled(scenario_of(given), request, progress)

@@ -6,6 +6,7 @@ Each smaller scenario is solved with a share of a fixed budget of work, the one 
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
@@ -16,12 +17,19 @@ from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.cone import cone_of_influence
-from pursue_gen.synthesis.limits import EXPLAINING, NO_LIMITS, Limits, Listener
+from pursue_gen.synthesis.enforced import enforced
+from pursue_gen.synthesis.limits import EXPLAINING, NO_LIMITS, Limits, Listener, memory_in_use
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 
 WORK, STATES = 100_000_000, 100_000
 """The work of all games together, and the discrete states of each: ten seconds or so, the same on every machine."""
+
+SECONDS = 8.0
+"""Of processor time for all of them: somebody has waited for long already."""
+
+ROOM = 64
+"""MiB beside what is in use before."""
 
 _OPTION, _ALONE, _EACH = 0.3, 0.5, 0.5
 """The part of the work for the scenario without an option; of the rest for parts that are left out alone; of the then
@@ -64,10 +72,18 @@ def costs(
 
     `option`: what else was asked for; where the whole scenario is decided without that, nothing else is tried.
 
-    Within WORK and STATES, and within the seconds of the limits if somebody has set them. Their memory does not count:
-    what the process keeps of the larger game would be taken for that of the smaller ones.
+    Within WORK and STATES, within SECONDS, or fewer if somebody has set a limit, and within the limit on memory, of
+    which there are ROOM at least.
     """
-    budget = Budget(replace(limits.chosen, memory=0, states=STATES, work=WORK), progress, phase=EXPLAINING)
+    seconds = min(SECONDS, limits.chosen.left or SECONDS)
+    memory = limits.memory and max(limits.memory, memory_in_use() + ROOM)
+    few = replace(limits.chosen, seconds=seconds, spent=0.0, memory=memory, states=STATES, work=WORK)
+    with suppress(LimitHit), enforced(few, EXPLAINING):
+        return _found(scenario, rules, Budget(few, progress, phase=EXPLAINING), option)
+    return Costs((), ())
+
+
+def _found(scenario: Scenario, rules: Rules, budget: Budget, option: str) -> Costs:
     if option:
         cost = _cost((option,), _game(scenario, rules), rules, budget, _OPTION)
         if cost is not None:
@@ -94,13 +110,13 @@ def as_json(found: Costs) -> Dict[str, Any]:
 
 def _alone(scenario: Scenario, rules: Rules, budget: Budget) -> Tuple[List[Cost], List[Part]]:
     """What is decided without one part that matters, and the parts without which it is not; the smallest game first."""
-    games = [(part, _game(smaller, rules)) for part, smaller in without_each(scenario)]
-    sizes, whole = [_size(*game) for _, game in games], _size(*_game(scenario, rules))
-    lesser = [games[k] for k in sorted(range(len(games)), key=lambda k: sizes[k]) if sizes[k] < whole]
+    parts = list(without_each(scenario))
+    sizes, whole = [_size(*_game(smaller, rules)) for _, smaller in parts], _size(*_game(scenario, rules))
+    lesser = [parts[k] for k in sorted(range(len(parts)), key=lambda k: sizes[k]) if sizes[k] < whole]
     found: List[Cost] = []
     undecided: List[Part] = []
-    for k, (part, game) in enumerate(lesser):
-        cost = _cost((part.name,), game, rules, budget, 1 / (len(lesser) - k))
+    for k, (part, smaller) in enumerate(lesser):
+        cost = _cost((part.name,), _game(smaller, rules), rules, budget, 1 / (len(lesser) - k))
         if cost is None:
             undecided.append(part)
         else:

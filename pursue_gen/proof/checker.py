@@ -8,7 +8,6 @@ once). `native` has the same in C++. See the design of the game for the rules.
 
 from __future__ import annotations
 
-import time
 from collections import Counter
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -104,14 +103,15 @@ def verify(
         return Report(False, "no start: an invariant of the initial state does not hold", (), frozenset(), 0)
     monitor = LimitMonitor(limits, progress, PROVING)
     try:
-        walked = _played if loop.rules.must_end else _safe
-        report = walked(searches, False, False, limit, monitor)
-        if prompt and not report.ok:
-            report = _played(searches, True, False, limit, monitor)
-        if report.ok or ranks is not None:
-            return report
-        # It may fail only because zones are extrapolated: search again without that, and show a play that is real.
-        exact = _played(searches, prompt, True, min(limit, 4 * report.states + _EXACT), monitor)
+        with monitor:
+            walked = _played if loop.rules.must_end else _safe
+            report = walked(searches, False, False, limit, monitor)
+            if prompt and not report.ok:
+                report = _played(searches, True, False, limit, monitor)
+            if report.ok or ranks is not None:
+                return report
+            # It may fail only because zones are extrapolated: search again without that, and show a play that is real.
+            exact = _played(searches, prompt, True, min(limit, 4 * report.states + _EXACT), monitor)
     except MemoryError:
         raise monitor.stopped("memory") from None
     return report if exact.reason.startswith("limit") else exact
@@ -139,7 +139,7 @@ def _in_parts(
     """The outcome of all stages or shares, each of which has to win; `ranks` are those within them."""
     limit, prompt, limits, progress = how
     used: Set[ZoneKey] = set()
-    states, start = 0, time.monotonic()
+    states, start = 0, limits.now()
     called, taken_apart = ("share", shares_of) if strategy.shares else ("stage", parts_of)
     for part in taken_apart(network, objective, strategy):
         if part.fault:

@@ -57,19 +57,21 @@ def strategy_margin(
     """The margin of a strategy that is proven for the reaction.
 
     `states` is what all the looks together may cost, in symbolic states of the checker (not a time: the answer must not
-    depend on the machine), `limits` what each may. Where that is used up the margin is at least what was found, and
+    depend on the machine), within the limits. Where that is used up the margin is at least what was found, and
     where so few states cannot tell, of a strategy with very many blocks, at least the reaction.
     """
     if len(strategy.blocks) > _BLOCKS * states:
         return Margin(reaction, None)
     part = named_part(network, strategy)
     left, arenas = states, None if strategy.in_parts else Arena.kept(part)
+    start = limits.now()
 
     def wins(delay: Fraction) -> Optional[bool]:
         nonlocal left
         if left <= 0:
             return None
-        report = verify(part, objective, strategy, delay, limit=left, prompt=True, limits=limits, arenas=arenas)
+        how = limits.since(start)
+        report = verify(part, objective, strategy, delay, limit=left, prompt=True, limits=how, arenas=arenas)
         left -= report.states
         return None if report.reason.startswith("limit") else report.ok
 
@@ -79,8 +81,13 @@ def strategy_margin(
 def game_margin(
     network: Network, objective: Objective, reaction: Fraction, engine: Optional[str] = None, limits: Limits = NO_LIMITS
 ) -> Margin:
-    """The margin of a game that is won with the reaction; `engine` and `limits` (of each look) as in `solve`."""
-    return _largest(lambda delay: solve(network, objective, delay, engine=engine, limits=limits).won, reaction)
+    """The margin of a game that is won with the reaction, as far as it is found within the limits."""
+    start = limits.now()
+
+    def wins(delay: Fraction) -> bool:
+        return solve(network, objective, delay, engine=engine, limits=limits.since(start)).won
+
+    return _largest(wins, reaction)
 
 
 def _largest(wins: Callable[[Fraction], Optional[bool]], known: Fraction) -> Margin:

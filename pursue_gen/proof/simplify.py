@@ -148,9 +148,10 @@ def simplified(
         return native.simplified(network, strategy, reaction, ranks, monitor)
     units = _Units(network, strategy, reaction)
     blocks: List[Block] = []
-    for b, block in enumerate(strategy.blocks):
-        monitor.check(b, len(strategy.blocks) - b)
-        blocks.append(_simplified_block(units, b, block, ranks or {}))
+    with monitor:
+        for b, block in enumerate(strategy.blocks):
+            monitor.check(b, len(strategy.blocks) - b)
+            blocks.append(_simplified_block(units, b, block, ranks or {}))
     return replace(strategy, blocks=tuple(blocks))
 
 

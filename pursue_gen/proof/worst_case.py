@@ -103,7 +103,8 @@ def worst_case(
         game = with_deadline(counted, objective, longest)
         loop = ClosedLoop(game, objective, strategy, reaction, None, INSTANT)
         try:
-            latest = searches_of(loop).latest(loop.arena.clock[counting_clock(game) or ""], limit, monitor)
+            with monitor:
+                latest = searches_of(loop).latest(loop.arena.clock[counting_clock(game) or ""], limit, monitor)
         except PursueError:
             return None
         if not latest.fails:
@@ -116,8 +117,9 @@ def _of_stages(
 ) -> Optional[Fraction]:
     """The stages one after the other; each takes as long as the slowest of its parts."""
     slowest: Dict[int, Fraction] = {}
+    start = limits.now()
     for part in parts_of(network, objective, strategy):
-        took = worst_case(part.game, part.objective, part.strategy, reaction, limit, limits)
+        took = worst_case(part.game, part.objective, part.strategy, reaction, limit, limits.since(start))
         if part.fault or took is None:
             return None
         slowest[part.stage] = max(took, slowest.get(part.stage, took))

@@ -54,7 +54,7 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
     """
     start = time.monotonic()
     request = read_request(data)
-    limits = Limits(states=states) if states else Limits(request.seconds, careful_memory()).since(start)
+    limits = Limits(states=states) if states else Limits(request.seconds, careful_memory(), wall=True).since(start)
     ideal, objective = translate(request.scenario), scenario_objective(request.scenario)
     try:
         game = played(ideal, request.rules)
@@ -64,7 +64,7 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
     reason = _reason_lost(network, objective, request.scenario)
     if reason:
         return _lost(reason)
-    start = time.monotonic()
+    start = limits.now()
     options = SolveOptions(limits)
     try:
         free = won_without_pauses(network, objective, request.rules.reaction, _LITTLE, options, states or LIMIT)
@@ -88,7 +88,7 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
 
 def _verdict(network: Network, objective: Objective, reaction: Fraction, limits: Limits) -> Verdict:
     """The verdict; where agents rest between calls, first with so much work in the ways that may be less."""
-    start = time.monotonic()
+    start = limits.now()
     if pauses(network):
         try:
             return verdict_of(Budget(replace(limits, work=_LITTLE)), network, objective, reaction)

@@ -11,7 +11,7 @@ from pursue_gen.language.wording import assumption_words, objective_text
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.budget import Budget
-from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.limits import Limits, careful_memory
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Edge, Network
@@ -24,7 +24,7 @@ def check_assumed_alone(scenario: Scenario) -> Iterator[Diagnostic]:
     """A warning for each objective that holds with idle robots because of what is assumed, and not without that."""
     if not scenario.assumptions:
         return
-    budget = Budget(Limits(work=_WORK))
+    budget = Budget(Limits(work=_WORK, memory=careful_memory()))
     try:
         for objective in scenario.safety:
             if isinstance(objective, Patrol):  # places are visited by robots alone

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,6 +15,8 @@ from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import Rules, played, rules_text
 from pursue_gen.solving.solution import Solution
+from pursue_gen.synthesis.enforced import enforced
+from pursue_gen.synthesis.limits import PROVING
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
@@ -64,14 +65,15 @@ def trials(
     `network` is the original's (ends controllable); `file` is what messages call the plan; the options' limits are for
     all games together. Raises PursueError for a text that is no plan for this network.
     """
-    start = time.monotonic()
+    start = options.limits.now()
     done = []
     for rules in games:
         game = played(network, rules)
         strategy = _read(text, game, file)
         try:
             left = options.since(start)
-            proven = prove(game, objective, strategy, rules.reaction, None, left, simpler=False)
+            with enforced(left.limits, PROVING):
+                proven = prove(game, objective, strategy, rules.reaction, None, left, simpler=False)
         except PursueError as problem:
             done.append(Trial(rules, None, problem))
             continue

@@ -108,7 +108,7 @@ def fastest(
     strategy that takes v, or the best one that was found; None: the one at hand is as good.
     """
     limits, unit = options.limits, common_denominator([reaction, *network.times])
-    limits = limits if limits.chosen.seconds or limits.work else replace(limits, work=WORK)
+    limits = limits if limits.chosen.seconds or limits.work else replace(limits.chosen, work=WORK)
     budget = Budget(limits, options.progress, options.engine, whole=options.whole)
     first, counted = bounds(network, objective, reaction, known), with_counter(network)
     low = int(first.least * unit)

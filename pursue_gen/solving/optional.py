@@ -6,7 +6,6 @@ then those with number 2, and so on: each number stays that can be promised toge
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
@@ -44,10 +43,10 @@ class Promised:
 def promised(scenario: Scenario, options: SolveOptions, solve: Solve) -> Promised:
     """The scenario with those of its optional objectives that can be promised, and its solution.
 
-    Each number gets an equal share of the seconds that are left, and no more than WORK. Raises as `solve` where what
-    is not optional cannot be promised, or is not decided.
+    Each number gets an equal share of the seconds that are left (all of them, where nobody has set any), and no more
+    than WORK. Raises as `solve` where what is not optional cannot be promised, or is not decided.
     """
-    start, numbers = time.monotonic(), scenario.optional
+    start, numbers = options.limits.now(), scenario.optional
     base = scenario.giving_up(numbers)
     try:
         best = Promised(base, solve(base, options))
@@ -55,9 +54,9 @@ def promised(scenario: Scenario, options: SolveOptions, solve: Solve) -> Promise
         raise in_words(problem, base) if problem.parts else problem from None
     given_up: Dict[int, WhyGivenUp] = {}
     for place, number in enumerate(numbers):
-        left = options.since(start)
-        seconds = left.limits.left / (len(numbers) - place)
-        share = replace(left, limits=replace(left.limits, seconds=seconds, spent=0.0), most_work=WORK)
+        limits = options.limits
+        seconds = limits.seconds if limits.by_default else limits.since(start).left / (len(numbers) - place)
+        share = replace(options, limits=replace(limits, seconds=seconds, spent=0.0), most_work=WORK)
         more = _without(scenario, numbers[place + 1 :], given_up)
         try:
             best = Promised(more, solve(more, share))

@@ -39,7 +39,7 @@ class SolveOptions:
         return replace(self.limits, work=self.most_work) if self.most_work else self.limits
 
     def since(self, start: float) -> SolveOptions:
-        """The same with the limits that are left of work that began at `start` (of time.monotonic())."""
+        """The same with the limits that are left of work that began at `start` (of `limits.now`)."""
         return replace(self, limits=self.limits.since(start))
 
 

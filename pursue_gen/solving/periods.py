@@ -19,7 +19,7 @@ from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
-from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.limits import Limits, careful_memory
 from pursue_gen.tga import scenario_objective, translate
 
 WORK = 200_000_000
@@ -93,7 +93,8 @@ def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAU
 
 def quickly_found(scenario: Scenario) -> List[str]:
     """What little work finds out about the least period in the default game, in sentences; nothing if that is open."""
-    found = least_period(scenario, Rules(), SolveOptions(limits=Limits(work=_LITTLE)))
+    limits = Limits(work=_LITTLE, memory=careful_memory())
+    found = least_period(scenario, Rules(), SolveOptions(limits=limits))
     patrols = [each for each in found.safety if isinstance(each, Patrol) and each.least is not None]
     decided = [each for each in patrols if each.least is not None and each.least >= each.period]
     return periods_found(found, won=decided[0].least == decided[0].period) if decided else []

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from fractions import Fraction
 from typing import Callable, Mapping, Optional
 
@@ -38,7 +37,7 @@ def prove(
     it is looked at without ranks, too, where it is not proven with them. Raises NotProven with the play that
     breaks it; LimitHit at a limit, the checker's own one on symbolic states included.
     """
-    start, limits, progress = time.monotonic(), options.limits, options.progress
+    start, limits, progress = options.limits.now(), options.limits, options.progress
     report = verify(network, objective, strategy, reaction, states, ranks=ranks, limits=limits, progress=progress)
     if not report.ok and ranks is not None and unranked:
         ranks = None
@@ -57,8 +56,8 @@ def prove(
     if not simpler or report.states > _LITTLE or kept.in_parts:
         return kept
     left = None if ranks is None else pruned_ranks(strategy, report, ranks)
-    fewer = simplified(named_part(network, kept), kept, reaction, left)
     try:
+        fewer = simplified(named_part(network, kept), kept, reaction, left, limits.since(start))
         again = verify(network, objective, fewer, reaction, 2 * _LITTLE, limits=limits.since(start), progress=progress)
     except LimitHit:
         return kept  # what is proven stays so when there is no time left to simplify it

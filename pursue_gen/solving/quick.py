@@ -8,14 +8,13 @@ too. Every win is a win of the whole game, in which it is proven.
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, error
 from pursue_gen.language.numbers import at_most, decimal_text
-from pursue_gen.outcomes import TooSlow
+from pursue_gen.outcomes import LimitHit, TooSlow
 from pursue_gen.proof.checker import pruned, verify
 from pursue_gen.proof.worst_case import with_counter
 from pursue_gen.solving import soonest
@@ -76,7 +75,7 @@ def quick(won: Solution, options: SolveOptions) -> Solution:
 
     Of the options limits, engine and progress count. A limit that somebody has set ends the search.
     """
-    start, options = time.monotonic(), replace(options, limits=options.limits.chosen)
+    start, options = options.limits.now(), replace(options, limits=options.limits.chosen)
     known = guaranteed(won, STATES, options.limits)
     stats = won.stats
     hard = stats is not None and (stats.work > _HARD or stats.discrete_states > _MANY)
@@ -128,7 +127,7 @@ def _in_less_time(
 
     `scale`: the part of the work that games of so many clocks get; `in_vain`: a game was tried, and nothing was found.
     """
-    start, budget = time.monotonic(), _budget(options, WORK, _DISCRETE_STATES, scale)
+    start, budget = options.limits.now(), _budget(options, WORK, _DISCRETE_STATES, scale)
     least, kept, moves, decided = _prompt(won, known, budget.split(_PROMPT), int(_PROMPT_GAME * scale), in_vain)
     known = replace(known, least=max(known.least, least))
     if kept is None:
@@ -152,7 +151,7 @@ def within(won: Solution, deadline: Fraction, options: SolveOptions) -> Solution
 
     Raises TooSlow where there is none, LimitHit where that is not decided within the limits.
     """
-    start = time.monotonic()
+    start = options.limits.now()
     found = quick(won, options)
     known = found.guarantee
     assert known is not None
@@ -196,7 +195,10 @@ def _prompt(
         search.answer(deadline, faster is not None, decided)
     if best is None:
         return Fraction(search.least), None, frozenset(), search.is_easy
-    report = verify(best.game, won.objective, best.strategy, now, STATES, ranks=best.ranks)
+    try:
+        report = verify(best.game, won.objective, best.strategy, now, STATES, None, best.ranks, budget.for_proofs)
+    except LimitHit:
+        return Fraction(search.least), None, frozenset(), search.is_easy
     if not report.ok:
         return Fraction(search.least), None, frozenset(), search.is_easy
     strategy = unscaled(pruned(best.strategy, report), network, best.fine)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Optional, Sequence, Tuple, Union
@@ -30,6 +29,7 @@ from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.shares import can_be_shared, won_in_shares
 from pursue_gen.solving.without_pauses import lost_to_few_calls, verdict_with, won_without_pauses
 from pursue_gen.synthesis.cone import out_of_reach
+from pursue_gen.synthesis.enforced import enforced
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
 from pursue_gen.synthesis.solve import Stats, Verdict, solve
 from pursue_gen.synthesis.strategy import Strategy
@@ -90,10 +90,29 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
     rules (the message says so where the ideal game, which no robot can play, would be won), NotProven where the checker
     refuses the strategy, LimitHit at a limit.
     """
-    start = time.monotonic()
+    start, in_parts = options.limits.now(), not options.whole and not options.limits.work
+    with enforced(options.limits):
+        won = _first(network, objective, rules, options, in_parts)
+    if won is None:
+        left = options.since(start)
+        game = played(network, rules)
+        some = lost_promises(game, objective, rules.reaction, left) if in_parts and not options.most_work else ()
+        raise _lost(network, objective, rules, options.since(start), some)
+    if isinstance(won, tuple):
+        raise _lost(network, objective, rules, options.since(start), won)
+    return won
+
+
+def _first(
+    network: Network, objective: Objective, rules: Rules, options: SolveOptions, in_parts: bool
+) -> Union[Solution, Tuple[Objective, ...], None]:
+    """The first solution; where it is lost, the parts of the objective that are known to be, None for the whole of it.
+
+    `in_parts`: what is less work is tried before the game in one piece. Raises as `solution`.
+    """
+    start = options.limits.now()
     game = played(network, rules)
     verdict = None
-    in_parts = not options.whole and not options.limits.work
     # Where there is nothing else to try after little work, the same search goes on.
     alone = in_parts and not options.most_work and not pauses(game) and not has_parts(game, objective)
     if in_parts and not alone:
@@ -101,18 +120,16 @@ def solution(network: Network, objective: Objective, rules: Rules, options: Solv
         if isinstance(known, Found):
             return Solution(game, objective, known.strategy, rules.reaction, known.stats, rules=rules)
         if isinstance(known, tuple):
-            raise _lost(network, objective, rules, options.since(start), known)
+            return known
         verdict = known
     if verdict is None and in_parts and lost_to_few_calls(game, objective, rules.reaction, options.since(start)):
-        raise _lost(network, objective, rules, options.since(start))
+        return ()
     if verdict is None:
         how = options.engine, options.since(start).in_one_piece, options.progress
         first = little_work(game) if alone else 0
         verdict = solve(game, objective, rules.reaction, *how, whole=options.whole, first=first)
     if verdict.strategy is None:
-        left = options.since(start)
-        some = lost_promises(game, objective, rules.reaction, left) if in_parts and not options.most_work else ()
-        raise _lost(network, objective, rules, options.since(start), some)
+        return None
     won = Solution(game, objective, verdict.strategy, rules.reaction, verdict.stats, rules=rules)
     smaller = _smaller(won, options.since(start)) if in_parts and len(verdict.strategy.blocks) > _MANY else None
     return smaller or replace(won, strategy=_proven(game, objective, rules.reaction, verdict, options.since(start)))
@@ -124,7 +141,7 @@ def _proven(
     """The verdict's strategy, once it is proven; where it is refused, one that is found in the order of time: with long
     reactions commands that are overtaken may go round in circles. Raises as `prove` does."""
     assert verdict.strategy is not None
-    start = time.monotonic()
+    start = options.limits.now()
     try:
         return prove(game, objective, verdict.strategy, reaction, verdict.ranks, options, otherwise=verdict.cautious)
     except NotProven as problem:
@@ -161,7 +178,7 @@ def _with_little_work(
     """The verdict in one piece, or a proven strategy that leaves out agents, or pauses of the environment, or parts of
     the objective that are lost; None where little work finds neither (see `shares`, `lost_promises`, `crowds` and
     `without_pauses`)."""
-    start, work, rests = time.monotonic(), little_work(game), bool(pauses(game))
+    start, work, rests = options.limits.now(), little_work(game), bool(pauses(game))
     several, shared = len(promises(objective)) > 1, can_be_shared(game, objective)
     verdict = verdict_with(game, objective, reaction, min(work, _EASY) if rests or several else work, options)
     if verdict is None and several:
@@ -192,10 +209,11 @@ def fastest_solution(network: Network, objective: Objective, rules: Rules, optio
     strategy ends the search, and the best one that is proven counts.
     """
     check_goal(objective, "--optimize time")
-    start, limits = time.monotonic(), options.limits
+    start, limits = options.limits.now(), options.limits.chosen
     won = solution(network, objective, rules, options)
     known = guaranteed(won, LIMIT, limits.since(start))
-    found, faster = fastest(won.part, objective, rules.reaction, known.worst, options.since(start))
+    more = replace(options, limits=limits.since(start))
+    found, faster = fastest(won.part, objective, rules.reaction, known.worst, more)
     if faster is None:
         return replace(won, guarantee=found)
     delay = rules.reaction * faster.fine
@@ -245,7 +263,7 @@ def _lost(
     some = [wanted for wanted in parts if wanted != objective]
     if not some:
         return Lost([_cannot_be_met(network, objective, rules, options, "the objective cannot be met")])
-    start, findings, names = time.monotonic(), [], [watched(wanted) for wanted in some]
+    start, findings, names = options.limits.now(), [], [watched(wanted) for wanted in some]
     for wanted, who in zip(some, names):
         part = only_promises(network, objective, wanted)
         findings.append(_cannot_be_met(part, wanted, rules, options.since(start), f"{cannot_be_promised(who)},"))

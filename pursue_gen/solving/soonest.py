@@ -8,7 +8,6 @@ a deadline a little later is tried before, which begins with few moves and may h
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Mapping, Optional
@@ -65,11 +64,15 @@ def prompt(won: Solution, budget: Budget, work: int) -> Optional[Prompt]:
     verdict = _verdict(won.part, won, now, budget, work)
     if verdict is None or verdict.strategy is None:
         return None
-    report = verify(won.part, won.objective, verdict.strategy, now, STATES, ranks=verdict.ranks)
+    try:
+        how = verdict.ranks, budget.for_proofs
+        report = verify(won.part, won.objective, verdict.strategy, now, STATES, None, *how)
+    except LimitHit:
+        return None
     if not report.ok:
         return None
     strategy = pruned(verdict.strategy, report)
-    worst = worst_case(won.part, won.objective, strategy, now, STATES)
+    worst = worst_case(won.part, won.objective, strategy, now, STATES, budget.for_proofs)
     if worst is None:
         return None
     kept = keeping_to(won.part, moves_of(strategy))
@@ -80,7 +83,7 @@ def soonest(
     won: Solution, known: Guarantee, first: Prompt, budget: Budget, work: int, options: SolveOptions
 ) -> Optional[Solution]:
     """A solution that is much quicker than what is known, as `first` is; None: none is found with so much work."""
-    start = time.monotonic()
+    start = options.limits.now()
     search = _Small(won, known, first.network, budget, work)
     found = search.within(first.worst * _NEAR, options) if first.easy else None
     if found is not None:

@@ -16,11 +16,12 @@ import shutil
 import signal
 import subprocess
 import tempfile
-import time
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
+from math import ceil
 from pathlib import Path
-from typing import Callable, Optional, Sequence, Tuple, Type
+from typing import Dict, Mapping, Optional, Sequence, Tuple, Type
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.outcomes import LimitHit, Lost, NotProven, Unavailable
@@ -39,6 +40,9 @@ TOOL = "verifytga"
 _OPTIONS = ("-t0", "-w0")
 _MODEL, _QUERY = "TGA.xml", "TCTL.q"
 _LAST_LINES, _LAST_COLUMNS = 6, 200
+
+_SLEEPS = 10
+"""A tool that waits for something takes no processor time: it is ended after so many times the limit of real time."""
 
 """The exit statuses of the failures: not met or not winning; time or memory; no tool, or one that does not work."""
 
@@ -136,9 +140,9 @@ def run_verifytga(
     met, ToolRefused where its strategy does not win, ToolLimit where it runs out of time or memory, else ToolFailed.
     """
     tool = find_verifytga(path)
-    start = time.monotonic()
+    start = limits.now()
     run = _first_with_strategy(tool, network, objective, limits)
-    taken = time.monotonic() - start
+    taken = limits.now() - start
     strategy = _strategy(run, network)
     sizes = _SIZE.findall(run.before)
     proven = _proven(run, network, objective, strategy, reaction, limits.since(start), progress)
@@ -170,7 +174,7 @@ def find_verifytga(path: Optional[Path] = None) -> str:
 
 def _first_with_strategy(tool: str, network: Network, objective: Objective, limits: Limits) -> Run:
     """The first run, one per option, that prints a strategy. Raises ToolError where none does."""
-    start = time.monotonic()
+    start = limits.now()
     runs = []
     with tempfile.TemporaryDirectory(prefix="pursue-gen-") as name:
         folder = Path(name)
@@ -199,7 +203,7 @@ def _all_named(network: Network) -> Network:
 
 def _run(command: Tuple[str, ...], folder: Path, limits: Limits) -> Run:
     """Runs the tool until it ends, or its time is up; then, and at Ctrl-C, it and all that it started is ended."""
-    outputs = (folder / "output", folder / "messages")
+    outputs, bounds = (folder / "output", folder / "messages"), _bounds(limits)
     with contextlib.ExitStack() as stack:
         out, err = (stack.enter_context(open(file, "wb")) for file in outputs)
         try:
@@ -211,32 +215,41 @@ def _run(command: Tuple[str, ...], folder: Path, limits: Limits) -> Run:
                 stdout=out,
                 stderr=err,
                 start_new_session=True,
-                preexec_fn=_memory_setter(limits.memory),
+                preexec_fn=partial(_bind, bounds),
             )
         except OSError as problem:
             run = Run(command, "", "", None)
             message = f"{command[0]} cannot be started: {problem.strerror or problem}"
             raise ToolFailed([error("SYN031", message, hint=_START_IT)], run) from None
         try:
-            status: Optional[int] = process.wait(limits.left or None)
+            status: Optional[int] = process.wait(_SLEEPS * limits.left or None)
         except subprocess.TimeoutExpired:
             status = None
         finally:
-            if process.poll() is None:
+            if process.poll() in (None, -signal.SIGXCPU):
                 with contextlib.suppress(ProcessLookupError):
                     os.killpg(process.pid, signal.SIGKILL)
                 process.wait()
+    if status == -signal.SIGXCPU and resource.RLIMIT_CPU in bounds:
+        status = None
     output, messages = (_ESCAPE.sub("", file.read_bytes().decode("utf-8", "replace")) for file in outputs)
     return Run(command, output, messages, status)
 
 
-def _memory_setter(memory: int) -> Optional[Callable[[], None]]:
-    """What gives a new process at most so many MiB (0: None); it then gets no more, and reports that itself."""
-    hard = resource.getrlimit(resource.RLIMIT_AS)[1]
-    size = memory << 20
-    if not size or (hard != resource.RLIM_INFINITY and hard <= size):
-        return None
-    return lambda: resource.setrlimit(resource.RLIMIT_AS, (size, hard))
+def _bounds(limits: Limits) -> Dict[int, Tuple[int, int]]:
+    """What the system is to allow a new process where that is less than what it allows this one: memory, of which it
+    then gets no more, and reports that itself; seconds of processor time, after which it is ended."""
+    found = {}
+    for which, most in ((resource.RLIMIT_AS, limits.memory << 20), (resource.RLIMIT_CPU, ceil(limits.left))):
+        soft, hard = resource.getrlimit(which)
+        if most and (soft == resource.RLIM_INFINITY or most < soft):
+            found[which] = (most, hard)
+    return found
+
+
+def _bind(bounds: Mapping[int, Tuple[int, int]]) -> None:
+    for which, bound in bounds.items():
+        resource.setrlimit(which, bound)
 
 
 def _failure(run: Run, limits: Limits) -> ToolError:
@@ -248,7 +261,8 @@ def _failure(run: Run, limits: Limits) -> ToolError:
     hint = f"try it by hand with the files that `pursue-gen tga` writes; {_OURS}"
     if run.status is None:
         code, outcome = "SYN010", ToolLimit
-        message, hint = f"no verdict of {TOOL} within the limit of {limits.seconds:g} seconds", f"allow more; {_OURS}"
+        message = f"no verdict of {TOOL} within the limit of {limits.seconds:g} seconds of processor time"
+        hint = f"allow more; {_OURS}"
     elif _MEMORY.search(text) or run.status == -signal.SIGKILL:
         code, outcome = "SYN010", ToolLimit
         surely = "ran out of memory" if _MEMORY.search(text) else "was killed, most likely for want of memory"
@@ -301,7 +315,7 @@ def _proven(
     progress: Optional[Listener],
 ) -> Strategy:
     """The part of the strategy that plays reach, once the checker finds it winning. Raises ToolError."""
-    start = time.monotonic()
+    start = limits.now()
     report = verify(network, objective, strategy, reaction, limits=limits, progress=progress)
     if report.ok:
         return pruned(strategy, report)

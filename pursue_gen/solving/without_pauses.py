@@ -8,7 +8,6 @@ round, what the environment wins with a single call of each agent is lost.
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from fractions import Fraction
 from typing import Optional
@@ -54,7 +53,7 @@ def won_without_pauses(
 
     `states`: the most symbolic states of each look of the checker.
     """
-    start = time.monotonic()
+    start = options.limits.now()
     if not pauses(game):
         return None
     verdict = verdict_with(game, objective, reaction, work, options, without_pauses=True)

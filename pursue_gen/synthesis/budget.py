@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import math
-import time
 from dataclasses import replace
 from fractions import Fraction
 from typing import Optional
@@ -36,7 +35,7 @@ class Budget:
         self._limits, self._engine, self._games_whole = limits, engine, whole
         self._whole: Optional[Budget] = None
         self._progress = progress and (lambda reached: progress(replace(reached, phase=phase)))
-        self._start = time.monotonic()
+        self._start = limits.now()
         self.work: float = limits.work or math.inf
 
     @property
@@ -49,6 +48,11 @@ class Budget:
         """That share of what is left."""
         work = max(1, int(self.work * share)) if self.work < math.inf else 0
         return replace(self._limits, seconds=self._limits.since(self._start).left * share, spent=0.0, work=work)
+
+    @property
+    def for_proofs(self) -> Limits:
+        """What is left of seconds and memory: the checker counts symbolic states instead of work."""
+        return replace(self.part(), states=0, work=0)
 
     def verdict(
         self,
@@ -76,7 +80,8 @@ class Budget:
     def split(self, share: float) -> Budget:
         """A budget of that share of what is left; what it spends is spent of this one too."""
         some = copy.copy(self)
-        some._whole, some._limits, some._start, some.work = self, self.part(share), time.monotonic(), self.work * share
+        some._whole, some._limits, some.work = self, self.part(share), self.work * share
+        some._start = self._limits.now()
         return some
 
     def _spend(self, work: int) -> None:

@@ -10,12 +10,13 @@ from typing import Callable, Iterator, Optional
 
 from pursue_gen.diagnostics import error
 from pursue_gen.outcomes import LimitHit
+from pursue_gen.zones.effort import look_after
 
-CAREFUL = 4096
+CAREFUL = 1024
 """MiB that the commands allow themselves by default, if the machine has them."""
 
-DEFAULT_SECONDS = 600.0
-"""Seconds that the commands allow themselves by default."""
+DEFAULT_SECONDS = 60.0
+"""Seconds of processor time that the commands allow themselves by default."""
 
 _SHARE = 0.8
 """The part of the available memory that may be taken; the machine has to go on."""
@@ -28,10 +29,11 @@ _CHECK_INTERVAL, _REPORT_INTERVAL = 0.05, 0.2
 class Limits:
     """Seconds, MiB of the whole process, discrete states of an engine, its work; 0: no limit.
 
-    `spent`: so many of the seconds are used up already. `by_default`: nobody has set them; they only see to it that a
-    command ends, so what has a budget of work keeps to that alone (see `chosen`). `work` counts the steps of an engine
-    and the pairs of zones that it combines, so it is the same on every machine. The checker counts symbolic states,
-    with a limit of its own.
+    The seconds are of processor time, which does not pass while others have the processor; `wall`: of the clock, where
+    somebody waits who acts on what is found. `spent`: so many of them are used up already. `by_default`: nobody has set
+    them; they only see to it that a command ends, so what has a budget of work keeps to that alone (see `chosen`).
+    `work` counts the steps of an engine and the pairs of zones that it combines, so it is the same on every machine.
+    The checker counts symbolic states, with a limit of its own.
     """
 
     seconds: float = 0.0
@@ -40,6 +42,7 @@ class Limits:
     states: int = 0
     work: int = 0
     by_default: bool = False
+    wall: bool = False
 
     @property
     def chosen(self) -> Limits:
@@ -51,9 +54,13 @@ class Limits:
         """The seconds that are left, more than 0 even if none are; 0: no limit."""
         return max(self.seconds - self.spent, 1e-9) if self.seconds else 0.0
 
+    def now(self) -> float:
+        """Now, in seconds on the clock that theirs are of."""
+        return time.monotonic() if self.wall else processor_time()
+
     def since(self, start: float) -> Limits:
-        """What is left of them after work that began at `start` (of time.monotonic())."""
-        return replace(self, spent=self.spent + time.monotonic() - start)
+        """What is left of them after work that began at `start` (of `now`)."""
+        return replace(self, spent=self.spent + self.now() - start)
 
 
 @dataclass(frozen=True)
@@ -79,35 +86,49 @@ NO_LIMITS = Limits()
 
 
 class LimitMonitor:
-    """Checks the limits between the steps of a search, and reports its progress to the listener."""
+    """Checks the limits between the steps of a search, and reports its progress to the listener.
+
+    As a context it also does so within the work on zones of this thread.
+    """
 
     def __init__(self, limits: Limits = NO_LIMITS, listener: Optional[Listener] = None, phase: str = SOLVING) -> None:
         self._limits, self._listener, self._phase = limits, listener, phase
-        self._start = time.monotonic()
+        self._start = limits.now()
         self._next_check = self._next_report = 0.0
+        self._states = self._waiting = 0
         self._reached = NOTHING_YET
+        self._outer: Optional[Callable[[], None]] = None
         self.work = 0
+
+    def __enter__(self) -> LimitMonitor:
+        self._outer = look_after(self.look)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        look_after(self._outer)
 
     def admit(self, states: int, waiting: int) -> None:
         """Raises PursueError (exit status 5) where one more discrete state would be too many."""
         if 0 < self._limits.states <= states:
-            seconds = time.monotonic() - self._start
-            self._reached = Progress(states, waiting, seconds, memory_in_use(), self._phase)
-            raise self.stopped("states")
+            self._states, self._waiting = states, waiting
+            raise self._stopped_now("states")
 
     def check(self, states: int, waiting: int, work: int = 1) -> None:
         """Raises PursueError (exit status 5) at a limit; `work` is what was done since the last check."""
         self.work += work
+        self._states, self._waiting = states, waiting
         if 0 < self._limits.work < self.work:
-            seconds = time.monotonic() - self._start
-            self._reached = Progress(states, waiting, seconds, memory_in_use(), self._phase)
-            raise self.stopped("work")
-        seconds = time.monotonic() - self._start
+            raise self._stopped_now("work")
+        self.look()
+
+    def look(self) -> None:
+        """The same for seconds and memory alone, from within a step."""
+        seconds = self._limits.now() - self._start
         late = 0 < self._limits.left < seconds
         if seconds < self._next_check and not late:
             return
         self._next_check = seconds + _CHECK_INTERVAL
-        self._reached = Progress(states, waiting, seconds, memory_in_use(), self._phase)
+        self._reached = Progress(self._states, self._waiting, seconds, memory_in_use(), self._phase)
         if late:
             raise self.stopped("seconds")
         if 0 < self._limits.memory < self._reached.memory:
@@ -115,6 +136,11 @@ class LimitMonitor:
         if self._listener is not None and seconds >= self._next_report:
             self._next_report = seconds + _REPORT_INTERVAL
             self._listener(self._reached)
+
+    def _stopped_now(self, which: str) -> LimitHit:
+        seconds = self._limits.now() - self._start
+        self._reached = Progress(self._states, self._waiting, seconds, memory_in_use(), self._phase)
+        return self.stopped(which)
 
     def stopped(self, which: str) -> LimitHit:
         """What to raise where this limit ended the search, see `limit_reached`."""
@@ -125,7 +151,7 @@ def limit_reached(which: str, limits: Limits, reached: Progress) -> LimitHit:
     """The error at a limit: which one ("seconds", "memory", "states" or "work"), how far the work was, what to do."""
     proving = reached.phase == PROVING
     shown = {
-        "seconds": f"{limits.seconds:g} seconds",
+        "seconds": f"{limits.seconds:g} seconds{'' if limits.wall else ' of processor time'}",
         "memory": f"{limits.memory} MiB of memory",
         "states": f"{limits.states} discrete states",
         "work": f"{limits.work} units of work",
@@ -153,8 +179,14 @@ def memory_in_use() -> int:
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> (20 if sys.platform == "darwin" else 10)
 
 
+def processor_time() -> float:
+    """Seconds that this process has worked, with all of its threads and the processes that it has waited for."""
+    others = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + others.ru_utime + others.ru_stime
+
+
 def careful_memory() -> int:
-    """The default limit on memory (MiB): some GiB, and never all that the machine has left."""
+    """The default limit on memory (MiB): a GiB, and never all that the machine has left."""
     return max(1, min([CAREFUL, *(int(_SHARE * size) for size in _available())]))
 
 

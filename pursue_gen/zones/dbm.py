@@ -16,6 +16,7 @@ from typing import Callable, Iterable, List, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import error
 from pursue_gen.outcomes import Invalid
+from pursue_gen.zones.effort import attend
 
 INF = 1 << 256
 """The raw bound of "no bound". Finite raw bounds are far smaller: `raw` makes none beyond `MOST`, and sums of as many
@@ -215,6 +216,7 @@ class Dbm:
         They do where no point of the hull breaks a bound of the one and a bound of the other. The hull is canonical, so
         two more bounds leave a point unless the way round through both of them is shorter than 0.
         """
+        attend()
         if self.has_gap(other):
             return None
         dim, m = self.dim, tuple(map(max, self.m, other.m))
@@ -256,6 +258,7 @@ class Dbm:
     def minus(self, other: Dbm) -> Tuple[Dbm, ...]:
         """The points that are not in the other, as disjoint zones."""
         assert self.dim == other.dim
+        attend()
         if self.is_disjoint(other):
             return (self,)
         dim, theirs = self.dim, other.m

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Iterable, List, Sequence, Tuple
 
 from pursue_gen.zones.dbm import Dbm, Number
+from pursue_gen.zones.effort import attend
 
 
 @dataclass(frozen=True)
@@ -162,6 +163,7 @@ def _maximal(zones: Iterable[Dbm]) -> Tuple[Dbm, ...]:
     """The zones that do not lie in another one, in their order."""
     kept: List[Dbm] = []
     for zone in zones:
+        attend()
         if any(other.includes(zone) for other in kept):
             continue
         kept = [other for other in kept if not zone.includes(other)]

@@ -36,7 +36,7 @@ def test_without_arguments_it_is_the_default_request() -> None:
     assert isinstance(request, SolveRequest) and request.is_default
     assert request.options.limits.memory > 0
     limits = request.options.limits
-    assert (limits.seconds, limits.by_default, limits.chosen.seconds) == (600, True, 0)
+    assert (limits.seconds, limits.by_default, limits.chosen.seconds) == (60, True, 0)
 
 
 def test_every_option_arrives_in_the_request() -> None:

@@ -97,9 +97,9 @@ def test_a_terminal_shows_how_far_the_work_is(engine: str) -> None:
 
 @engines
 def test_large_work_shows_it_again_and_again(large: Path, engine: str) -> None:
-    told = on_terminal("solve", large, "--engine", engine, until="\rsolving: ", times=3)
+    told = on_terminal("solve", large, "--engine", engine, until=" states/s", times=3)
     assert told.status == 130
-    assert "states/s" in told.err
+    assert told.err.count("\rsolving: ") >= 3
 
 
 @engines
@@ -115,7 +115,7 @@ def test_at_a_limit_it_is_erased(large: Path, engine: str) -> None:
 
 
 def test_after_a_limit_it_is_shown_of_the_search_for_what_is_large(large: Path) -> None:
-    told = on_terminal("solve", large, "--memory", 1, changed=IMPATIENT)
+    told = on_terminal("solve", large, "--memory", 100, changed=IMPATIENT)
     assert told.status == 5
     assert told.err.index("error SYN010") < told.err.index("\rexplaining: ")
     assert told.err.rsplit(ERASE, 1)[1].startswith("Without walker1")

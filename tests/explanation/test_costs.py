@@ -65,7 +65,7 @@ def test_parts_without_which_it_is_decided_are_named_the_cheapest_first() -> Non
 @pytest.mark.usefixtures("little_work")
 def test_the_costs_are_the_same_at_each_time() -> None:
     def timeless() -> Costs:
-        found = costs(CROWD, DEFAULT, Limits(1e-9, 1, by_default=True))
+        found = costs(CROWD, DEFAULT, Limits(1e-9, by_default=True))
         return replace(found, decided=tuple(replace(cost, seconds=0.0) for cost in found.decided))
 
     assert timeless() == timeless() != Costs((), ())

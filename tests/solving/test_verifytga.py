@@ -316,6 +316,14 @@ def test_what_is_left_of_the_time_is_for_the_proof(game: Game, strategy: Strateg
     assert left.seconds == 600 and left.spent > 0
 
 
+def test_a_limit_on_time_is_one_of_processor_time(game: Game, strategy: Strategy, tool: Tool) -> None:
+    slept = f"time.sleep(2.5)\n{replaying(winning(game, strategy))}"
+    assert run_verifytga(*game, path=tool(slept), limits=Limits(2.0)).won
+    problem = failure(game, tool(f"{replaying(BEFORE)}\nwhile True:\n    pass"), 1)
+    assert problem.exit_status == 5
+    assert "no verdict of verifytga within the limit of 1 seconds of processor time" in told(problem)
+
+
 @pytest.mark.parametrize("reason", ["limit", "Ctrl-C"])
 def test_a_tool_that_hangs_is_ended_with_all_it_started(game: Game, tool: Tool, tmp_path: Path, reason: str) -> None:
     lock, hanging = tmp_path / "lock", tmp_path / "hanging"
@@ -325,12 +333,12 @@ def test_a_tool_that_hangs_is_ended_with_all_it_started(game: Game, tool: Tool, 
         f"{replaying(BEFORE)}\nopen({str(hanging)!r}, 'w').close()\ntime.sleep(1000)"
     )
     if reason == "limit":
-        for seconds in (2, 20, 200):  # on a busy machine the time may be over before it hangs
+        for seconds in (0.5, 5, 50):  # on a busy machine the time may be over before it hangs
             problem = failure(game, program, seconds)
             if hanging.exists():
                 break
         assert problem.exit_status == 5
-        assert f"no verdict of verifytga within the limit of {seconds} seconds" in told(problem)
+        assert f"no verdict of verifytga within the limit of {seconds:g} seconds" in told(problem)
         assert "ended at the limit on time" in told(problem) and "Size: 42 states" in told(problem)
     else:
         with pytest.raises(KeyboardInterrupt), interrupted_once(hanging):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from fractions import Fraction
 from typing import List, Tuple
 
@@ -72,7 +71,8 @@ def test_what_is_used_up_begins_no_game(game: Tuple[Network, Objective]) -> None
             budget.verdict(*game, NOW)
         assert problem.value.exit_status == 5
     assert budget.used_up
-    assert Budget(Limits(seconds=1.0).since(time.monotonic() - 2.0)).used_up
+    limits = Limits(seconds=1.0)
+    assert Budget(limits.since(limits.now() - 2.0)).used_up
     assert not Budget(Limits()).used_up and Budget(Limits()).part().work == 0
 
 

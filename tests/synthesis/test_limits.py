@@ -34,6 +34,7 @@ from pursue_gen.synthesis.limits import (
     careful_memory,
     limit_reached,
     memory_in_use,
+    processor_time,
 )
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.reference import engine as reference
@@ -86,7 +87,7 @@ def test_a_limit_ends_an_engine(game: Game, engine: str, which: str) -> None:
     with pytest.raises(PursueError) as failure:
         solve(*game, engine=engine, limits=AT_ONCE[which])
     text = told(failure.value)
-    assert {"seconds": "the limit of 1e-09 seconds", "memory": "the limit of 1 MiB of memory"}[which] in text
+    assert {"seconds": "1e-09 seconds of processor time", "memory": "the limit of 1 MiB of memory"}[which] in text
     assert {"seconds": "--limit", "memory": "--memory"}[which] in text
     assert "states were reached" in text and "make the scenario smaller" in text
 
@@ -111,6 +112,23 @@ def test_the_progress_is_reported(game: Game, engine: str, eager: None) -> None:
 def test_ctrl_c_while_the_progress_is_reported_ends_an_engine(game: Game, engine: str) -> None:
     with pytest.raises(KeyboardInterrupt):
         solve(*game, engine=engine, progress=mock.Mock(side_effect=KeyboardInterrupt))
+
+
+@engines
+@pytest.mark.parametrize("wall", [False, True])
+def test_what_others_do_meanwhile_counts_for_who_waits_alone(game: Game, engine: str, wall: bool) -> None:
+    rests = iter([1.5])
+
+    def rest(_: Progress) -> None:
+        time.sleep(next(rests, 0.0))
+
+    limits = Limits(1.0, wall=wall)
+    if not wall:
+        assert solve(*game, engine=engine, limits=limits, progress=rest).won
+        return
+    with mock.patch.object(limits_module, "_CHECK_INTERVAL", 0.0), pytest.raises(PursueError) as failure:
+        solve(*game, engine=engine, limits=limits, progress=rest)
+    assert "the limit of 1 seconds;" in told(failure.value)
 
 
 @engines
@@ -252,22 +270,36 @@ def test_no_limit_stays_none(spent: float) -> None:
     assert Limits(0.0, 0, spent).left == 0.0
 
 
-def test_time_that_was_spent_is_kept_in_mind() -> None:
-    now = time.monotonic()
-    later = Limits(10.0, 5).since(now - 4.0).since(now - 3.0)
-    assert (later.seconds, later.memory) == (10.0, 5)
+@pytest.mark.parametrize("wall", [False, True])
+def test_time_that_was_spent_is_kept_in_mind(wall: bool) -> None:
+    limits = Limits(10.0, 5, wall=wall)
+    now = limits.now()
+    later = limits.since(now - 4.0).since(now - 3.0)
+    assert (later.seconds, later.memory, later.wall) == (10.0, 5, wall)
     assert later.spent >= 7.0 and later.left <= 3.0
+
+
+def test_seconds_are_those_that_this_process_and_its_children_work() -> None:
+    begin, there = processor_time(), Limits(wall=True).now()
+    time.sleep(0.2)
+    slept = processor_time() - begin
+    work = "import time\nwhile time.process_time() < 0.3: pass"
+    subprocess.run([sys.executable, "-c", work], check=True)
+    assert slept < 0.2 <= Limits(wall=True).now() - there
+    assert processor_time() - begin - slept >= 0.3
 
 
 def test_the_message_names_the_whole_limit() -> None:
     text = told(limit_reached("seconds", Limits(10.0, 0, 9.5), Progress(12, 3, 0.5, 40)))
-    assert "no verdict within the limit of 10 seconds; 12 discrete states were reached, 3 waiting, 40 MiB" in text
+    assert "within the limit of 10 seconds of processor time; 12 discrete states were reached, 3 waiting" in text
+    text = told(limit_reached("seconds", Limits(10.0, wall=True), Progress(12, 3, 0.5, 40)))
+    assert "within the limit of 10 seconds; 12 discrete states were reached, 3 waiting, 40 MiB in use" in text
 
 
 def test_a_watch_is_quiet_between_two_reports() -> None:
     heard: List[Progress] = []
     clock = iter([0.0, 0.0, 0.01, 0.1, 0.19, 0.25])
-    with mock.patch.object(time, "monotonic", side_effect=lambda: next(clock)):
+    with mock.patch.object(limits_module, "processor_time", side_effect=lambda: next(clock)):
         watch = LimitMonitor(listener=heard.append)
         for states in range(5):
             watch.check(states, 0)

@@ -75,7 +75,7 @@ def test_long_work_on_zones_can_be_ended(
     many = native_zones(binding, unit_squares(30))
     assert len(many) == 30
     few = many[:2]
-    assert len(_zones.within_effort(1000, lambda: operation(binding, few) or [])) >= 1
+    assert len(_zones.within_effort(1000, 10**9, lambda: operation(binding, few) or [])) >= 1
     with pytest.raises(RuntimeError, match="enough"):
-        _zones.within_effort(20, lambda: operation(binding, many) or [])
+        _zones.within_effort(20, 10**9, lambda: operation(binding, many) or [])
     assert operation(binding, many), "without a limit it goes on as before"

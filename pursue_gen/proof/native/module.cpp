@@ -5,6 +5,7 @@
 
 #include "proof/native/search.hpp"
 #include "proof/native/simplify.hpp"
+#include "zones/native/memory.hpp"
 
 namespace py = pybind11;
 using namespace pursue;
@@ -198,6 +199,7 @@ class LoopOf : public AnyLoop {
 
     Result search(const Task& task, const Watch::Poll& poll) override {
         watch_ = Watch(poll);
+        const Watched watched(watch_);
         loop_.rules.prompt = task.prompt;
         Search<Z> search(loop_, constants_, start_, task.exact, task.limit);
         Result out;
@@ -281,6 +283,7 @@ class Loop {
         return *loop_;
     }
 
+    const GivesBack memory_;
     const Tables& tables_;
     const Settings settings_;
     bool wide_ = false;
@@ -332,6 +335,7 @@ Smaller simplified(const Tables& tables, std::int64_t factor, int late, const st
 py::object simplify(const Tables& tables, std::int64_t factor, int late, const std::optional<Ranks>& ranks,
                     const py::function& poll) {
     Watch watch(polling(poll));
+    const Watched watched(watch);
     Smaller found;
     const auto with = [&](bool wide) {
         return with_zones(tables.network.dim, wide,

@@ -75,6 +75,7 @@ bool meets(Z a, const Z& b) {
 // Appends the points of a that are not in b, as disjoint zones: a itself where they have no point in common.
 template <class Z>
 void difference(const Z& a, const Z& b, Zones<Z>& out) {
+    attend(BOUNDS<Z>);
     if (clearly_disjoint(a, b)) {
         out.push_back(a);
         return;
@@ -84,6 +85,7 @@ void difference(const Z& a, const Z& b, Zones<Z>& out) {
     for (int i = 0; i < Z::size; ++i)
         for (int j = 0; j < Z::size; ++j) {
             if (i == j || b.at(i, j) >= rest.at(i, j)) continue;
+            attend(BOUNDS<Z>);
             out.push_back(rest);
             if (!constrain(out.back(), j, i, complement(b.at(i, j)))) out.pop_back();
             if (constrain(rest, i, j, b.at(i, j))) continue;
@@ -112,6 +114,7 @@ Zones<Z> without(const Zones<Z>& pieces, const Z& zone, Watch& watch) {
 
 template <class Z>
 bool one_includes(const Zones<Z>& zones, const Z& zone) {
+    attend(zones.size() * BOUNDS<Z>);
     for (const Z& z : zones)
         if (includes(z, zone)) return true;
     return false;

@@ -6,6 +6,8 @@
 #include <functional>
 #include <utility>
 
+#include "zones/native/effort.hpp"
+
 namespace pursue::proof {
 
 // Calls `poll` with the progress at the first tick, and then every 20 ms; it throws to end the work.
@@ -34,6 +36,18 @@ class Watch {
     Poll poll_;
     std::size_t states_ = 0, waiting_ = 0;
     std::chrono::steady_clock::time_point next_{};
+};
+
+// While there is one, the watch ticks within the work on zones, too. One at a time per thread.
+class Watched {
+  public:
+    explicit Watched(Watch& watch) {
+        effort.look = [](void* of) { static_cast<Watch*>(of)->tick(); };
+        effort.of = &watch;
+    }
+    ~Watched() { effort = Effort{}; }
+    Watched(const Watched&) = delete;
+    Watched& operator=(const Watched&) = delete;
 };
 
 }  // namespace pursue::proof

@@ -13,4 +13,5 @@ def solve(
     small_budget: float = 5e5,
     work: int = 0,
     soonest: bool = False,
+    wall: bool = False,
 ) -> Dict[str, Any]: ...

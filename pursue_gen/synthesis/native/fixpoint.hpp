@@ -57,16 +57,6 @@ class Fixpoint : public ZoneGraph<Z> {
         return plans;
     }
 
-    // While there is one, work does not count: it makes a strategy smaller, once the game is decided.
-    struct Uncounted {
-        const Effort before = effort;
-
-        Uncounted() { effort.due = 0; }
-        ~Uncounted() { effort = before; }
-        Uncounted(const Uncounted&) = delete;
-        Uncounted& operator=(const Uncounted&) = delete;
-    };
-
     // A discrete state on plays by the plans.
     struct Met {
         std::vector<Piece<Z>> pieces;       // what to do there
@@ -128,7 +118,7 @@ class Fixpoint : public ZoneGraph<Z> {
 
     void meet(int k, Met& state) {
         state.pieces = plan(k);
-        const Uncounted uncounted;
+        const Uncounted smaller;  // it makes a strategy smaller, once the game is decided
         state.used.resize(state.pieces.size(), false);
         state.strict.resize(state.pieces.size());
         for (std::size_t p = 0; p < state.pieces.size(); ++p) {
@@ -152,7 +142,7 @@ class Fixpoint : public ZoneGraph<Z> {
     };
 
     Played played(const Node<Z>& n, const Z& entry, Met& here) {
-        const Uncounted uncounted;
+        const Uncounted smaller;
         const std::size_t count = here.pieces.size();
         std::vector<Federation<Z>> decided(count);
         Federation<Z> starts{entry}, waited;

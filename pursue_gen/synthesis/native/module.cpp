@@ -87,7 +87,7 @@ struct Found {
 };
 
 template <class Z>
-py::dict outcome(const Found<Z>& found, int dim) {
+py::dict outcome(const Found<Z>& found, int dim, LimitMonitor& monitor) {
     py::dict out;
     py::list states;
     std::size_t reached = 0, zones = 0;
@@ -96,6 +96,7 @@ py::dict outcome(const Found<Z>& found, int dim) {
         if (!found.won) zones += node.rest.size();
     }
     for (const auto& [k, pieces] : found.plan) {
+        monitor.look();
         py::list actions;
         zones += pieces.size();
         for (const auto& [zone, joint, rank] : pieces) {
@@ -130,7 +131,7 @@ Found<Z> decide(const Game& game, LimitMonitor& monitor, double small_budget, bo
 template <int N, class R>
 py::dict solve_with(const Game& game, const Limits& limits, double small_budget, bool soonest) {
     LimitMonitor monitor(limits);
-    return outcome(decide<Dbm<N, R>>(game, monitor, small_budget, soonest), game.clocks + 1);
+    return outcome(decide<Dbm<N, R>>(game, monitor, small_budget, soonest), game.clocks + 1, monitor);
 }
 
 // Whether every finite bound that can come up fits: sums along a path through all clocks.
@@ -149,10 +150,12 @@ bool fits(const Game& game) {
 }
 
 py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size_t memory, const py::object& progress,
-               double small_budget, std::uint64_t work, bool soonest) {
+               double small_budget, std::uint64_t work, bool soonest, bool wall) {
+    const GivesBack memory_of_game;
     const Game game = read_game(in);
     Limits limits;
     limits.seconds = seconds;
+    limits.wall = wall;
     limits.states = states;
     limits.memory = memory;
     limits.work = work;
@@ -192,7 +195,8 @@ PYBIND11_MODULE(_core, module) {
     py::register_exception<Limit>(module, "LimitReached");
     module.def("solve", &solve, py::arg("game"), py::arg("seconds") = 0.0, py::arg("states") = 0,
                py::arg("memory_mib") = 0, py::arg("progress") = py::none(), py::arg("small_budget") = 5e5,
-               py::arg("work") = 0, py::arg("soonest") = false,
-               "Decides a compiled game. Raises LimitReached('seconds', 'states', 'memory' or 'work'). `small_budget` is the work, in\n"
-               "zones, that the game gets as it is, before searches take turns. `soonest`: see Engine.solve.");
+               py::arg("work") = 0, py::arg("soonest") = false, py::arg("wall") = false,
+               "Decides a compiled game. Raises LimitReached('seconds', 'states', 'memory' or 'work'). The seconds are of\n"
+               "processor time, or (`wall`) of the clock. `small_budget` is the work, in zones, that the game gets as it\n"
+               "is, before searches take turns. `soonest`: see Engine.solve.");
 }

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import heapq
 import itertools
-import time
 from abc import ABC, abstractmethod
 from collections import deque
 from dataclasses import dataclass
@@ -54,20 +53,21 @@ class ReferenceEngine(Engine):
         soonest: bool = False,
     ) -> Outcome:
         """Decide the game, see `Engine`. It keeps no ranks."""
-        start = time.perf_counter()
+        start = limits.now()
         monitor = LimitMonitor(limits, progress)
         try:
-            fixpoint: _Fixpoint
-            if game.kind is Kind.SAFETY:
-                fixpoint = _Safety(game, monitor)
-            else:
-                fixpoint = _Soonest(game, monitor) if soonest else _Reach(game, monitor, self.directed)
-            won = fixpoint.solve()
-            blocks = fixpoint.blocks() if won else ()
-            blocks = tuple(blocks[k] for k in followed(game, blocks))
+            with monitor:
+                fixpoint: _Fixpoint
+                if game.kind is Kind.SAFETY:
+                    fixpoint = _Safety(game, monitor)
+                else:
+                    fixpoint = _Soonest(game, monitor) if soonest else _Reach(game, monitor, self.directed)
+                won = fixpoint.solve()
+                blocks = fixpoint.blocks() if won else ()
+                blocks = tuple(blocks[k] for k in followed(game, blocks))
         except MemoryError:
             raise monitor.stopped("memory") from None
-        return Outcome(won, blocks, None, fixpoint.counts(), time.perf_counter() - start)
+        return Outcome(won, blocks, None, fixpoint.counts(), limits.now() - start)
 
 
 class _Fixpoint(ABC):

@@ -13,6 +13,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "zones/native/effort.hpp"
+
 namespace pursue {
 
 using wide_t = std::int32_t;  // bounds as the tables of a game hold them
@@ -48,6 +50,10 @@ struct Dbm {
     R& at(int i, int j) { return m[i * stride + j]; }
     R at(int i, int j) const { return m[i * stride + j]; }
 };
+
+// The bounds of a zone, as `attend` counts them.
+template <class Z>
+constexpr std::size_t BOUNDS = Z::size * Z::size;
 
 // Whether the diagonal is `<= 0`, every clock >= 0, and no bound is wider than a way round through a third clock.
 template <class Z>
@@ -153,6 +159,7 @@ bool clearly_disjoint(const Z& a, const Z& b) {
 template <class Z>
 bool intersect(Z& a, const Z& b) {
     if (clearly_disjoint(a, b)) return false;
+    attend(BOUNDS<Z>);
     bool changed = false;
     for (int k = 0; k < Z::size * Z::stride; ++k) {
         changed |= b.m[k] < a.m[k];
@@ -265,6 +272,7 @@ void extrapolate(Z& z, const std::vector<wide_t>& max) {
 // Appends the points of a that are not in b, as pairwise disjoint zones. Requires: neither is in `out`.
 template <class Z>
 void subtract(const Z& a, const Z& b, std::vector<Z>& out) {
+    attend(BOUNDS<Z>);
     if (clearly_disjoint(a, b)) {
         out.push_back(a);
         return;
@@ -272,6 +280,7 @@ void subtract(const Z& a, const Z& b, std::vector<Z>& out) {
     Z rest = a;
     const auto cut = [&](int i, int j) {
         if (i == j || b.at(i, j) >= rest.at(i, j)) return true;
+        attend(BOUNDS<Z>);
         out.push_back(rest);
         if (!constrain(out.back(), j, i, complement(b.at(i, j)))) out.pop_back();
         return constrain(rest, i, j, b.at(i, j));

@@ -1,7 +1,7 @@
 // Federations: finite unions of zones, as vectors. Zones may overlap unless a function says otherwise; no zone: no point.
 //
 // Every function requires zones as `dbm.hpp` has them, and ensures them. Those whose work grows with the number of zones
-// call `spend`, and so may throw what its hook throws.
+// call `spend`, and all call `attend`: so they may throw what the hooks of these throw.
 #pragma once
 
 #include <optional>
@@ -28,6 +28,7 @@ Federation<Z> minus(const Federation<Z>& fed, const Z& zone) {
 // Whether one of fed may meet the zone: false means disjoint, see clearly_disjoint.
 template <class Z>
 bool touches(const Federation<Z>& fed, const Z& zone) {
+    attend(fed.size() * BOUNDS<Z>);
     for (const auto& z : fed)
         if (!clearly_disjoint(z, zone)) return true;
     return false;
@@ -50,6 +51,7 @@ Federation<Z> intersection(const Federation<Z>& a, const Federation<Z>& b) {
     Federation<Z> out;
     for (const auto& zone : b) {
         spend(a.size());
+        attend(a.size());
         for (const auto& other : a) {
             out.push_back(other);
             if (!intersect(out.back(), zone)) out.pop_back();
@@ -70,6 +72,7 @@ void append(Federation<Z>& a, const Federation<Z>& b) {
 template <class Z>
 void insert(Federation<Z>& fed, const Z& zone) {
     spend(fed.size());
+    attend(fed.size() * BOUNDS<Z>);
     for (const auto& z : fed)
         if (includes(z, zone)) return;
     fed.erase(std::remove_if(fed.begin(), fed.end(), [&](const Z& z) { return includes(zone, z); }), fed.end());
@@ -96,6 +99,7 @@ inline bool apart(const Z& a, const Z& b, const Apart& by) {
 // bound that is tighter in a and one that is tighter in b.
 template <class Z>
 std::optional<Apart> what_parts(const Z& a, const Z& b) {
+    attend(BOUNDS<Z>);
     std::pair<int, int> tighter_a[Z::size * Z::size], tighter_b[Z::size * Z::size];
     int count_a = 0, count_b = 0;
     for (int i = 0; i < Z::size; ++i)
@@ -132,6 +136,7 @@ void absorb(Federation<Z>& fed, Z zone) {
         spend(fed.size());
         for (std::size_t k = 0; k < fed.size();) {
             if (apart(fed[k], zone, last) || apart(fed[k], zone, other)) {
+                attend(1);
                 ++k;
                 continue;
             }
@@ -169,6 +174,7 @@ Federation<Z> disjoint(const Federation<Z>& fed) {
 // Whether every point of the zone is in one of big.
 template <class Z>
 bool contains(const Federation<Z>& big, const Z& zone) {
+    attend(big.size() * BOUNDS<Z>);
     for (const auto& z : big)
         if (includes(z, zone)) return true;
     return minus(Federation<Z>{zone}, big).empty();
@@ -180,6 +186,7 @@ template <class Z>
 Z boxed(Z zone, const Federation<Z>& parts) {
     assert(!parts.empty());
     Z whole = parts[0];
+    attend(parts.size() * BOUNDS<Z>);
     for (const Z& part : parts) whole = hull(whole, part);
     for (int x = 1; x < Z::size; ++x) {
         constrain(zone, 0, x, whole.at(0, x));
@@ -197,6 +204,7 @@ Federation<Z> around(const Z& zone, const Z& inner) {
     Z rest = zone;
     const auto cut = [&](int i, int j) {
         if (i == j || inner.at(i, j) >= rest.at(i, j)) return true;
+        attend(BOUNDS<Z>);
         out.push_back(zone);
         if (!constrain(out.back(), j, i, complement(inner.at(i, j)))) out.pop_back();
         return constrain(rest, i, j, inner.at(i, j));
@@ -221,6 +229,7 @@ Federation<Z> predt(const Federation<Z>& good, const Federation<Z>& bad) {
         spend(bad.size());
         for (const auto& b : bad) {
             if (safe.empty()) break;
+            attend(BOUNDS<Z>);
             if (clearly_disjoint(past, b)) continue;
             Z before = b;
             down(before);
@@ -254,6 +263,7 @@ Federation<Z> lasting(const Federation<Z>& fed, int delay) {
         spend(1);
         Federation<Z> good{zone};
         for (auto z : minus(Federation<Z>{later}, fed)) {
+            attend(BOUNDS<Z>);
             if (down_within(z, delay)) good = minus(good, z);
             if (good.empty()) break;
         }

@@ -148,12 +148,23 @@ void bind_federation(py::module_& module) {
     module.def("lasting", [](const F& a, int delay) { return bound(lasting(plain(a), delay), dim_of(a, a)); });
 }
 
-// Calls a function that may look at so many zones; raises RuntimeError where it looks at more.
-py::object within_effort(std::uint64_t zones, const py::function& function) {
+[[noreturn]] void enough(void*) { throw std::runtime_error("enough"); }
+
+// Calls a function that may look at so many zones, or whose zones do not count (0), and that is looked after so often at
+// most; raises RuntimeError where it is more.
+py::object within_effort(std::uint64_t zones, std::uint64_t looks, const py::function& function) {
     struct Guard {
-        ~Guard() { effort = {0, 0, nullptr, nullptr}; }
+        ~Guard() { effort = Effort{}; }
     } const guard;
-    effort = {0, zones, [](void*) { throw std::runtime_error("enough"); }, nullptr};
+    effort = Effort{};
+    effort.due = zones ? zones : 1;
+    effort.pause = enough;
+    effort.look = [](void* left) {
+        if ((*static_cast<std::uint64_t*>(left))-- == 0) enough(left);
+    };
+    effort.of = &looks;
+    if (zones) return function();
+    const Uncounted all;
     return function();
 }
 
@@ -161,7 +172,7 @@ py::object within_effort(std::uint64_t zones, const py::function& function) {
 
 PYBIND11_MODULE(_zones, module) {
     module.doc() = "The native zone library, for tests.";
-    module.def("within_effort", &within_effort);
+    module.def("within_effort", &within_effort, py::arg("zones"), py::arg("looks"), py::arg("function"));
     py::module_ narrow = module.def_submodule("short", "16-bit bounds, three clocks.");
     py::module_ wide = module.def_submodule("long", "32-bit bounds, seven clocks.");
     bind_dbm<Dbm<4, std::int16_t>>(narrow);

@@ -1,0 +1,51 @@
+// The memory of this process: how much it is, and giving it back.
+#pragma once
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+namespace pursue {
+
+// MiB of this process in memory; where the system does not report it, the most that it was so far.
+inline std::size_t memory_in_use() {
+    if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
+        unsigned long pages = 0;
+        const int read = std::fscanf(file, "%*u %lu", &pages);
+        std::fclose(file);
+        if (read == 1) return static_cast<std::size_t>(pages) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) >> 20;
+    }
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+#ifdef __APPLE__
+    return static_cast<std::size_t>(usage.ru_maxrss) >> 20;
+#else
+    return static_cast<std::size_t>(usage.ru_maxrss) >> 10;
+#endif
+}
+
+// At its end the system gets back what was freed meanwhile, if that is much: else it would count as in use when the next
+// work begins.
+class GivesBack {
+  public:
+    GivesBack() = default;
+    ~GivesBack() {
+#ifdef __GLIBC__
+        constexpr std::size_t much = 16;
+        if (memory_in_use() > before_ + much) malloc_trim(0);
+#endif
+    }
+    GivesBack(const GivesBack&) = delete;
+    GivesBack& operator=(const GivesBack&) = delete;
+
+  private:
+    const std::size_t before_ = memory_in_use();
+};
+
+}  // namespace pursue
