@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import traceback
 from dataclasses import dataclass, replace
 from typing import Callable, Optional, Tuple
 
@@ -91,6 +92,7 @@ def lost_report(
     """The report on a scenario that is not won, as `problem` says: why, and what would change that; or that it is not
     decided, and what makes it so large (`option` as for `costs`).
     """
+    traceback.clear_frames(problem.__traceback__)  # what the search that has ended holds, else counts as in use
     rules, scenario = Rules(), scenario.giving_up(scenario.optional)
     if isinstance(problem, outcomes.Lost):
         lost = Lost(problem.diagnostics, explain(scenario, rules, limits, progress, problem.parts))

@@ -13,6 +13,7 @@ import signal
 import subprocess
 import sys
 import time
+import weakref
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, Iterator, List, Tuple, Type
@@ -25,7 +26,12 @@ from hypothesis import strategies as st
 
 from pursue_gen import __version__
 from pursue_gen.cli.app import main
+from pursue_gen.cli.solution import explained
+from pursue_gen.explanation import costs as costs_module
+from pursue_gen.explanation.costs import Costs
 from pursue_gen.language import load
+from pursue_gen.outcomes import LimitHit
+from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.plan import read_plan
@@ -503,6 +509,25 @@ def test_after_a_limit_it_is_said_what_is_large(command: str, tmp_path: Path) ->
     assert (told.status, told.out) == (5, "")
     assert told.err.count("SYN010") == 1
     assert "Without bot1 it is decided in " in told.err.split("Looking for what makes it so large …\n")[1]
+
+
+def test_what_a_search_has_held_is_gone_when_it_is_said_what_is_large() -> None:
+    held: List[weakref.ReferenceType[mock.Mock]] = []
+
+    def search() -> None:
+        large = mock.Mock()
+        held.append(weakref.ref(large))
+        raise LimitHit([])
+
+    def look(*_: object) -> Costs:
+        assert held[0]() is None
+        return Costs((), ())
+
+    with pytest.raises(LimitHit) as problem:
+        search()
+    with mock.patch.object(costs_module, "costs", side_effect=look) as looked:
+        explained(problem.value, load(FIRST), SolveRequest(), quiet=True)
+    assert looked.called
 
 
 @pytest.mark.parametrize("option", [["--limit", "0.000001"], ["--memory", "1"]])

@@ -87,6 +87,17 @@ def test_a_persons_limit_on_time_holds() -> None:
     assert costs(parse(ANTEROOM, "anteroom.pur"), DEFAULT, Limits(1e-9)).decided == ()
 
 
+def test_it_is_over_in_some_seconds_and_within_the_memory_whoever_has_set_no_limit(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    anteroom = parse(ANTEROOM, "anteroom.pur")
+    monkeypatch.setattr(costs_module, "ROOM", -(10**6))
+    assert costs(anteroom, DEFAULT, Limits(memory=1, by_default=True)).decided == ()
+    assert costs(anteroom, DEFAULT, Limits(memory=10**6, by_default=True)).decided != ()
+    monkeypatch.setattr(costs_module, "SECONDS", 1e-9)
+    assert costs(anteroom, DEFAULT, Limits(by_default=True)).decided == ()
+
+
 @needs_native
 def test_where_no_part_alone_is_enough_several_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(costs_module, "_ALONE", 1e-9)

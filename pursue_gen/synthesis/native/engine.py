@@ -79,7 +79,7 @@ class NativeEngine(Engine):
             tables, most = _tables(game), (limits.left, limits.states, limits.memory)
             # With a limit on work many games are lost: searches in turn would use up more than half of it in vain.
             small = max(self.small_budget, limits.work)
-            how = {"wall": True} if limits.wall else {}
+            how = {"wall": True} if limits.wall and limits.seconds else {}
             result = _core.solve(tables, *most, report, small, limits.work, soonest, **how)
         except _core.LimitReached as limit:
             raise limit_reached(str(limit), limits, reached) from None
