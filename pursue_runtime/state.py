@@ -83,7 +83,9 @@ def older(state: SystemState, known: SystemState) -> bool:
     if state.mission != known.mission:
         return state.stamp < known.stamp
     if state.seq == known.seq:
-        return (state.stamp, -_open_orders(state)) < (known.stamp, -_open_orders(known))
+        if state.stamp == known.stamp:
+            return _open_orders(state) > _open_orders(known)
+        return state.stamp < known.stamp
     return state.seq < known.seq and state.stamp <= known.stamp
 
 
