@@ -43,9 +43,10 @@ def solve(
     been proven by a second, independent program. The exit status is 4 where the objective cannot be met.
     """
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.cli.solution import explained, show_promise, show_unneeded
+    from pursue_gen.cli.solution import explained, show_answers, show_promise, show_unneeded
     from pursue_gen.files import write_texts
     from pursue_gen.partition import unneeded
+    from pursue_gen.solving.answers import answers
     from pursue_gen.solving.optional import promised_of
     from pursue_gen.solving.request import solution_of
     from pursue_gen.solving.solvers import keep_counter
@@ -77,12 +78,15 @@ def solve(
         more: Dict[str, Any] = {}
         if promise is not None:
             alone = [agent.name for agent in unneeded(promise.scenario, won.strategy)]
-            more = {"not_needed": alone, **periods_json(promise.scenario), **optional_json(promise.scenario)}
+            times = [answer.as_json() for answer in answers(promise.scenario, won, limits)]
+            more = {**periods_json(promise.scenario), **optional_json(promise.scenario)}
+            more = {"answers": times, "not_needed": alone, **more}
         print(json.dumps({**verdict_json(rules, won, *found), **more}, indent=1))
     elif printed:
         print(plan, end="")
     info(verdict_text(won))
     if promise is not None:
+        show_answers(promise, limits)
         show_promise(promise.scenario)
         show_unneeded(promise)
     info(margin_text(won, *found))

@@ -21,6 +21,7 @@ from pursue_gen.language.wording import condition_of_promise, objective_words, p
 from pursue_gen.outcomes import INTERRUPTED, LimitHit, Lost
 from pursue_gen.report.make import ReportOptions, lost_report, won_report
 from pursue_gen.report.whole import report_page
+from pursue_gen.solving.answers import answers
 from pursue_gen.solving.inputs import game_of, settled
 from pursue_gen.solving.optional import Promised, promised_of
 from pursue_gen.solving.options import SolveOptions
@@ -131,6 +132,7 @@ def _promise(found: Promised) -> List[str]:
     lines = objective_words(scenario)
     if found.solution.guarantee is not None:
         lines += [found.solution.guarantee.in_words()]
+    lines += [answer.in_words() for answer in answers(scenario, found.solution)]
     lines += [*periods_found(scenario), *(f"{sentence}." for sentence in promise_words(scenario))]
     assumed = condition_of_promise(scenario)
     return [*lines, f"This holds {assumed}."] if assumed else lines

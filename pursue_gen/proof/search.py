@@ -52,10 +52,14 @@ class Depth:
     many: int = 0
 
 
+Left = Tuple[int, str]
+"""The number of an automaton, and the location that it leaves."""
+
+
 @dataclass(frozen=True)
 class Latest:
-    """The largest (scaled) value of a clock at the goal; None: nothing bounds it, or it was not found out within the
-    limit, or the strategy `fails` when it is played so."""
+    """The largest (scaled) value of a clock at the goal, or where a location is left; None: nothing bounds it, it was
+    not found out within the limit, or the strategy `fails` when it is played so."""
 
     value: Optional[int]
     fails: bool = False
@@ -83,10 +87,13 @@ class Searches:
         zones = is_invariant(self.loop, monitor)
         return None if zones is None else Found(zones, frozenset(self.loop.used), None)
 
-    def latest(self, clock: int, limit: int, monitor: LimitMonitor) -> Latest:
-        """When the goal is reached at the latest, with at most so many symbolic states."""
+    def latest(
+        self, clock: int, limit: int, monitor: LimitMonitor, left: Optional[Left] = None, many: int = 0
+    ) -> Latest:
+        """When the goal is reached at the latest, or `left` is, with at most so many symbolic states; `many` as in
+        Depth."""
         try:
-            return Latest(_latest(self.loop, clock, limit, monitor))
+            return Latest(_latest(self.loop, clock, limit, monitor, left, many))
         except Broken:
             return Latest(None, fails=True)
 
@@ -210,8 +217,10 @@ def _comes_back(on_path: Sequence[Dbm], zone: Dbm, loop: ClosedLoop, state: Stat
     return any(widened == max_constants.extrapolate(other, state) for other in on_path)
 
 
-def _latest(loop: ClosedLoop, clock: int, limit: int, monitor: LimitMonitor) -> Optional[int]:
-    """The largest value of the clock at the goal, breadth first."""
+def _latest(
+    loop: ClosedLoop, clock: int, limit: int, monitor: LimitMonitor, left: Optional[Left], many: int
+) -> Optional[int]:
+    """The largest value of the clock at the goal, or with the steps that leave a location, breadth first."""
     latest = 0
     start: Entry = (loop.arena.initial, loop.arena.start)
     passed: Dict[State, List[Dbm]] = {start[0]: [start[1]]}
@@ -222,13 +231,16 @@ def _latest(loop: ClosedLoop, clock: int, limit: int, monitor: LimitMonitor) -> 
         if not any(other is zone for other in passed[state]):
             continue
         if loop.won(state):
-            bound = zone.m[clock * zone.dim]
-            if bound >= INF:
+            latest = latest if left else max(latest, zone.m[clock * zone.dim])
+            if latest >= INF:
                 return None
-            latest = max(latest, constant(bound))
             continue
         monitor.check(met, len(pending))
         for _, (target, after) in loop.successors((state, zone)):
+            if left and state[0][left[0]] == left[1] != target[0][left[0]]:
+                latest = max(latest, after.m[clock * after.dim])
+                if latest >= INF:
+                    return None
             after = loop.max_constants.extrapolate(after, target)
             known = passed.setdefault(target, [])
             if any(other.includes(after) for other in known):
@@ -236,10 +248,10 @@ def _latest(loop: ClosedLoop, clock: int, limit: int, monitor: LimitMonitor) -> 
             met += 1
             if met > limit:
                 return None
-            after = with_neighbours(after, known)
+            after = reduce(Dbm.hull, known, after) if many and len(known) >= many else with_neighbours(after, known)
             known[:] = [other for other in known if not after.includes(other)] + [after]
             pending.append((target, after))
-    return latest
+    return constant(latest)
 
 
 def _failed(

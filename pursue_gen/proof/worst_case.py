@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import Dict, Optional
+from typing import Dict, Iterable, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.network_names import AT_RISK
 from pursue_gen.proof.closed_loop import ClosedLoop
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.native.search import searches_of
+from pursue_gen.proof.shares import shares_of
 from pursue_gen.proof.stages import parts_of
 from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor, Limits
 from pursue_gen.synthesis.strategy import Strategy
@@ -28,6 +30,9 @@ LIMIT = 20_000
 _BLOCKS = 2
 """A strategy with more blocks than so many times the limit is not played: each block takes at least one symbolic state
 where plays come to it, and few do not."""
+
+_MANY = 8
+"""So many zones of a discrete state become their hull where they are too many: a time may then come out too long."""
 
 LONGEST = 100_000
 """Times above this number of time units are not distinguished."""
@@ -110,6 +115,38 @@ def worst_case(
         if not latest.fails:
             return None if latest.value is None else Fraction(latest.value, loop.arena.scale)
     return None
+
+
+def answer_times(
+    network: Network,
+    objective: Objective,
+    strategy: Strategy,
+    reaction: Fraction = Fraction(0),
+    limit: int = LIMIT,
+    limits: Limits = NO_LIMITS,
+) -> Dict[str, Fraction]:
+    """How long each objective's deadline runs at worst until it is met, by automata, in time units, where a strategy
+    that wins is played as `worst_case` says. What was not found out is not in it, nor a deadline that never runs."""
+    found: Dict[str, Fraction] = {}
+    games: Iterable[Tuple[Network, Objective, Strategy]] = ((network, objective, strategy),)
+    if strategy.in_parts:
+        games = ((part.game, part.objective, part.strategy) for part in shares_of(network, objective, strategy))
+    for whole, wanted, own in games if not strategy.stages else ():
+        game = named_part(whole, own)
+        searches = searches_of(ClosedLoop(game, wanted, own, reaction, None, INSTANT))
+        for k, automaton in enumerate(game.automata):
+            clocks = [b.clock for place in automaton.locations if place.name == AT_RISK for b in place.invariant]
+            if not clocks or automaton.name not in dict(wanted.bad):
+                continue
+            clock, took = searches.loop.arena.clock[clocks[0]], None
+            for many in (0, _MANY):
+                try:
+                    took = took or searches.latest(clock, limit, LimitMonitor(limits), (k, AT_RISK), many).value
+                except PursueError:
+                    return found
+            if took:
+                found[automaton.name] = Fraction(took, searches.loop.arena.scale)
+    return found
 
 
 def _of_stages(

@@ -15,6 +15,7 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import assumption_words, kind_words, objective_words, promise_words, speed_words, units
 from pursue_gen.partition import unneeded, unneeded_words
 from pursue_gen.report.html import Section, table
+from pursue_gen.solving.answers import answers
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import Solution
 
@@ -43,6 +44,8 @@ def section(
         parts.append(f"<p>What is assumed of others:</p><ul>{assumed}</ul>")
     if won is not None:
         parts += _won(won, margin)
+        kept = "".join(f"<li>{safe(answer.in_words())}</li>" for answer in answers(scenario, won))
+        parts += [f"<ul>{kept}</ul>"] if kept else []
         words = unneeded_words(unneeded(scenario, won.strategy))
         parts += [f"<p>{safe(words)}</p>"] if words else []
     elif lost is not None:

@@ -17,11 +17,14 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
 from pursue_gen.proof import checker, search
 from pursue_gen.proof.checker import Report, pruned, pruned_ranks, verify
+from pursue_gen.proof.closed_loop import ClosedLoop
 from pursue_gen.proof.margin import strategy_margin
 from pursue_gen.proof.native import tables
+from pursue_gen.proof.native.search import searches_of
 from pursue_gen.proof.simplify import simplified
-from pursue_gen.proof.worst_case import worst_case
+from pursue_gen.proof.worst_case import INSTANT, worst_case
 from pursue_gen.solving.rules import IDEAL, Rules, played
+from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Constraint, Strategy
 from pursue_gen.tga import scenario_objective, translate
@@ -123,6 +126,19 @@ def test_they_agree_on_what_covers_itself(look: Look) -> None:
 def test_they_agree_on_the_worst_time(look: Look) -> None:
     net, objective, strategy, reaction, _, _ = look
     both(lambda: worst_case(net, objective, strategy, reaction))
+
+
+@RANDOM
+@given(looks(), st.sampled_from((0, 1, 4)))
+def test_they_agree_on_how_long_a_location_is_not_left(look: Look, many: int) -> None:
+    net, objective, strategy, reaction, _, _ = look
+    left = 0, net.automata[0].locations[0].name
+
+    def latest() -> search.Latest:
+        loop = ClosedLoop(net, objective, strategy, reaction, None, INSTANT)
+        return searches_of(loop).latest(1, 1_000, LimitMonitor(NO_LIMITS), left, many)
+
+    both(latest)
 
 
 @settings(RANDOM, max_examples=40)

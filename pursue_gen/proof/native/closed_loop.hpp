@@ -42,6 +42,10 @@ class ClosedLoop {
     Arena<Z> arena;
     std::vector<bool> used;  // for each zone of the strategy whether plays reach it
 
+    bool is_at(int state, const Place& place) const {
+        return arena.state(state)[place.automaton] == place.location;
+    }
+
     // All of the goal at once; any of what is bad.
     bool won(int state) const {
         return !goal_.empty() && std::all_of(goal_.begin(), goal_.end(), [&](const Place& p) { return is_at(state, p); });
@@ -116,10 +120,6 @@ class ClosedLoop {
     }
 
   private:
-    bool is_at(int state, const Place& place) const {
-        return arena.state(state)[place.automaton] == place.location;
-    }
-
     const std::vector<int>* blocks(int state) const {
         const auto found = strategy_.of_state.find(arena.state(state));
         return found == strategy_.of_state.end() ? nullptr : &found->second;

@@ -160,11 +160,18 @@ struct Task {
     bool prompt, exact;
     std::size_t limit, many;
     int clock;
+    std::optional<Place> left;
 };
 
 Task read_task(const py::dict& in) {
-    return {in["search"].cast<std::string>(),  in["prompt"].cast<bool>(),      in["exact"].cast<bool>(),
-            in["limit"].cast<std::size_t>(), in["many"].cast<std::size_t>(), in["clock"].cast<int>()};
+    const Places left = read_places(in["left"]);
+    return {in["search"].cast<std::string>(),
+            in["prompt"].cast<bool>(),
+            in["exact"].cast<bool>(),
+            in["limit"].cast<std::size_t>(),
+            in["many"].cast<std::size_t>(),
+            in["clock"].cast<int>(),
+            left.empty() ? std::nullopt : std::optional<Place>(left[0])};
 }
 
 // What a search found out, free of the type of zones.
@@ -207,7 +214,7 @@ class LoopOf : public AnyLoop {
             if (const auto zones = search.invariant()) out.number = static_cast<std::int64_t>(*zones);
         } else if (task.search == "latest") {
             try {
-                out.number = search.latest(task.clock);
+                out.number = search.latest(task.clock, task.left, task.many);
             } catch (const Broken<Z>& broken) {
                 out.fault = static_cast<int>(broken.fault);
             }

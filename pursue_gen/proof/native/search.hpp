@@ -161,28 +161,38 @@ class Search {
         return zones;
     }
 
-    // The largest value of a clock at the goal, breadth first; none if nothing bounds it, or the limit was met. Throws
-    // Broken where the strategy fails.
-    std::optional<std::int64_t> latest(int clock) {
+    // The largest value of a clock at the goal, or if there is a place to leave, with the steps that leave it. Breadth
+    // first; `many` zones of a discrete state (0: never) become one. None if nothing bounds it, or the limit was met.
+    // Throws Broken where the strategy fails.
+    std::optional<std::int64_t> latest(int clock, const std::optional<Place>& left, std::size_t many) {
         std::int64_t latest = 0;
+        const auto noted = [&](const Z& zone) {
+            const auto bound = zone.at(clock, 0);
+            latest = std::max<std::int64_t>(latest, bound >> 1);
+            return bound < INF<typename Z::raw_t>;
+        };
         std::deque<Found> found{{start_, -1, nullptr, true}};
         Passed passed{{start_.state, {0}}};
         for (std::size_t next = 0; next < found.size(); ++next) {
             if (!found[next].current) continue;
             const Entry<Z> entry = found[next].entry;
             if (loop_.won(entry.state)) {
-                const auto bound = entry.zone.at(clock, 0);
-                if (bound >= INF<typename Z::raw_t>) return std::nullopt;
-                latest = std::max<std::int64_t>(latest, bound >> 1);
+                if (!left && !noted(entry.zone)) return std::nullopt;
                 continue;
             }
             loop_.watch.reached(found.size(), found.size() - next - 1);
             for (const auto& [move, step] : loop_.successors(entry)) {
+                const bool leaves = left && loop_.is_at(entry.state, *left) && !loop_.is_at(step.state, *left);
+                if (leaves && !noted(step.zone)) return std::nullopt;
                 Z after = constants().extrapolate(step.zone, step.state);
                 std::vector<int>& known = passed[step.state];
                 if (std::any_of(known.begin(), known.end(), [&](int k) { return includes(found[k].entry.zone, after); })) continue;
                 if (found.size() >= limit_) return std::nullopt;
-                join_neighbours(after, known, found);
+                if (many && known.size() >= many) {
+                    for (int k : known) after = hull(after, found[k].entry.zone);
+                } else {
+                    join_neighbours(after, known, found);
+                }
                 add({step.state, after}, -1, move, known, found);
             }
         }

@@ -8,7 +8,7 @@ from pursue_gen.proof import reasons
 from pursue_gen.proof.closed_loop import ClosedLoop, in_words
 from pursue_gen.proof.moves import State
 from pursue_gen.proof.native.tables import MOST_DELAY, MOST_FACTOR, MOST_RANK, NotHeld, Tables, tables_of
-from pursue_gen.proof.search import Depth, Failure, Found, Latest, Searches
+from pursue_gen.proof.search import Depth, Failure, Found, Latest, Left, Searches
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.strategy import Move
 from pursue_gen.zones.dbm import INF, Dbm
@@ -77,11 +77,14 @@ class NativeSearches(Searches):
             return super().covered(monitor)
         return None if result["number"] is None else Found(result["number"], self._used(result), None)
 
-    def latest(self, clock: int, limit: int, monitor: LimitMonitor) -> Latest:
-        """When the goal is reached at the latest, with at most so many symbolic states."""
-        result = self._searched("latest", Depth(self.loop.rules.prompt, False, limit), monitor, clock)
+    def latest(
+        self, clock: int, limit: int, monitor: LimitMonitor, left: Optional[Left] = None, many: int = 0
+    ) -> Latest:
+        """When the goal is reached at the latest, or `left` is, with at most so many symbolic states; `many` as in
+        Depth."""
+        result = self._searched("latest", Depth(self.loop.rules.prompt, False, limit, many), monitor, clock, left)
         if result is None:
-            return super().latest(clock, limit, monitor)
+            return super().latest(clock, limit, monitor, left, many)
         return Latest(result["number"], fails=result["fault"] >= 0)
 
     def _found(self, search: str, depth: Depth, monitor: LimitMonitor) -> Optional[Found]:
@@ -100,7 +103,7 @@ class NativeSearches(Searches):
         return Found(result["states"], self._used(result), failure)
 
     def _searched(
-        self, search: str, depth: Depth, monitor: LimitMonitor, clock: int = 0
+        self, search: str, depth: Depth, monitor: LimitMonitor, clock: int = 0, left: Optional[Left] = None
     ) -> Optional[Dict[str, Any]]:
         """The result of a native search; None where the times that come up are too large for it."""
         task = {
@@ -110,6 +113,7 @@ class NativeSearches(Searches):
             "limit": depth.limit,
             "many": depth.many,
             "clock": clock,
+            "left": _numbered(self._tables, () if left is None else (left,)),
         }
         try:
             return self._native.search(task, monitor.check)
