@@ -7,6 +7,7 @@ that is lost and the shortest that is won are halved. Periods are whole time uni
 from __future__ import annotations
 
 from collections import Counter
+from contextlib import suppress
 from dataclasses import replace
 from math import ceil
 from typing import Dict, List, Optional, Tuple
@@ -19,6 +20,7 @@ from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.enforced import enforced
 from pursue_gen.synthesis.limits import Limits, careful_memory
 from pursue_gen.tga import scenario_objective, translate
 
@@ -117,8 +119,7 @@ def _farthest(scenario: Scenario) -> int:
 def _won(scenario: Scenario, every: int, rules: Rules, budget: Budget) -> Optional[bool]:
     """Whether that period can be promised; None: not decided within the budget."""
     tried = with_period(scenario, every)
-    try:
+    with suppress(LimitHit), enforced(budget.for_proofs):
         network = played(translate(tried), rules)
         return verdict_of(budget, network, scenario_objective(tried), rules.reaction, _SHARE).won
-    except LimitHit:
-        return None
+    return None
