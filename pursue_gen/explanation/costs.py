@@ -1,6 +1,8 @@
-"""What makes a scenario too large to be decided: its parts are left out, each alone, and then together.
+"""What makes a scenario too large to be decided, and what is decided of it.
 
-Each smaller scenario is solved with a share of a fixed budget of work, the one that seems smallest first.
+Of several objectives each is solved alone, then several together (see `decided`). Then parts are left out, each alone,
+and where there is one objective, several together. Each smaller scenario is solved with a share of a fixed budget of
+work, the one that seems smallest first.
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
+from pursue_gen.explanation.decided import Decided, decided, texts
 from pursue_gen.explanation.lesser import Part, without_each
 from pursue_gen.explanation.part import rules_for
 from pursue_gen.language.scenario import Scenario
@@ -31,13 +34,13 @@ SECONDS = 8.0
 ROOM = 64
 """MiB beside what is in use before."""
 
-_OPTION, _ALONE, _EACH = 0.3, 0.5, 0.5
-"""The part of the work for the scenario without an option; of the rest for parts that are left out alone; of the then
-rest for each attempt without several of them.
+_OPTION, _OBJECTIVES, _ALONE, _EACH = 0.3, 0.6, 0.5, 0.5
+"""The part of the work for the scenario without an option; of the rest for single objectives and some of them; of the
+then rest for parts that are left out alone; and of what is left for each attempt without several of them.
 """
 
-_SHOWN = 5
-"""So many parts are named."""
+_SHOWN, _SEVERAL = 5, 3
+"""So many parts are named at most, and so many that are left out together."""
 
 _Game = Tuple[Network, Objective]
 
@@ -55,10 +58,14 @@ class Cost:
 
 @dataclass(frozen=True)
 class Costs:
-    """What is decided, the least work first; the parts without which, each alone, the scenario is not decided."""
+    """What is decided, the least work first; the parts without which, each alone, the scenario is not decided.
+
+    `objectives`: what is decided of several objectives; None where there is one.
+    """
 
     decided: Tuple[Cost, ...]
     undecided: Tuple[str, ...]
+    objectives: Optional[Decided] = None
 
 
 def costs(
@@ -78,39 +85,55 @@ def costs(
     seconds = min(SECONDS, limits.chosen.left or SECONDS)
     memory = limits.memory and max(limits.memory, memory_in_use() + ROOM)
     few = replace(limits.chosen, seconds=seconds, spent=0.0, memory=memory, states=STATES, work=WORK)
+    budget = Budget(few, progress, phase=EXPLAINING)
+    found: List[Cost] = []
+    undecided: List[Part] = []
+    objectives: Optional[Decided] = None
     with suppress(LimitHit), enforced(few, EXPLAINING):
-        return _found(scenario, rules, Budget(few, progress, phase=EXPLAINING), option)
-    return Costs((), ())
-
-
-def _found(scenario: Scenario, rules: Rules, budget: Budget, option: str) -> Costs:
-    if option:
-        cost = _cost((option,), _game(scenario, rules), rules, budget, _OPTION)
-        if cost is not None:
-            return Costs((cost,), ())
-    found, undecided = _alone(scenario, rules, budget.split(_ALONE))
-    return Costs(tuple(found or _together(scenario, undecided, rules, budget)), tuple(part.name for part in undecided))
+        if option:
+            cost = _cost((option,), _game(scenario, rules), rules, budget, _OPTION)
+            if cost is not None:
+                return Costs((cost,), ())
+        objectives = decided(scenario, rules, budget.split(_OBJECTIVES))
+        found, undecided = _alone(scenario, rules, budget.split(_ALONE), objectives is None)
+        if not found and objectives is None:
+            found = _together(scenario, undecided, rules, budget)
+    return Costs(tuple(found), tuple(part.name for part in undecided), objectives)
 
 
 def in_words(found: Costs) -> str:
-    """The costs in sentences; empty where nothing can be left out."""
-    undecided = " or ".join(found.undecided)
-    if not found.decided:
-        return f"Too large without {undecided}, and without all of them." if undecided else ""
-    shown = "; ".join(f"without {_listed(cost.without)} it is decided {_took(cost)}" for cost in found.decided[:_SHOWN])
-    if len(found.decided[0].without) > 1:
+    """The costs in sentences, a line for each that is decided; empty where nothing is known."""
+    lines = [] if found.objectives is None else texts(found.objectives)
+    return "\n".join([*lines, *filter(None, [_left_out(found)])])
+
+
+def _left_out(found: Costs) -> str:
+    """What is decided without parts of the scenario."""
+    some = [cost for cost in found.decided if len(cost.without) <= _SEVERAL]
+    undecided = " or ".join(found.undecided[:_SHOWN])
+    if len(found.undecided) > _SHOWN:
+        undecided += f" or one of {len(found.undecided) - _SHOWN} more"
+    if not some:
+        said = undecided and found.objectives is None
+        return f"Too large without {undecided}, and without all of them." if said else ""
+    shown = "; ".join(f"without {_listed(cost.without)} it is decided {_took(cost)}" for cost in some[:_SHOWN])
+    if len(some[0].without) > 1:
         return f"W{shown[1:]}. Without one of these alone it is too large."
-    return f"W{shown[1:]}." + (f" Still too large without {undecided}." if undecided else "")
+    still = f" Still too large without {undecided}." if undecided and found.objectives is None else ""
+    return f"W{shown[1:]}.{still}"
 
 
 def as_json(found: Costs) -> Dict[str, Any]:
     """The costs as a JSON object."""
-    return {"decided": [asdict(cost) for cost in found.decided], "undecided": list(found.undecided)}
+    objectives = {} if found.objectives is None else {"objectives": asdict(found.objectives)}
+    return {"decided": [asdict(cost) for cost in found.decided], "undecided": list(found.undecided), **objectives}
 
 
-def _alone(scenario: Scenario, rules: Rules, budget: Budget) -> Tuple[List[Cost], List[Part]]:
+def _alone(
+    scenario: Scenario, rules: Rules, budget: Budget, objectives: bool
+) -> Tuple[List[Cost], List[Part]]:
     """What is decided without one part that matters, and the parts without which it is not; the smallest game first."""
-    parts = list(without_each(scenario))
+    parts = list(without_each(scenario, objectives))
     sizes, whole = [_size(*_game(smaller, rules)) for _, smaller in parts], _size(*_game(scenario, rules))
     lesser = [parts[k] for k in sorted(range(len(parts)), key=lambda k: sizes[k]) if sizes[k] < whole]
     found: List[Cost] = []

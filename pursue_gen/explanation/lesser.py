@@ -38,8 +38,9 @@ class Part:
     left_out: Callable[[Scenario], Optional[Scenario]]
 
 
-def without_each(scenario: Scenario) -> Iterator[Tuple[Part, Scenario]]:
-    """The parts that the scenario can do without, and the scenario without each of them alone."""
+def without_each(scenario: Scenario, objectives: bool = True) -> Iterator[Tuple[Part, Scenario]]:
+    """The parts that the scenario can do without, and the scenario without each of them alone; `objectives`: these
+    are among them."""
     found = [Part(agent.name, _agent(agent.name)) for agent in scenario.agents]
     found += [Part(f"rule {rule.name}", _rule(rule.name)) for rule in scenario.rules]
     found += [Part(f"at_most of {event.name}", _limit(event.name)) for event in scenario.events if event.at_most]
@@ -49,7 +50,7 @@ def without_each(scenario: Scenario) -> Iterator[Tuple[Part, Scenario]]:
         name = f"stateDependency {need.event.name} only_if {need.state.name} is_{value}"
         found.append(Part(name, _dependency(need.event.name, need.state.name)))
     found += [Part(f"only_if {text} on {what}", left_out) for what, text, left_out in without_conditions(scenario)]
-    if len(scenario.statements) > 1:
+    if objectives and len(scenario.statements) > 1:
         for first, *_ in scenario.statements:
             if isinstance(first, Reach):
                 text = f"reach_objective {_reach_text(first)}"

@@ -79,7 +79,7 @@ def _lost(lost: Lost, others: bool) -> List[str]:
         sentences = [text for text in (finding.message, finding.hint) if text]
         parts.append("<p>" + " ".join(f"{safe(text[:1].upper() + text[1:])}." for text in sentences) + "</p>")
     if lost.costs is not None:
-        parts.append(f"<p>{safe(in_words(lost.costs))}</p>")
+        parts += [f"<p>{safe(line)}</p>" for line in in_words(lost.costs).splitlines()]
     return parts + (_explained(lost.explanation) if lost.explanation else [])
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Iterator, Tuple
+from typing import Collection, Iterator, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, warning
 from pursue_gen.language.scenario import Assumption, Patrol, Safety, Scenario
@@ -46,11 +46,13 @@ def _holds(scenario: Scenario, objective: Safety, assumptions: Tuple[Assumption,
     """True if the objective holds though no robot does anything. Raises LimitHit."""
     alone = replace(scenario, safety=(objective,), reach=(), assumptions=assumptions)
     rules = Rules()
-    return budget.verdict(_idle(played(translate(alone), rules)), scenario_objective(alone), rules.reaction).won
+    network = played(translate(alone), rules)
+    agents = {automaton.name for automaton in network.automata if is_agent(automaton)}
+    return budget.verdict(idle(network, agents), scenario_objective(alone), rules.reaction).won
 
 
-def _idle(network: Network) -> Network:
-    """The network in which controlled agents begin nothing; they take part in what others begin."""
+def idle(network: Network, names: Collection[str]) -> Network:
+    """The network in which the controlled of these agents begin nothing; they take part in what others begin."""
 
     def stays(edge: Edge) -> bool:
         return not edge.controllable or (edge.sync is not None and not edge.sync.sends)
@@ -58,7 +60,7 @@ def _idle(network: Network) -> Network:
     return replace(
         network,
         automata=tuple(
-            replace(one, edges=tuple(edge for edge in one.edges if stays(edge))) if is_agent(one) else one
+            replace(one, edges=tuple(edge for edge in one.edges if stays(edge))) if one.name in names else one
             for one in network.automata
         ),
     )

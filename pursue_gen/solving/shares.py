@@ -75,8 +75,9 @@ def can_be_shared(network: Network, objective: Objective) -> bool:
 def won_in_shares(
     network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
 ) -> Optional[Found]:
-    """A proven strategy in shares; None where none is found with little work."""
-    budget = Budget(replace(options.limits, work=WORK, states=_STATES), options.progress, options.engine, whole=True)
+    """A proven strategy in shares; None where none is found with little work, or less if the options say so."""
+    limits = replace(options.limits, work=min(options.limits.work or WORK, WORK), states=_STATES)
+    budget = Budget(limits, options.progress, options.engine, whole=True)
     ways = [(False, True), (True, True), (True, False)]
     for thorough, free in ways if pauses(network) else ways[::2]:
         search = _Search(network, objective, reaction, options, budget, thorough, free)

@@ -67,14 +67,14 @@ class Budget:
         limits = self.part(share)
         if self.used_up:
             raise limit_reached("work" if self.work < 1 else "seconds", limits, NOTHING_YET)
-        self._spend(_PER_EDGE * sum(len(automaton.edges) for automaton in network.automata))
+        self.spend(_PER_EDGE * sum(len(automaton.edges) for automaton in network.automata))
         try:
             how = self._engine, limits, self._progress, self._games_whole, soonest, without_pauses
             verdict = solve(network, objective, reaction, *how)
         except LimitHit:
-            self._spend(limits.work)
+            self.spend(limits.work)
             raise
-        self._spend(verdict.stats.work)
+        self.spend(verdict.stats.work)
         return verdict
 
     def split(self, share: float) -> Budget:
@@ -84,7 +84,8 @@ class Budget:
         some._start = self._limits.now()
         return some
 
-    def _spend(self, work: int) -> None:
+    def spend(self, work: float) -> None:
+        """Counts work that something else did."""
         self.work -= work
         if self._whole is not None:
-            self._whole._spend(work)
+            self._whole.spend(work)

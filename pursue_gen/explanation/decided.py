@@ -1,0 +1,147 @@
+"""What is decided of a scenario that is too large as a whole: each objective alone, and as many together as are won.
+
+Each is looked at in its own part of the scenario, with one robot at first, while the others stand still, then with all.
+So a number of states stands beside each statement: what it multiplies the others' with, as far as they touch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, Iterator, List, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import Span
+from pursue_gen.explanation.part import part_of_scenario, rules_for
+from pursue_gen.language.scenario import Patrol, Scenario, StatedObjective
+from pursue_gen.language.wording import listed, objective_text, patrol_text
+from pursue_gen.outcomes import LimitHit
+from pursue_gen.solving.assumed_alone import idle
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.shares import can_be_shared, won_in_shares
+from pursue_gen.solving.subgoals import commanded_agents
+from pursue_gen.solving.without_pauses import verdict_of
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.cone import cone_of_influence
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Network
+
+_ALONE, _EACH, _SET = 0.5, 0.1, 0.2
+"""The part of the budget for single objectives; of what is left then, what one of them gets, and what a set gets."""
+
+_ONE_ROBOT = 0.3
+"""The part of what a game gets for each robot, the others standing still."""
+
+_Statement = Tuple[StatedObjective, ...]
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known of an objective, written as `text` in that line: whether it is won (None: not decided), and how
+    many discrete states its own game has (0: not known)."""
+
+    text: str
+    line: int
+    won: Optional[bool]
+    states: int
+
+
+@dataclass(frozen=True)
+class Decided:
+    """Each objective alone; the lines of those that are won together, and of the first one that is not decided together
+    with them (0: none); `lost`: that one is lost with them."""
+
+    alone: Tuple[Known, ...]
+    together: Tuple[int, ...] = ()
+    next_line: int = 0
+    lost: bool = False
+
+
+def decided(scenario: Scenario, rules: Rules, budget: Budget) -> Optional[Decided]:
+    """What is decided of several objectives, within the budget; None where there is one."""
+    statements = tuple(_statements(scenario))
+    if len(statements) < 2:
+        return None
+    found: List[Tuple[Known, _Statement]] = []
+    some = budget.split(_ALONE)
+    for text, statement in statements:
+        won, states = _decided(scenario, statement, rules, some, _EACH)
+        found.append((Known(text, statement[0].span.line, won, states), statement))
+    alone = tuple(known for known, _ in found)
+    easy = sorted((pair for pair in found if pair[0].won), key=lambda pair: pair[0].states)
+    kept, failed, lost = easy[:1], 0, False
+    for known, statement in easy[1:]:
+        objectives = [each for _, other in kept for each in other]
+        won, _ = _decided(scenario, [*objectives, *statement], rules, budget, _SET)
+        if won:
+            kept.append((known, statement))
+        elif not failed:
+            failed, lost = known.line, won is False
+    failed = failed or next((known.line for known in alone if known.won is None), 0)
+    return Decided(alone, tuple(sorted(known.line for known, _ in kept)), failed, lost)
+
+
+def texts(found: Decided) -> List[str]:
+    """What is decided, a line of text for each objective, and one for those that are won together."""
+    lines = [f"line {one.line}, {one.text}: {_outcome(one)}" for one in found.alone]
+    some = f"line{'s' if len(found.together) > 1 else ''} {listed(map(str, found.together))}" if found.together else ""
+    together = [f"Won together: {some}."] if len(found.together) > 1 else []
+    if some and found.next_line:
+        verdict = "Lost" if found.lost else "Not decided"
+        together.append(f"{verdict} together with {'these' if together else some}: line {found.next_line}.")
+    return [*lines, *([" ".join(together)] if together else [])]
+
+
+def _outcome(one: Known) -> str:
+    if one.won is None:
+        return "not decided alone"
+    return f"alone it is {'won' if one.won else 'lost'}, with {one.states} states"
+
+
+def _decided(
+    scenario: Scenario, objectives: Sequence[StatedObjective], rules: Rules, budget: Budget, share: float
+) -> Tuple[Optional[bool], int]:
+    """Whether these alone are won (None: not decided with that share of the budget), and the states of their game."""
+    try:
+        return _verdict(scenario, objectives, rules, budget, share)
+    except LimitHit:
+        return None, 0
+
+
+def _verdict(
+    scenario: Scenario, objectives: Sequence[StatedObjective], rules: Rules, budget: Budget, share: float
+) -> Tuple[bool, int]:
+    part = part_of_scenario(scenario, objectives, rules)
+    rules = rules_for(part, rules)
+    network, objective = played(translate(part), rules), scenario_objective(part)
+    for game in _with_one_robot(network):
+        try:
+            verdict = budget.verdict(cone_of_influence(game, objective), objective, rules.reaction, share * _ONE_ROBOT)
+        except LimitHit:
+            continue
+        if verdict.won:
+            return True, verdict.stats.discrete_states
+    if can_be_shared(network, objective):
+        limits = budget.part(share)
+        shared = won_in_shares(network, objective, rules.reaction, SolveOptions(limits))
+        budget.spend(limits.work if shared is None else min(limits.work, shared.stats.work))
+        if shared is not None:
+            return True, shared.stats.discrete_states
+    verdict = verdict_of(budget, network, objective, rules.reaction, share)
+    return verdict.won, verdict.stats.discrete_states
+
+
+def _with_one_robot(network: Network) -> Iterator[Network]:
+    """The network in which one of several controlled agents gets commands: what is won there is won."""
+    robots = commanded_agents(network)
+    for robot in robots if len(robots) > 1 else ():
+        yield idle(network, set(robots) - {robot})
+
+
+def _statements(scenario: Scenario) -> Iterator[Tuple[str, _Statement]]:
+    """The objectives of each statement, and its text."""
+    found: Dict[Span, List[StatedObjective]] = {}
+    for objective in scenario.objectives:
+        found.setdefault(objective.span, []).append(objective)
+    for some in found.values():
+        first, places = some[0], [each.place.name for each in some if isinstance(each, Patrol)]
+        yield patrol_text(first, places) if isinstance(first, Patrol) else objective_text(first), tuple(some)
