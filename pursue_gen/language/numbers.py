@@ -49,9 +49,14 @@ def decimal_text(number: Number) -> str:
     return f"{'-' if number < 0 else ''}{digits[:-places]}.{digits[-places:]}"
 
 
-def at_most(number: Number) -> str:
+def tenths_above(number: Number) -> Number:
     """An upper bound for people, rounded up to tenths: less is not guaranteed."""
-    return decimal_text(Fraction(ceil(number * 10), 10))
+    return exact(Fraction(ceil(number * 10), 10))
+
+
+def at_most(number: Number) -> str:
+    """The same as a text."""
+    return decimal_text(tenths_above(number))
 
 
 def at_least(number: Number) -> str:

@@ -46,6 +46,7 @@ class Options:
     `margin`: how late it may come at most, in sentences for the README; empty where that was not computed.
     `floor`: a floor plan that lies under the map of the UI's page.
     `guarantee`: in how many time units the strategy comes to the goal at worst; None where that is not known.
+    `answers`: by automata, how many time units after they are due promises are kept at worst, as far as it is known.
     `time_unit`: the default length of a time unit in seconds. `machines`: which machine runs which node; `docker` and
     `systemd`: with files for containers, and for services. `spot_distance`: metres between the robots at one place
     where the scenario does not say where they stand. The rest goes into the manifests.
@@ -60,6 +61,7 @@ class Options:
     within: Optional[Fraction] = None
     margin: str = ""
     guarantee: Optional[Fraction] = None
+    answers: Mapping[str, Fraction] = field(default_factory=dict)
     floor: Optional[Floor] = None
     time_unit: float = 1.0
     machines: Machines = ONE_MACHINE

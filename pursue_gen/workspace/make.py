@@ -10,7 +10,8 @@ from typing import Optional, Tuple
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.proof.worst_case import worst_case
+from pursue_gen.proof.worst_case import answer_times, worst_case
+from pursue_gen.solving.answers import STATES
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.verdict import margin_text, margins
@@ -57,6 +58,7 @@ def options_for(request: SolveRequest, won: Solution, margin: str = "", extras: 
         won.within,
         margin,
         _guarantee(won),
+        answer_times(won.network, won.objective, won.strategy, won.reaction, STATES),
         extras.floor,
         docker=extras.docker,
         systemd=extras.systemd,

@@ -5,14 +5,15 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import ceil
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from pursue_gen.drawing.floor import Floor
-from pursue_gen.language.scenario import Connection, Scenario
+from pursue_gen.language.scenario import Connection, Patrol, Respond, Scenario
 from pursue_gen.language.wording import objective_sentence, objective_words
 from pursue_gen.partition import SubStrategy
 from pursue_gen.partition.strategy_data import number, strategy_data
 from pursue_gen.partition.yaml_text import inline, yaml_text
+from pursue_gen.solving.answers import told
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.status_words import statuses
@@ -46,7 +47,7 @@ def render(
         "reports": inline(reported),
         "connections": inline([_connection(way) for way in scenario.connections]),
         "spots": {robot: table for robot, table in spots.items() if table},
-        "objectives": inline(_objectives(scenario)),
+        "objectives": inline(_objectives(scenario, options.answers)),
     }
     if options.guarantee is not None:
         data["guarantee"] = number(Fraction(ceil(options.guarantee * 1000), 1000))  # a decimal, and never too little
@@ -90,12 +91,17 @@ def _connection(way: Connection) -> List[Any]:
     return [way.a, way.b, number(way.distance), *(["one_way"] if way.one_way else [])]
 
 
-def _objectives(scenario: Scenario) -> List[Dict[str, Any]]:
-    """What is to be achieved: a sentence for each statement, and the automata that watch it; none if it is given up."""
+def _objectives(scenario: Scenario, answers: Mapping[str, Fraction]) -> List[Dict[str, Any]]:
+    """What is to be achieved: a sentence for each statement, and the automata that watch it; none if it is given up.
+    Where it is known for all of these, how late it is kept at worst."""
     watched = stated(scenario)
     found: List[Dict[str, Any]] = []
     for sentence, statement in zip(objective_words(scenario), scenario.statements):
         automata = [name for name, objective in watched.items() if any(objective is each for each in statement)]
         found.append({"says": sentence, "of": automata})
+        due = [(answers[name], watched[name]) for name in automata if name in answers]
+        times = [told(worst, each) for worst, each in due if isinstance(each, (Respond, Patrol))]
+        if times and len(times) == len(automata):
+            found[-1]["worst"] = number(Fraction(max(times)))
     found += [{"says": objective_sentence(scenario, one.objective), "of": []} for one in scenario.given_up]
     return found

@@ -23,10 +23,16 @@ TOLERANCE = 0.2
 
 
 class Objective(NamedTuple):
-    """An objective as a sentence, and the automata that watch it; none where the mission does not promise it."""
+    """An objective as a sentence, and the automata that watch it; none where the mission does not promise it. `worst`:
+    how late, in time units, the workspace's own strategy keeps it at worst; None where that is not known."""
 
     says: str
     of: Tuple[str, ...]
+    worst: Optional[float] = None
+
+    def now(self, state: SystemState) -> str:
+        """The sentence, with that time while the workspace's own strategy is in force."""
+        return self.says if self.worst is None or state.plan else f"{self.says} At worst after {self.worst:g}."
 
 
 class Promise(NamedTuple):
@@ -46,7 +52,7 @@ NOTHING = Promise()
 def read_promise(settings: Mapping[str, Any]) -> Promise:
     """The promise in ui.yaml; an empty one where it is of a version that had none. Raises DataError."""
     try:
-        given = [(str(each["says"]), tuple(map(str, each["of"]))) for each in settings.get("objectives", ())]
+        given = [_objective(each) for each in settings.get("objectives", ())]
         most = settings.get("guarantee")
         number = None if most is None else float(most)
         unneeded = tuple(map(str, settings.get("not_needed", ())))
@@ -55,7 +61,12 @@ def read_promise(settings: Mapping[str, Any]) -> Promise:
         raise DataError(f"ui.yaml lacks or misspells something in {where}: {problem!r}") from problem
     if number is not None and not (math.isfinite(number) and number >= 0):
         raise DataError(f"ui.yaml: guarantee is {most!r}; expected a number of time units")
-    return Promise(tuple(Objective(says, of) for says, of in given), number, unneeded)
+    return Promise(tuple(given), number, unneeded)
+
+
+def _objective(data: Mapping[str, Any]) -> Objective:
+    worst = data.get("worst")
+    return Objective(str(data["says"]), tuple(map(str, data["of"])), None if worst is None else float(worst))
 
 
 def objectives_now(
@@ -69,7 +80,7 @@ def objectives_now(
         texts = dict.fromkeys(status_texts(own, model, state, at).values())
         become = _become(objective, model, state)
         now = [text for text in texts if text != become]
-        found.append({"says": objective.says, "is": become, "now": "; ".join(now)})
+        found.append({"says": objective.now(state), "is": become, "now": "; ".join(now)})
     return found
 
 

@@ -492,6 +492,9 @@ def test_the_page_gets_the_objectives_in_words_and_the_guaranteed_time() -> None
     assert read(known["src/UI/config/ui.yaml"])["guarantee"] == 21.5
     third = generate(*world("thesis/catch_the_thief"), Options(reaction=REACTION, guarantee=Fraction(64, 3)))
     assert read_promise(read(third["src/UI/config/ui.yaml"])).most == 21.334, "a decimal, rounded up"
+    bells = generate(*world("hotel/two_bells"), Options(reaction=REACTION, answers={"obj": Fraction("11.004")}))
+    told = read(bells["src/UI/config/ui.yaml"])["objectives"]
+    assert [each.get("worst") for each in told] == [11.1, None]
     several = read(files("airport/last_call")["src/UI/config/ui.yaml"])["objectives"]
     assert [each["of"] for each in several] == [["reachObj"]] and "within 26 units" in several[0]["says"]
 

@@ -51,6 +51,13 @@ def test_each_objective_is_said_with_what_has_become_of_it() -> None:
     assert become(reachObj="win", obj="lose") == ["reached: ", "broken: ", "not promised: "]
 
 
+def test_the_time_at_worst_is_that_of_the_workspaces_own_strategy() -> None:
+    promise = read_promise({"objectives": [{"says": "bot is at a.", "of": ["obj"], "worst": 41.3}]})
+    here = state(MODEL, 3, 120.0, {"Cobj": 8.5})
+    told = [objectives_now(promise, STATUSES, MODEL, each, 20.0)[0]["says"] for each in (here, here._replace(plan=1))]
+    assert told == ["bot is at a. At worst after 41.3.", "bot is at a."]
+
+
 def test_objectives_are_not_said_twice() -> None:
     statuses = (*STATUSES, Status("Sassumed", "open", {"1": "true"}))
     page = Page(MODEL, FloorPlan({}, ()), statuses=statuses, promise=PROMISE)
