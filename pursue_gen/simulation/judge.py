@@ -19,7 +19,7 @@ from pursue_gen.tga.part import clocks_of
 from pursue_gen.tga.words import event_word
 from pursue_gen.zones.dbm import INF, Dbm, constant
 from pursue_runtime.orders import Order
-from pursue_runtime.state import LIVE, SystemState
+from pursue_runtime.state import ENDED, LIVE, SystemState
 
 
 class TakenStep(NamedTuple):
@@ -88,7 +88,7 @@ class Judge:
             self._check_step(before, state, now)
         elif (state.locations, state.values) != (before.locations, self._with_broken(before, state)):
             self._problem(f"state {state.seq} differs from the one before, but nothing has happened")
-        if state.status != "waiting":
+        if state.status != "waiting" and before.status not in ENDED:  # the clocks of an ended mission stand still
             self._check_clocks(state, now)
 
     def _check_condition(self, state: SystemState) -> None:

@@ -139,3 +139,15 @@ def test_a_state_may_be_published_again_but_not_another_one() -> None:
     changed.locations["thief"] = "d"
     watching.on_state(changed, 2.0)
     assert "published again" in watching.problems[0]
+
+
+@pytest.mark.parametrize("status, wrong", [("running", True), ("stopped", False)])
+def test_the_clocks_of_a_mission_stand_still_once_it_has_ended(status: str, wrong: bool) -> None:
+    watching = judge(faults=True)
+    watching.on_state(first(), 0.0)
+    ended = first(now=1.0, status=status)
+    watching.on_state(ended, 1.0)
+    assert watching.problems == []
+    watching.on_state(ended._replace(stamp=2.0), 2.0)  # an observer that is back has heard a ping
+    assert bool(watching.problems) is wrong
+    assert not wrong or "is 1.0, not 2.0" in watching.problems[0]
