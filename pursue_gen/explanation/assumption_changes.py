@@ -1,4 +1,5 @@
-"""What more could be assumed of others: tighter assumptions, and pauses between calls; as an author writes them."""
+"""What more could be assumed of others, as an author writes it: tighter assumptions, pauses between calls, and places
+to which they do not come."""
 
 from __future__ import annotations
 
@@ -6,15 +7,17 @@ from dataclasses import replace
 from typing import Callable, Iterator, Sequence
 
 from pursue_gen.explanation.number_changes import NumberChange
+from pursue_gen.language.conditions import At, atoms
 from pursue_gen.language.numbers import Number, whole_above, whole_below
-from pursue_gen.language.scenario import AboutOne, AtMost, Leaves, Ref, Respond, Scenario, Waits
+from pursue_gen.language.scenario import AboutOne, Agent, Always, AtMost, Leaves, NeverAt, Ref, Respond, Scenario, Waits
 
 _SHORTEST_STAY = 2
 """Time units within which an agent can leave: whoever arrives rests for one before it can set off."""
 
 
 def assumption_changes(scenario: Scenario, longest: Number) -> Iterator[NumberChange]:
-    """Assumptions with another number, and pauses of up to `longest` time units between two calls that are answered."""
+    """Assumptions with another number, pauses of up to `longest` time units between two calls that are answered, and
+    that agents do not come to places of which an objective says what must never be there."""
     for known in scenario.assumptions:
         if isinstance(known, AtMost):
             yield from _tighter(scenario, known, known.times, range(known.times - 1, 0, -1), _fewer(known))
@@ -23,6 +26,7 @@ def assumption_changes(scenario: Scenario, longest: Number) -> Iterator[NumberCh
         elif isinstance(known, Leaves):
             yield from _tighter(scenario, known, known.time, whole_below(known.time, _SHORTEST_STAY), _sooner(known))
     yield from _pauses(scenario, longest)
+    yield from _elsewhere(scenario)
 
 
 def _fewer(known: AtMost) -> Callable[[int], AtMost]:
@@ -76,6 +80,30 @@ def _pause(scenario: Scenario, agent: Ref, event: Ref, longest: Number) -> Numbe
 
     label = f"assume: {agent.name} waits … between {event.name}"
     return NumberChange("assumption", agent.name, label, 0, whole_above(0, longest), make, say, event.span)
+
+
+def _elsewhere(scenario: Scenario) -> Iterator[NumberChange]:
+    """For each place in a condition that must always, or never, hold, and each agent of whom it is said."""
+    conditions = [safety.condition for safety in scenario.safety if isinstance(safety, Always)]
+    said = [atom for condition in conditions for atom in atoms(condition) if isinstance(atom, At)]
+    known = {(a.agent.name, a.place.name) for a in scenario.assumptions if isinstance(a, NeverAt)}
+    for agent in (agent for agent in scenario.agents if not agent.controllable and agent.mobile is not None):
+        for place in dict.fromkeys(atom.place.name for atom in said if _is_about(atom, agent)):
+            if (agent.name, place) not in known:
+                yield _never_at(scenario, Ref(agent.name, agent.span), Ref(place, agent.span))
+
+
+def _is_about(atom: At, agent: Agent) -> bool:
+    return not atom.who.robots if atom.who.agent is None else atom.who.agent.name == agent.name
+
+
+def _never_at(scenario: Scenario, agent: Ref, place: Ref) -> NumberChange:
+    never = NeverAt(agent, place, agent.span)
+
+    def make(k: int) -> Scenario:
+        return replace(scenario, assumptions=(*scenario.assumptions, never))
+
+    return NumberChange("assumption", agent.name, _text(never), 0, (1,), make, lambda k: _text(never), agent.span)
 
 
 def _text(assumption: AboutOne) -> str:

@@ -84,7 +84,7 @@ def explain(
     found = findings(scenario, rules, budget.split(_FOR_CHANGES))
     network, objective = played(translate(scenario), rules), scenario_objective(scenario)
     together: Optional[Conflict] = None
-    if len(scenario.objectives) > 1:
+    if len(scenario.objectives) > 1 and all(len(part) > 1 for part in parts):
         together = conflict(scenario, rules, budget.split(_FOR_CONFLICT))
     repeating: Tuple[Endless, ...] = ()
     plays: List[Play] = []

@@ -137,6 +137,17 @@ objective: if call then serve within 15
 
 ASSUMED_TWICE = CALLS.replace("call\" at_most 2 times", "call\"") + "assume: guest does call at_most 2 times\n"
 
+WALKS_IN = """poi "hall"
+poi "yard"
+connect hall and yard distance 2
+event "ask"
+event "prune" location hall duration 20
+agent "bot" controllable mobile 1 location hall can_do prune
+agent "guest" mobile 1 location yard can_do ask
+objective: avoid guest at hall and bot doing prune
+objective: if ask then prune within 60
+"""
+
 LINGERING = """poi "hall"
 poi "gate"
 connect hall and gate distance 2
@@ -225,6 +236,7 @@ SMALL = {
     "calls with a short pause": (BAR + "assume: guest waits 6 between call\n", DEFAULT),
     "calls assumed too often": (ASSUMED_TWICE, DEFAULT),
     "a guest who may stay": (LINGERING, DEFAULT),
+    "a guest who walks in": (WALKS_IN, DEFAULT),
     "slow": (SLOW, DEFAULT),
     "shy": (SHY, DEFAULT),
     "shy, ideal": (SHY, IDEAL),
@@ -252,6 +264,7 @@ def test_each_change_that_is_claimed_wins_and_the_next_smaller_one_does_not(name
         ("calls with a short pause", "assume: guest waits 20 between call instead of 6"),
         ("calls assumed too often", "assume: guest does call at_most 1 times instead of 2"),
         ("a guest who may stay", "assume: guest leaves hall within 21 instead of 30"),
+        ("a guest who walks in", "assume: guest never at hall"),
     ],
 )
 def test_what_more_has_to_be_assumed_of_others_is_a_statement(name: str, claim: str) -> None:
