@@ -22,6 +22,7 @@ from pursue_gen.explanation.together import Conflict, conflict
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import listed, statement_text
 from pursue_gen.outcomes import LimitHit
+from pursue_gen.solving.lost_promises import quoted
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
@@ -31,9 +32,10 @@ from pursue_gen.tga import scenario_objective, translate
 WORK = 150_000_000
 """The work of an explanation: ten to thirty seconds."""
 
-_FOR_WHOLE, _FOR_CHANGES, _FOR_CONFLICT, _FOR_ENDLESS = 0.03, 0.5, 0.2, 0.1
-"""The part of what is left of the budget for the scenario as it is, where fewer promises are known to be lost; for
-changes; for which objectives exclude each other; and for whether time has to pass. The rest is for plays."""
+_FOR_WHOLE, _FOR_ALL, _FOR_CHANGES, _FOR_CONFLICT, _FOR_ENDLESS = 0.03, 0.5, 0.5, 0.2, 0.1
+"""The part of what is left of the budget, where fewer promises are known to be lost, for the scenario as it is, and for
+its explanation; for changes; for which objectives exclude each other; and for whether time has to pass. The rest is for
+plays."""
 
 _LINES, _FIRST_LINES = 10, 3
 """So many lines of a play are shown, and so many of its beginning where it is longer."""
@@ -48,8 +50,8 @@ class Explanation:
     decided within the limits; a play that is lost whatever the controller does (empty: not found within them); what
     else the controller could begin with, and why that fails too; and who prevents the objective without time passing
     (empty: it is prevented in plays in which time passes, or that is not decided). `conflict`: of several objectives
-    those that cannot be promised together. `preventing`: whom nobody controls and who acts in the play. `alone`: all
-    this is about the objectives of the first finding, with nothing else promised.
+    those that cannot be promised together. `preventing`: whom nobody controls and who acts in the play. `about`: all
+    this is about these objectives alone, with nothing else promised; `others`: about others that are lost alone.
     """
 
     changes: Tuple[Change, ...]
@@ -60,7 +62,8 @@ class Explanation:
     endless: Tuple[Endless, ...] = ()
     conflict: Optional[Conflict] = None
     preventing: Tuple[str, ...] = ()
-    alone: bool = False
+    about: Tuple[str, ...] = ()
+    others: Tuple[Explanation, ...] = ()
 
 
 def explain(
@@ -73,18 +76,31 @@ def explain(
     """Explains a scenario that is lost under these rules (that it is lost is not looked at), within the limits.
 
     Their seconds (none that nobody has set) and their work (WORK where they name none) are for everything, the memory
-    for each game that is solved, which `progress` reports. `parts`: as in `Lost`; where several are lost alone, or all
-    is too large to be looked at, the explanation is about the first one.
+    for each game that is solved, which `progress` reports. `parts`: as in `Lost`; where several are lost alone, each is
+    explained alone, and so is a single one where the whole is too large to be looked at, or no change is enough for it.
     """
-    limits = replace(limits.chosen, work=limits.work or WORK)
-    budget, alone = Budget(limits, progress, phase=EXPLAINING), False
-    if parts and (len(parts) > 1 or not _is_small(scenario, rules, budget)):
-        scenario, alone = part_of_scenario(scenario, statements_of(scenario, parts[0]), rules), True
-        rules = rules_for(scenario, rules)
+    budget = Budget(replace(limits.chosen, work=limits.work or WORK), progress, phase=EXPLAINING)
+    if not parts:
+        return _explained(scenario, rules, budget)
+    if len(parts) == 1 and _is_small(scenario, rules, budget):
+        whole = _explained(scenario, rules, budget.split(_FOR_ALL), len(parts[0]) > 1)
+        if whole.changes:
+            return whole
+    found: List[Explanation] = []
+    for k, part in enumerate(parts):
+        statements = statements_of(scenario, part)
+        some = part_of_scenario(scenario, statements, rules)
+        one = _explained(some, rules_for(some, rules), budget.split(1 / (len(parts) - k)), len(part) > 1)
+        found.append(replace(one, about=tuple(dict.fromkeys(map(quoted, statements)))))
+    return replace(found[0], others=tuple(found[1:]))
+
+
+def _explained(scenario: Scenario, rules: Rules, budget: Budget, conflicting: bool = True) -> Explanation:
+    """The explanation of what is lost; `conflicting`: it may be that some of its objectives are not to blame."""
     found = findings(scenario, rules, budget.split(_FOR_CHANGES))
     network, objective = played(translate(scenario), rules), scenario_objective(scenario)
     together: Optional[Conflict] = None
-    if len(scenario.objectives) > 1 and all(len(part) > 1 for part in parts):
+    if conflicting and len(scenario.objectives) > 1:
         together = conflict(scenario, rules, budget.split(_FOR_CONFLICT))
     repeating: Tuple[Endless, ...] = ()
     plays: List[Play] = []
@@ -95,7 +111,7 @@ def explain(
     main = describe(scenario, plays[0]) if plays else ()
     attempts = tuple(attempt(scenario, play) for play in plays[1:])
     how = found.changes, found.lost, found.undecided, main, attempts, repeating, together
-    return Explanation(*how, _preventing(scenario, main), alone)
+    return Explanation(*how, _preventing(scenario, main))
 
 
 def _is_small(scenario: Scenario, rules: Rules, budget: Budget) -> bool:
@@ -133,12 +149,16 @@ def render(explanation: Explanation, width: int = 110) -> str:
         lines += [line for text in attempt_texts(explanation) for line in _wrapped(text, width)]
     lines += _listed("Not enough alone:", explanation.lost, width)
     lines += _listed("Not decided within the limits:", explanation.undecided, width)
+    if explanation.others:
+        lines.insert(0, f"{listed(explanation.about)}:")
+    for other in explanation.others:
+        lines += [f"{listed(other.about)}:", render(other, width).rstrip()]
     return "\n".join(lines) + "\n"
 
 
 def how_found(explanation: Explanation) -> str:
     """How the changes were found."""
-    return f"found by solving again{', with nothing else promised' if explanation.alone else ''}"
+    return f"found by solving again{', with nothing else promised' if explanation.about else ''}"
 
 
 def play_title(explanation: Explanation) -> str:
@@ -192,7 +212,8 @@ def as_json(explanation: Explanation) -> Dict[str, Any]:
         "attempts": [asdict(one) for one in explanation.attempts],
         "endless": [asdict(one) for one in explanation.endless],
         "preventing": list(explanation.preventing),
-        "alone": explanation.alone,
+        "about": list(explanation.about),
+        "others": [as_json(other) for other in explanation.others],
         "conflict": [statement_text(one) for one in explanation.conflict.objectives] if explanation.conflict else [],
     }
 

@@ -12,7 +12,15 @@ from pursue_gen.explanation.explain import Explanation, attempt_texts, endless_t
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.numbers import decimal_text
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import assumption_words, kind_words, objective_words, promise_words, speed_words, units
+from pursue_gen.language.wording import (
+    assumption_words,
+    kind_words,
+    listed,
+    objective_words,
+    promise_words,
+    speed_words,
+    units,
+)
 from pursue_gen.partition import unneeded, unneeded_words
 from pursue_gen.report.html import Section, table
 from pursue_gen.solving.answers import answers
@@ -80,7 +88,13 @@ def _lost(lost: Lost, others: bool) -> List[str]:
         parts.append("<p>" + " ".join(f"{safe(text[:1].upper() + text[1:])}." for text in sentences) + "</p>")
     if lost.costs is not None:
         parts += [f"<p>{safe(line)}</p>" for line in in_words(lost.costs).splitlines()]
-    return parts + (_explained(lost.explanation) if lost.explanation else [])
+    if lost.explanation is None:
+        return parts
+    several = (lost.explanation, *lost.explanation.others)
+    for one in several:
+        parts += [f"<h3>{safe(listed(one.about))}</h3>"] if len(several) > 1 else []
+        parts += _explained(one)
+    return parts
 
 
 def _explained(explanation: Explanation) -> List[str]:

@@ -148,11 +148,12 @@ def in_words(problem: Lost, scenario: Scenario) -> Lost:
     objectives, findings = stated(scenario), list(problem.diagnostics)
     for k, names in enumerate(problem.parts):
         some = [objectives[name] for name in names]
-        before, after = cannot_be_promised(names), cannot_be_promised(map(_quoted, some))
+        before, after = cannot_be_promised(names), cannot_be_promised(map(quoted, some))
         message = after + findings[k].message[len(before) :]
         findings[k] = replace(findings[k], message=message, span=some[0].span)
     return Lost(findings, problem.parts)
 
 
-def _quoted(objective: StatedObjective) -> str:
+def quoted(objective: StatedObjective) -> str:
+    """An objective as it is written, with its line."""
     return f'"{objective_text(objective)}" (line {objective.span.line})'

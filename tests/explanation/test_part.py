@@ -91,9 +91,10 @@ def test_an_event_that_may_matter_stays(before: str, after: str) -> None:
 
 
 def test_the_least_deadline_is_that_of_the_part_and_of_the_promise_in_the_whole_game() -> None:
-    explanation = explain(shop(40), RULES, parts=(("obj2",), ("obj",)))
+    explanation = explain(shop(40), RULES, parts=(("obj2",), ("obj2",)))
     (change,) = (one for one in explanation.changes if one.what == "deadline")
-    assert explanation.alone and change.least and (change.before, change.after, change.next_lost) == ("40", "55", "54")
+    assert explanation.about == ('"if orderB then packB within 40" (line 26)',)
+    assert change.least and (change.before, change.after, change.next_lost) == ("40", "55", "54")
     assert not is_won(part_of(int(change.next_lost))) and is_won(part_of(int(change.after)))
     text = render(explanation)
     assert "with nothing else promised" in text and "How it goes wrong, for example: shop prevents it" in text
@@ -105,7 +106,27 @@ def test_a_small_scenario_is_explained_as_a_whole() -> None:
     lines = (line for line in SHOP.format(deadline=40).splitlines() if not any(word in line for word in left_out))
     text = "\n".join(lines) + "\nobjective: patrol packing every 500 by cart1"
     explanation = explain(parse(text, "shop.pur"), RULES, parts=(("obj",),))
-    assert not explanation.alone and "deadline" in {change.what for change in explanation.changes}
+    assert not explanation.about and "deadline" in {change.what for change in explanation.changes}
+
+
+def test_each_of_several_that_are_lost_alone_is_explained() -> None:
+    scenario = parse(CARE.replace("within 40", "within 8").replace("within 30", "within 16"), "care.pur")
+    explanation = explain(scenario, RULES, parts=(("obj",), ("obj2",)))
+    text = render(explanation)
+    first, second = text.split('"if ring3 then nora at room3 within 16" (line 14):\n')
+    assert first.startswith('"if ring1 then nora at room1 within 8" (line 13):\n')
+    for part, least in ((first, "a deadline of 13 instead of 8"), (second, "a deadline of 21 instead of 16")):
+        assert least in part and "too late: not once" in part
+    (other,) = as_json(explanation)["others"]
+    assert other["about"] == ['"if ring3 then nora at room3 within 16" (line 14)']
+    assert other["preventing"] == ["resident3"]
+
+
+def test_where_no_change_is_enough_for_all_what_is_lost_alone_is_explained() -> None:
+    text = CARE.replace("within 40", "within 8") + "objective: avoid ring3\n"
+    explanation = explain(parse(text, "care.pur"), RULES, parts=(("obj3",),))
+    assert explanation.about == ('"avoid ring3" (line 15)',)
+    assert explanation.play[-1].text == "ring3 has happened, which was to be avoided"
 
 
 def test_a_long_play_is_told_by_its_beginning_and_its_end() -> None:
