@@ -164,3 +164,10 @@ def test_it_starts_the_mission_plays_the_trace_and_says_how_it_ended(
     lines = [line.strip() for line in done.stdout.splitlines()]
     assert lines[0] == "example: waiting for observer, controller_bot"
     assert lines[-2:] == ["3.0  thief sets off from a to b", says]
+
+
+def test_a_mission_that_no_observer_starts_is_not_waited_for(package: Path, where: Dict[str, str]) -> None:
+    with ObserverStub({**where, "LAST_STATUS": ""}):
+        done = run(package, where, "--mode", "still", "--wait", str(PATIENCE), "__name:=unanswered")
+    assert done.returncode == 1, done.stderr
+    assert done.stdout.splitlines()[-1] == "The observer does not answer _start_."

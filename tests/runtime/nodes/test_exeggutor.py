@@ -1,10 +1,11 @@
-"""A controller publishes no command for a robot that cannot get the order, or is not where the action begins."""
+"""A controller publishes no command for a robot that cannot get the order, or is not where the action begins; what it
+takes from states, says again to an observer, and calls back."""
 
 from __future__ import annotations
 
 import threading
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, List
 
 import pytest
 
@@ -12,7 +13,9 @@ pytest.importorskip("rospy", reason="ROS is not installed")
 
 import rospy
 
+from pursue_runtime.controller.whereabouts import Place
 from pursue_runtime.nodes.exeggutor import Exeggutor
+from pursue_runtime.state import HOLDING, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 from pursue_runtime.strategy import Command
 
 GO = Command("bot_a2b", "bot", "a", "going_a_to_b", ())
@@ -54,3 +57,34 @@ def test_who_is_not_connected_gets_no_command_and_the_operator_reads_why() -> No
     assert deaf.troubles() == {"bot": why}
     assert deaf.may_begin(GO) and deaf.troubles() == {}
     assert not executor(goals="no goals").may_begin(GO) and deaf.may_begin(UNLOCK)
+
+
+@pytest.mark.parametrize("status, here", [(RUNNING, "a"), (HOLDING, "a"), (WAITING, ""), (WON, ""), (STOPPED, "")])
+def test_a_robot_has_a_place_in_a_mission_that_is_under_way_and_goes_on_where_it_runs(status: str, here: str) -> None:
+    made = executor()
+    made._ways, made._places = {"bot": {}}, {"bot": {"a": Place("a", 0.0, 0.0)}}
+    view = made._view("bot", SystemState(3, 100.0, {"bot": "a"}, {}, {}, status=status, held=("bot",)))
+    assert (view.location, view.running, view.held) == (here, status == RUNNING, True)
+    assert (view.post is not None) == bool(here)
+
+
+def test_an_observer_that_connects_hears_every_report_again_and_then_that_these_are_all() -> None:
+    made, said = executor(), []  # type: ignore[var-annotated]
+    made._robots = {name: SimpleNamespace(say_again=lambda name=name: said.append(name)) for name in ("bot1", "bot2")}
+    made._act, made.on_observer = lambda: said.append("published"), lambda: said.append("all")
+    made._say_again()
+    assert said == ["bot1", "bot2", "published", "all"]
+
+
+@pytest.mark.parametrize("status, on_stop, goal, cancelled", [
+    (RUNNING, "cancel", "g1", ["g1"]), (LOST, "cancel", "g1", ["g1"]), (WON, "cancel", "g1", []),
+    (RUNNING, "keep", "g1", []), (RUNNING, "cancel", "", []),
+])  # fmt: skip
+def test_a_node_that_ends_calls_back_whom_it_has_sent_unless_all_is_well(
+    status: str, on_stop: str, goal: str, cancelled: List[str]
+) -> None:
+    made, told = executor(), []  # type: ignore[var-annotated]
+    made._robots = {"bot": SimpleNamespace(goal=goal, settings=SimpleNamespace(on_stop=on_stop))}
+    made._links, made._status = {"bot": SimpleNamespace(cancel=told.append)}, status
+    made._call_back()
+    assert told == cancelled

@@ -1,7 +1,9 @@
-"""A node whose launch was for another roscore does nothing: its parameters are lost, and nobody told it what to do."""
+"""A node whose launch was for another roscore does nothing: its parameters are lost, and nobody told it what to do. One
+that is interrupted knows whether its own master is gone, and the worst of what it has to report counts."""
 
 from __future__ import annotations
 
+import socket
 import subprocess
 import sys
 
@@ -10,6 +12,10 @@ import pytest
 from tests.waiting import PATIENCE
 
 pytest.importorskip("rospy", reason="ROS is not installed")
+
+import rosgraph
+
+from pursue_runtime.nodes.node import ERROR, OK, STALE, WARN, master_is_gone, worse
 
 PROGRAM = """
 import sys
@@ -52,3 +58,19 @@ def test_a_node_that_is_started_again_for_another_roscore_does_nothing() -> None
     done = begun(OTHER, "__name:=UI", log(MINE))
     assert done.returncode == 1
     assert "start roslaunch again" in done.stdout and "begins" not in done.stdout
+
+
+def test_a_master_is_gone_where_its_port_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        address = f"http://127.0.0.1:{server.getsockname()[1]}/"
+        monkeypatch.setattr(rosgraph, "get_master_uri", lambda: address)
+        assert not master_is_gone()
+    assert master_is_gone()
+    monkeypatch.setattr(rosgraph, "get_master_uri", lambda: "http://127.0.0.1:none/")
+    assert not master_is_gone(), "that is not known"
+
+
+def test_an_error_is_worse_than_old_news_and_these_than_a_warning() -> None:
+    levels = [OK, WARN, STALE, ERROR]
+    for number, level in enumerate(levels):
+        assert [worse(level, other) for other in levels] == [levels[max(number, k)] for k in range(4)]
