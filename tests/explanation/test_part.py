@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import json
+import re
+from contextlib import suppress
 
 import pytest
 
+from benchmarks.lab_scenarios import Size, lab_scenario
 from pursue_gen.explanation.explain import Explanation, as_json, explain, render
-from pursue_gen.explanation.part import part_of_scenario, statements_of
+from pursue_gen.explanation.part import part_of_scenario, statements_of, with_objectives
 from pursue_gen.explanation.play import counter_plays
 from pursue_gen.explanation.texts import TimedLine, describe
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 
@@ -59,8 +64,9 @@ def part_of(deadline: int) -> Scenario:
     return part_of_scenario(scenario, statements_of(scenario, ("obj2",)), RULES)
 
 
-def is_won(scenario: Scenario) -> bool:
-    return solve(played(translate(scenario), RULES), scenario_objective(scenario), RULES.reaction).won
+def is_won(scenario: Scenario, work: int = 0) -> bool:
+    limits = Limits(work=work)
+    return solve(played(translate(scenario), RULES), scenario_objective(scenario), RULES.reaction, limits=limits).won
 
 
 def test_the_part_has_what_matters_to_the_promise_and_nothing_else() -> None:
@@ -165,3 +171,19 @@ def test_a_play_against_few_calls_is_found_where_the_game_of_all_calls_is_too_la
     network, objective = played(translate(scenario), RULES), scenario_objective(scenario)
     play = next(counter_plays(network, objective, RULES.reaction, Budget(Limits(work=60_000_000))))
     assert play.end == "overdue" and describe(scenario, play)[-1].text.startswith("too late")
+
+
+@pytest.mark.skipif(not native.available(), reason="takes minutes in the Python engine")
+@pytest.mark.parametrize("seed", range(6))
+def test_an_objective_of_a_random_scenario_is_won_in_its_part_where_it_is_won_alone(seed: int) -> None:
+    text = lab_scenario(seed, Size(places=4, robots=2, people=1, promises=3))
+    for factor in (1, 4):
+        scenario = parse(shortened(text, factor), "lab.pur")
+        for statement in scenario.statements:
+            part = part_of_scenario(scenario, statement, RULES)
+            with suppress(LimitHit):
+                assert is_won(part, 5_000_000) is is_won(with_objectives(scenario, statement), 5_000_000)
+
+
+def shortened(text: str, factor: int) -> str:
+    return re.sub(r"within (\d+)", lambda found: f"within {int(found.group(1)) // factor}", text)
