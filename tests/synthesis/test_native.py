@@ -11,8 +11,10 @@ from hypothesis import HealthCheck, given, settings
 from benchmarks.families import catch_by_places
 from pursue_gen.language import load, parse
 from pursue_gen.proof.checker import verify
+from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import Game, State, joint_moves
+from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.native.engine import NativeEngine
 from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.synthesis.solve import solve
@@ -122,3 +124,25 @@ def test_a_search_that_has_to_open_states_again_and_again_stays_right(reaction: 
     scenario = parse(RING, "ring.pur")
     game = compile_game(translate(scenario), scenario_objective(scenario), reaction)
     assert not NATIVE.solve(game).won, "on a ring of four a thief outruns two officers"
+
+
+def test_what_few_moves_win_bit_by_bit_is_decided_with_all_of_them() -> None:
+    """A robot that has to be at two places again and again wins a little more with each round, as long as it does not
+    try what does not lead to the goal."""
+    text = """
+    poi "store"
+    poi "desk"
+    connect store and desk distance 5
+    event "sign" location desk duration 9
+    event "call" at_most 3 times
+    event "meet" collaborative location store
+    agent "bot" controllable mobile 1 location store can_do sign, meet
+    agent "guest" mobile 2 location store can_do call reacts_to meet
+    objective: patrol store, desk every 41 by bot
+    reach_objective: do meet and sign after 6 within 60
+    """
+    scenario = parse(text, "x.pur", "x")
+    game = played(translate(scenario), Rules()), scenario_objective(scenario), Fraction(1, 10)
+    verdict = solve(*game, "native", Limits(seconds=60))
+    assert not verdict.won and verdict.stats.work < 20_000_000
+    assert not solve(*game, "native", soonest=True).won

@@ -226,9 +226,10 @@ class Reach : public Fixpoint<Z> {
 };
 
 // First the game as it is, for `small_budget`, which is enough for many, and (unless that is 0) for as long as it only
-// explores or takes few zones for an evaluation: a search with fewer zones would do the same again. Then two searches take
-// turns, each with twice the work of its turn before: one keeps few zones per state, more of them where it ends without a
-// win; what it wins is won.
+// explores or takes few zones for an evaluation: a search with fewer zones would do the same again. Then three searches
+// take turns, each with twice the work of its turn before. One keeps few zones per state, more of them where it ends
+// without a win; what it wins is won. One, from the second turn on, has all moves from the start: with few of them what is
+// won can grow by a little in each round of a play, over and over, before the others are tried.
 // `soonest`: the one search with all moves, see Reach.
 template <class Z>
 std::pair<bool, std::unique_ptr<Reach<Z>>> solve_reach(const Game& game, LimitMonitor& monitor, double small_budget,
@@ -245,9 +246,10 @@ std::pair<bool, std::unique_ptr<Reach<Z>>> solve_reach(const Game& game, LimitMo
     const Verdict first = exact->resume(small_budget);
     if (first != Verdict::open) return {first == Verdict::won, std::move(exact)};
     std::size_t most = 1;
-    std::unique_ptr<Reach<Z>> coarse;
-    bool alone = true;
+    std::unique_ptr<Reach<Z>> coarse, all;
+    bool alone = true, too_large = false;
     for (double budget = std::max(small_budget, 1.0);; budget *= 2) {
+        if (!alone && !all && !too_large) all = std::make_unique<Reach<Z>>(game, monitor, 0, true);
         if (alone && (small_budget <= 0 || !exact->is_cheap())) {
             alone = false;
             coarse = std::make_unique<Reach<Z>>(game, monitor, most);
@@ -262,6 +264,14 @@ std::pair<bool, std::unique_ptr<Reach<Z>>> solve_reach(const Game& game, LimitMo
         }
         const Verdict verdict = exact->resume(budget);
         if (verdict != Verdict::open) return {verdict == Verdict::won, std::move(exact)};
+        try {
+            const Verdict with_all = all ? all->resume(budget) : Verdict::open;
+            if (with_all != Verdict::open) return {with_all == Verdict::won, std::move(all)};
+        } catch (const Limit& limit) {
+            if (std::string(limit.what()) != "states") throw;
+            too_large = true;  // few moves may do with fewer states
+            all.reset();
+        }
     }
 }
 
