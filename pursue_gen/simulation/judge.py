@@ -223,23 +223,25 @@ class Judge:
     def on_order(self, order: Order, seq: int, newest: int, again: bool) -> None:
         """A controller sends its robot an order, because of state `seq`, when `newest` is the newest that it knows.
 
-        `again`: it was restarted, and may send it once more, while the state that follows is on its way.
+        `again`: it was restarted, and may send it once more, while the state that follows is on its way. An order of
+        something that is done at once stands until it is acknowledged, whatever the robot does next.
         """
         agent, trigger, target = order.agent, order.event, order.location
         partners = {(step.seq, step.event) for step in self.steps if step.agent != agent}
         if order.at_once and (order.seq, trigger) in partners:
             return  # it takes part in what another agent has done
-        steps = (step for step in (*self.steps, *self._joined) if step.seq <= seq and step.agent == agent)
+        newest_step = min(seq, order.seq) if order.at_once else seq
+        steps = (step for step in (*self.steps, *self._joined) if step.seq <= newest_step and step.agent == agent)
         last = max(steps, key=lambda step: step.seq, default=None)
         what = f"{agent} gets the order {trigger} ({target})"
         if seq < newest:
             self._problem(f"wrong order: {what}, as of state {seq}, though state {newest} is known")
         elif last is None or (last.target, True) != (target, last.commanded):
             self._problem(f"wrong order: {what}, which is not what was last commanded")
-        elif is_under_way(target):
+        elif is_under_way(target) and not order.at_once:
             here = self._before.locations.get(agent) if self._before is not None else None
             lost = self._before is not None and agent in self._before.lost  # what it did together does not wait for it
-            if here != target and not again and not lost and not order.at_once:
+            if here != target and not again and not lost:
                 self._problem(f"wrong order: {what}, which is over already")
         elif (agent, last.seq) in self._ordered and not again:
             self._problem(f"wrong order: {what}, for the second time")

@@ -11,7 +11,7 @@ import pytest
 from stages import THIEF, files, missions, sabotaged, solved, stage
 
 from pursue_gen.simulation.commands import commands_of
-from pursue_gen.simulation.judge import Judge
+from pursue_gen.simulation.judge import Judge, TakenStep
 from pursue_gen.simulation.outcome import FAILED, Outcome, Settings
 from pursue_runtime.controller.scheduler import CommandScheduler
 from pursue_runtime.observer.automata import Automata
@@ -151,3 +151,23 @@ def test_the_clocks_of_a_mission_stand_still_once_it_has_ended(status: str, wron
     watching.on_state(ended._replace(stamp=2.0), 2.0)  # an observer that is back has heard a ping
     assert bool(watching.problems) is wrong
     assert not wrong or "is 1.0, not 2.0" in watching.problems[0]
+
+
+def test_what_is_done_at_once_may_be_ordered_after_the_next_step_but_only_once() -> None:
+    halt = Order("polBot1", "halt", 7, "going_a_to_b", at_once=True)
+    for order, again, problem in (
+        (halt, False, ""),
+        (halt, True, ""),
+        (halt._replace(seq=6), False, "not what was last commanded"),
+        (halt._replace(location="b"), False, "not what was last commanded"),
+    ):
+        watching = judge(faults=True)
+        watching.steps.append(TakenStep(7, "polBot1", "halt", "going_a_to_b", True))
+        watching.steps.append(TakenStep(8, "polBot1", "polBot1_going_a_to_b2b", "b", False))
+        watching.on_order(order, 9, 9, again)
+        assert [problem in found for found in watching.problems] == ([True] if problem else [])
+    watching = judge(faults=True)
+    watching.steps.append(TakenStep(7, "polBot1", "halt", "going_a_to_b", True))
+    watching.on_order(halt, 9, 9, False)
+    watching.on_order(halt, 9, 9, False)
+    assert "for the second time" in watching.problems[0]
