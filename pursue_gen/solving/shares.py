@@ -30,7 +30,7 @@ from pursue_gen.synthesis.strategy import Place, Strategy
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.hidden import HIDDEN, is_loosened, why_not_hidden, with_hidden
 from pursue_gen.tga.network import Kind, Network, Objective
-from pursue_gen.tga.part import part_of, variables_of
+from pursue_gen.tga.part import clocks_of, part_of, variables_of
 from pursue_gen.tga.pauses import pauses
 
 WORK = 200_000_000
@@ -228,7 +228,7 @@ class _Search:
 
     def _solved(self, game: Network, wanted: Objective) -> Optional[Strategy]:
         free = self._free and bool(pauses(game))
-        if len(game.clocks) > _CLOCKS:
+        if len({clock for automaton in game.automata for clock in clocks_of(automaton)}) > _CLOCKS:
             return None
         share = min(1.0, _GAME / max(1, self._budget.work))
         try:

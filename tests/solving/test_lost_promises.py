@@ -16,6 +16,7 @@ from pursue_gen.solving.optional import promised_of
 from pursue_gen.solving.options import DEFAULT
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.shares import won_in_shares
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
@@ -180,3 +181,11 @@ def test_promises_of_random_scenarios_that_are_called_lost_are_lost(seed: int) -
 def shortened(line: str, factor: int) -> str:
     head, within, time = line.partition(" within ")
     return f"{head}{within}{int(time) // factor}" if within and line.startswith("objective") else line
+
+
+@pytest.mark.skipif(not native.available(), reason="takes minutes in the Python engine")
+def test_somebody_who_does_nothing_takes_no_shares_away() -> None:
+    text = lab_scenario(24)  # its person2 has a clock, and nothing to do
+    assert 'agent "person2" location' in text and "can_do" not in text
+    network, objective = game(text)
+    assert won_in_shares(network, objective, Rules().reaction, DEFAULT) is not None
