@@ -103,6 +103,8 @@ class SimulatedAgent:
             self._acknowledge()
         if order.at_once or order.location != self._place or seq < self._since or not is_under_way(self._place):
             return
+        if self._begun == self._since:
+            return  # given again by a controller that was started again
         now = self._events.now
         in_time = now <= self._stamp + self._promised + 1e-6
         action = action_of(self._place) if is_action(self._place) else ""

@@ -75,6 +75,23 @@ def test_an_order_for_what_is_over_begins_nothing_else(location: str, after: boo
     assert robot.reports != []
 
 
+def test_a_goal_that_is_given_again_just_before_the_arrival_is_none_for_the_next_movement() -> None:
+    robot = Robot()
+    robot.enter(2, THERE)
+    robot.order(THERE, 2)
+    robot.wait(12.0)
+    robot.order(THERE, 2)  # its controller was started again
+    robot.enter(3, "b")
+    robot.wait(1.0)
+    robot.reports.clear()
+    robot.enter(4, BACK)
+    robot.wait(20.0)
+    assert robot.reports == []
+    robot.order(BACK, 4)
+    robot.wait(12.0)
+    assert robot.reports == ["bot1_going_b_to_c2c#4"]
+
+
 def test_a_robot_breaks_down_in_what_it_does_and_ends_nothing_else_when_it_can_go_on() -> None:
     robot = Robot(Breakdown("bot1", 1, 0.5, reported=True, back=4.0))
     robot.enter(2, THERE)
