@@ -25,6 +25,7 @@ from pursue_gen.proof.stages import Part, parts_of
 from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits, Listener
 from pursue_gen.synthesis.strategy import Command, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.watchers import with_watchers
 
 LIMIT = 1_000_000
 """So many symbolic states are explored unless the caller says otherwise; the published plans need up to some 30,000, a
@@ -86,6 +87,7 @@ def verify(
     if reaction < 0:
         raise PursueError([error("SYN103", f"the reaction time is {reaction}", hint="give 0 or more time units")])
     prompt = reaction == 0 if prompt is None else prompt
+    network = with_watchers(network, strategy.watchers)
     if strategy.in_parts:
         if strategy.stages and strategy.left_out_clocks:
             return Report(False, "left out: a strategy in stages leaves no clock out", (), frozenset(), 0)

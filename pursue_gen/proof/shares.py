@@ -13,13 +13,16 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import AbstractSet, FrozenSet, Iterator, List, Sequence, Set, Tuple
 
+from pursue_gen.language.network_names import LOSE
 from pursue_gen.proof.left_out import why_it_matters, with_clocks_of
 from pursue_gen.proof.live import Commanded, Extent, commanded, live
 from pursue_gen.proof.stages import Part
-from pursue_gen.synthesis.strategy import Block, Strategy
-from pursue_gen.tga.hidden import HIDDEN, with_hidden
+from pursue_gen.proof.watched import why_it_may_miss
+from pursue_gen.synthesis.strategy import Block, Place, Strategy
+from pursue_gen.tga.hidden import HIDDEN, has_hidden, with_hidden
 from pursue_gen.tga.network import Automaton, Kind, Network, Objective, with_controllability
-from pursue_gen.tga.part import part_of
+from pursue_gen.tga.part import part_of, without_unnamed_clocks
+from pursue_gen.tga.watchers import Watcher
 
 Names = Tuple[FrozenSet[str], FrozenSet[str]]
 """The automata and the variables that a block names."""
@@ -32,22 +35,28 @@ def shares_of(network: Network, objective: Objective, strategy: Strategy) -> Ite
     numbers = [strategy.numbers_of(k, avoided[0]) for k, avoided in enumerate(strategy.shares) if avoided]
     shares = [[strategy.blocks[n] for n in some] for some in numbers]
     alive, extent = live(network, commanded(strategy.blocks))
-    fault = fault or _misnamed(network, shares) or _unguarded(objective, shares, extent)
+    fault = fault or _misnamed(network, shares)
+    watchers = [] if fault else [_watchers_of(strategy, k, blocks) for k, blocks in enumerate(shares)]
+    watched = {watcher.objective for some in watchers for watcher in some}
+    fault = fault or _unguarded(objective, shares, watched, extent)
     if fault:
         yield Part(0, network, objective, strategy, (), fault)
         return
     for k, blocks in enumerate(shares):
         automata, variables = names_of(blocks[0])
-        others = {name for some in shares if some is not blocks for name in names_of(some[0])[0]}
+        others = {name for some in shares if some is not blocks for name in names_of(some[0])[0]} | watched
         game = left_to_others(alive, commanded(b for some in shares if some is not blocks for b in some))
         own = Strategy(tuple(blocks))
-        part = with_clocks_of(part_of(game, automata, variables), network, own)
+        part = with_clocks_of(without_unnamed_clocks(part_of(game, automata, variables)), network, own)
         own = replace(own, left_out_clocks=tuple(clock for clock in strategy.left_out_clocks if clock in part.clocks))
-        wanted = Objective(Kind.SAFETY, bad=tuple(place for place in objective.bad if place[0] in automata))
+        known = (*objective.bad, *(_place_of(watcher) for watcher in watchers[k]))
+        wanted = Objective(Kind.SAFETY, bad=tuple(place for place in known if place[0] in automata))
         stays = {name: set() if name in others else places for name, places in extent.places.items()}
         fault = why_it_matters(game, wanted, part, stays, hiding=True)
+        for watcher in watchers[k]:
+            fault = fault or why_it_may_miss(game, watcher, automata, variables)
         seen = with_hidden(game, part)
-        yield Part(k, seen, wanted, own if seen is part else _beside_hidden(own), numbers[k], fault)
+        yield Part(k, seen, wanted, _beside_hidden(own) if has_hidden(seen) else own, numbers[k], fault)
         if fault:
             return
 
@@ -77,6 +86,18 @@ def names_of(block: Block) -> Names:
     return frozenset(name for name, _ in block.state.locations), frozenset(name for name, _ in block.state.values)
 
 
+def _watchers_of(strategy: Strategy, share: int, blocks: Sequence[Block]) -> List[Watcher]:
+    """The watchers that the share names, and whose objectives it keeps so."""
+    named, avoided = names_of(blocks[0])[0], strategy.shares[share]
+    kept = (w for w in strategy.watchers if w.name in named and w.objective not in named)
+    return [watcher for watcher in kept if (watcher.objective, LOSE) in avoided]
+
+
+def _place_of(watcher: Watcher) -> Place:
+    """What a watcher's robots have to avoid."""
+    return watcher.name, LOSE
+
+
 def _misplaced(network: Network, objective: Objective, strategy: Strategy) -> str:
     """Why these shares cannot be those of a strategy for the objective; "" if they may."""
     if any(automaton.name.startswith(HIDDEN) for automaton in network.automata):
@@ -85,7 +106,8 @@ def _misplaced(network: Network, objective: Objective, strategy: Strategy) -> st
         return "an objective with a goal has no shares"
     if strategy.stages:
         return "a strategy has stages or shares, not both"
-    unknown = [place for avoided in strategy.shares for place in avoided if place not in objective.bad]
+    known = {*objective.bad, *map(_place_of, strategy.watchers)}
+    unknown = [place for avoided in strategy.shares for place in avoided if place not in known]
     if unknown:
         return f"{'.'.join(unknown[0])} is not to be avoided"
     if not all(strategy.shares):
@@ -116,9 +138,12 @@ def _misnamed(network: Network, shares: Sequence[Sequence[Block]]) -> str:
     return ""
 
 
-def _unguarded(objective: Objective, shares: Sequence[Sequence[Block]], extent: Extent) -> str:
-    """What is to be avoided and may happen, though no share guards against it; "" if there is nothing."""
-    named = {name for blocks in shares for name in names_of(blocks[0])[0]}
+def _unguarded(
+    objective: Objective, shares: Sequence[Sequence[Block]], watched: AbstractSet[str], extent: Extent
+) -> str:
+    """What is to be avoided and may happen, though no share guards against it; "" if there is nothing. `watched`: the
+    objectives that are kept because their watchers are."""
+    named = watched | {name for blocks in shares for name in names_of(blocks[0])[0]}
     open_ones: List[str] = [
         f"{name}.{place}" for name, place in objective.bad if name not in named and place in extent.places[name]
     ]

@@ -18,6 +18,7 @@ from pursue_gen.synthesis.game import Game, State, initial_state, is_goal, joint
 from pursue_gen.synthesis.strategy import DiscreteState, Place, Strategy, Zone
 from pursue_gen.tga.network import Objective
 from pursue_gen.tga.objectives import stated
+from pursue_gen.tga.watchers import FOR
 
 Key = Tuple[Tuple[str, str, str, str], ...]
 
@@ -122,8 +123,10 @@ def _owners(scenario: Scenario, won: Solution, reach_obj: str) -> Dict[str, Tupl
 def _objectives(won: Solution) -> Iterator[Tuple[int, Place, Objective, bool]]:
     """The parts of the strategy: the number of each one's stage, its place, its objective, whether it is in the last
     stage. Shares are all in the first one."""
+    watched = {watcher.objective for watcher in won.strategy.watchers}
     for avoided in won.strategy.shares:
-        yield 0, avoided[0], replace(won.objective, bad=avoided), True
+        own = tuple(place for place in avoided if place[0] not in watched)
+        yield 0, avoided[0], replace(won.objective, bad=own), True
     for stage, milestones in enumerate(won.strategy.stages):
         for place in milestones:
             yield stage, place, replace(won.objective, goal=(place,)), stage == len(won.strategy.stages) - 1
@@ -320,10 +323,13 @@ def size(data: StrategyData) -> Tuple[int, int]:
 
 def shown_name(name: str, kind: str) -> str:
     """The name of an automaton on the page; the second objective of a kind and the following have numbers."""
-    number = name.lstrip(ascii_letters)
-    if kind in ("goal", "deadline") and number:
-        return f"{'goal' if kind == 'goal' else 'objective'} {number}"
-    return {"goal": "the goal", "deadline": "the objective"}.get(kind, name)
+    if kind not in ("goal", "deadline"):
+        return name
+    what, _, robots = name.partition(FOR)
+    number = what.lstrip(ascii_letters)
+    word = "goal" if kind == "goal" else "objective"
+    shown = f"{word} {number}" if number else f"the {word}"
+    return f"{shown} for {robots.replace('_', ' and ')}" if robots else shown
 
 
 def _kind(scenario: Scenario, automaton: str) -> str:
@@ -331,7 +337,7 @@ def _kind(scenario: Scenario, automaton: str) -> str:
     for agent in scenario.agents:
         if agent.name == automaton:
             return "other" if not agent.controllable else "person" if agent.human else "robot"
-    objective = stated(scenario).get(automaton)
+    objective = stated(scenario).get(automaton.split(FOR)[0])
     if objective is not None:
         return "goal" if isinstance(objective, Reach) else "deadline"
     return "states" if automaton == names.STATES else "rule"

@@ -21,6 +21,7 @@ from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.scale import common_denominator, scaled
+from pursue_gen.tga.watchers import with_watchers
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,8 @@ def trials(
         except PursueError as problem:
             done.append(Trial(rules, None, problem))
             continue
-        done.append(Trial(rules, Solution(game, objective, proven, rules.reaction, rules=rules)))
+        watched = with_watchers(game, proven.watchers)
+        done.append(Trial(rules, Solution(watched, objective, proven, rules.reaction, rules=rules)))
         break
     return tuple(done)
 

@@ -30,8 +30,9 @@ from pursue_gen.synthesis.strategy import Place, Strategy
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.hidden import HIDDEN, is_loosened, why_not_hidden, with_hidden
 from pursue_gen.tga.network import Kind, Network, Objective
-from pursue_gen.tga.part import clocks_of, part_of, variables_of
+from pursue_gen.tga.part import part_of, variables_of, without_unnamed_clocks
 from pursue_gen.tga.pauses import pauses
+from pursue_gen.tga.watchers import Watcher, watched_by, with_watchers
 
 WORK = 200_000_000
 """The work that is spent on all games of groups."""
@@ -52,9 +53,9 @@ _ROUNDS = 8
 """So many times each group is looked at again, as the others' commands have changed."""
 
 
-_NEEDED, _PLACES, _ALL = range(3)
-"""Who is shown in a group's game: whoever its commands depend on; those, too, on whose place something else depends;
-all who matter."""
+_NEEDED, _PEOPLE, _PLACES, _ALL = range(4)
+"""Who is shown in a group's game: whoever its commands depend on; those, too, on whose place something else depends, at
+first without other robots; all who matter."""
 
 _NOBODY: FrozenSet[str] = frozenset()
 
@@ -113,7 +114,8 @@ class _Search:
             for edge in automaton.edges:
                 for name, _ in edge.assign:
                     self._setters[name].add(automaton.name)
-        self._won: Dict[Tuple[Network, Tuple[Place, ...]], Optional[Strategy]] = {}
+        self._won: Dict[Tuple[Network, Tuple[Place, ...], Tuple[Watcher, ...]], Optional[Strategy]] = {}
+        self._watched: Dict[_Group, Tuple[Watcher, ...]] = {}
         self._alone: Dict[_Group, bool] = {}
         self.stats: List[Stats] = []
 
@@ -210,25 +212,43 @@ class _Search:
         blocks = tuple(block for strategy in some for block in strategy.blocks)
         clocks = {clock for strategy in some for clock in strategy.left_out_clocks}
         left_out = tuple(clock for clock in self._network.clocks if clock in clocks)
-        strategy = Strategy(blocks, left_out_clocks=left_out, shares=tuple(group.bad for group in won))
+        watchers = tuple(watcher for strategy in some for watcher in strategy.watchers)
+        strategy = Strategy(
+            blocks,
+            left_out_clocks=left_out,
+            shares=tuple(_avoided(group.bad, strategy.watchers) for group, strategy in won.items()),
+            watchers=watchers,
+        )
         limits = self._options.limits
         report = verify(self._network, self._objective, strategy, self._reaction, LIMIT, limits=limits)
         return strategy if report.ok else None
 
     def _strategy(self, group: _Group, theirs: Commanded) -> Optional[Strategy]:
         """A proven strategy of the group's game against these commands of others; None where none is found."""
-        for shown in (_NEEDED, _PLACES, _ALL)[: 2 + self._thorough]:
-            game = self._game(group, theirs, shown)
-            key = game, group.bad
+        watchers = self._watchers(group)
+        ways = [(shown, some) for shown in (_NEEDED, _PEOPLE) for some in dict.fromkeys(((), watchers))]
+        ways += [(shown, ()) for shown in (_PLACES, _ALL)[: 1 + self._thorough]]
+        for shown, some in ways:
+            game = self._game(group, theirs, shown, some)
+            key = game, group.bad, some
             if key not in self._won:
-                self._won[key] = self._solved(game, Objective(Kind.SAFETY, bad=group.bad))
+                strategy = self._solved(game, Objective(Kind.SAFETY, bad=_kept(group.bad, some)))
+                self._won[key] = strategy and replace(strategy, watchers=some)
             if self._won[key] is not None:
                 return self._won[key]
         return None
 
+    def _watchers(self, group: _Group) -> Tuple[Watcher, ...]:
+        """What the group may follow in place of promises that other robots can keep, too."""
+        if group not in self._watched:
+            team = tuple(name for name in self._robots if name in group.team)
+            watchers = (Watcher(name, team) for name, _ in group.bad)
+            self._watched[group] = tuple(w for w in watchers if watched_by(self._network, w) is not None)
+        return self._watched[group]
+
     def _solved(self, game: Network, wanted: Objective) -> Optional[Strategy]:
         free = self._free and bool(pauses(game))
-        if len({clock for automaton in game.automata for clock in clocks_of(automaton)}) > _CLOCKS:
+        if len(game.clocks) > _CLOCKS:
             return None
         share = min(1.0, _GAME / max(1, self._budget.work))
         try:
@@ -243,30 +263,45 @@ class _Search:
                 raise
             return None
 
-    def _game(self, group: _Group, theirs: Commanded, shown: int = _ALL) -> Network:
+    def _game(
+        self, group: _Group, theirs: Commanded, shown: int = _ALL, watchers: Tuple[Watcher, ...] = ()
+    ) -> Network:
         """The group's game: what matters to its promises, where it may do what it likes, and others these commands.
 
-        `shown`: how much of the others is in it; the rest is hidden (see `tga.hidden`).
+        `shown`: how much of the others is in it; the rest is hidden (see `tga.hidden`). `watchers`: followed in place
+        of their objectives.
         """
-        mine = {c for c in useful(self._network, group.team, group.bad) if is_controllers(c[1], self._taken)}
-        alive = left_to_others(live(self._network, mine | theirs)[0], theirs)
+        network, bad = with_watchers(self._network, watchers), _kept(group.bad, watchers)
+        mine = {c for c in useful(network, group.team, bad) if is_controllers(c[1], self._taken)}
+        alive = left_to_others(live(network, mine | theirs)[0], theirs)
         # The automata of other promises only watch.
         names = {automaton.name for automaton in alive.automata}.difference(name for name, _ in self._objective.bad)
-        names.update(name for name, _ in group.bad)
+        names.update(name for name, _ in bad)
         alive = part_of(alive, names, self._setters.keys())
         hidden = {a.name for a in alive.automata if is_agent(a) and a.name not in group.team and shown != _ALL}
         tested = {name for _, edge in mine for name in variables_of(edge)}
         while True:
-            away = {name for name, who in self._setters.items() if who and who <= hidden} - tested
-            away = away if shown == _NEEDED else set()
-            part = part_of(alive, names - hidden, self._setters.keys() - away)
-            game = cone_of_influence(with_hidden(alive, part), Objective(Kind.SAFETY, bad=group.bad))
+            ignored = {_NEEDED: hidden, _PEOPLE: hidden.intersection(self._robots)}.get(shown, _NOBODY)
+            away = {name for name, who in self._setters.items() if who and who <= ignored} - tested
+            part = without_unnamed_clocks(part_of(alive, names - hidden, self._setters.keys() - away))
+            game = cone_of_influence(with_hidden(alive, part), Objective(Kind.SAFETY, bad=bad))
             seen = {name for name in hidden if why_not_hidden(alive.automaton(name), game)}
             seen |= {name for variable, _ in game.variables for name in self._setters[variable] & hidden}
             seen |= {name for variable in _decisive(alive, game) for name in self._setters[variable] & hidden}
             if not seen:
                 return game
             hidden -= seen
+
+
+def _kept(bad: Sequence[Place], watchers: Sequence[Watcher]) -> Tuple[Place, ...]:
+    """What is avoided by those who follow watchers in place of their objectives."""
+    followed = {watcher.objective: watcher.name for watcher in watchers}
+    return tuple((followed.get(name, name), place) for name, place in bad)
+
+
+def _avoided(bad: Sequence[Place], watchers: Sequence[Watcher]) -> Tuple[Place, ...]:
+    """The same, and what is avoided so."""
+    return tuple(dict.fromkeys((*_kept(bad, watchers), *bad)))
 
 
 def _decisive(network: Network, game: Network) -> Iterator[str]:

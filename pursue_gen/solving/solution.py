@@ -37,6 +37,7 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.tga.pauses import pauses
+from pursue_gen.tga.watchers import with_watchers
 
 _CANNOT_BE_MET = "SYN021"
 
@@ -58,9 +59,9 @@ _FOR_IDEAL = 50_000_000
 class Solution:
     """A proven strategy for the objective in `network` (the game as it is played, ends and slack included).
 
-    `rules` are those of that game, `reaction` is theirs, in time units; `guarantee`: how long it takes at worst, where
-    that was computed; `within`: in how many time units it has to come to the goal, where that is given; `warnings`:
-    what to know before it is used.
+    The network has the watchers that the strategy follows. `rules` are those of that game, `reaction` is theirs, in
+    time units; `guarantee`: how long it takes at worst, where that was computed; `within`: in how many time units it
+    has to come to the goal, where that is given; `warnings`: what to know before it is used.
     """
 
     network: Network
@@ -118,7 +119,8 @@ def _first(
     if in_parts and not alone:
         known = _with_little_work(game, objective, rules.reaction, options)
         if isinstance(known, Found):
-            return Solution(game, objective, known.strategy, rules.reaction, known.stats, rules=rules)
+            watched = with_watchers(game, known.strategy.watchers)
+            return Solution(watched, objective, known.strategy, rules.reaction, known.stats, rules=rules)
         if isinstance(known, tuple):
             return known
         verdict = known

@@ -18,7 +18,14 @@ from typing import Dict, List, NoReturn, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_gen.outcomes import Invalid, NotProven
-from pursue_gen.synthesis.plan_parts import left_out_lines, read_left_out_clocks, read_shares, read_stages, spoken_of
+from pursue_gen.synthesis.plan_parts import (
+    left_out_lines,
+    read_left_out_clocks,
+    read_shares,
+    read_stages,
+    read_watchers,
+    spoken_of,
+)
 from pursue_gen.synthesis.plan_text import (
     ALWAYS,
     assign_meaning,
@@ -32,6 +39,7 @@ from pursue_gen.synthesis.plan_text import (
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone
 from pursue_gen.tga.network import Edge, Guard, Kind, Network, Objective
 from pursue_gen.tga.uppaal_words import with_own_names
+from pursue_gen.tga.watchers import with_watchers
 
 _ESCAPE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 _HEADER = re.compile(r"^[ \t]*(Strategy|Counter[ -]strategy) to [^\n:]*:[ \t\r]*$", re.MULTILINE | re.IGNORECASE)
@@ -238,7 +246,10 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     `file` is the name that errors give. Raises PursueError where there is no strategy (exit status 4 when the file says
     that the property does not hold), where the text is cut or damaged, and where it does not fit the network.
     """
-    text = with_own_names(_ESCAPE.sub("", text).replace("\r\n", "\n"), network)
+    text = _ESCAPE.sub("", text).replace("\r\n", "\n")
+    watchers = read_watchers(text.partition("\nState:")[0], network, file)
+    network = with_watchers(network, watchers)
+    text = with_own_names(text, network)
     header = _HEADER.search(text)
     if header is None:
         raise _no_strategy(text, file)
@@ -267,7 +278,8 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     if not blocks:
         reader.line, reader.text = first, ""
         reader.fail("PLN003", "the strategy is empty: no state follows its title", _RUN_AGAIN)
-    return Strategy(tuple(blocks), header.group(1).lower().startswith("counter"), stages, left_out_clocks, shares)
+    counter = header.group(1).lower().startswith("counter")
+    return Strategy(tuple(blocks), counter, stages, left_out_clocks, shares, watchers)
 
 
 def _start(reader: _Reader, line: str, seen: Set[DiscreteState]) -> _Open:
@@ -370,6 +382,7 @@ def write_plan(strategy: Strategy, network: Network, objective: Objective) -> st
     A block that says nothing (no zone to wait in and no command) is left out: it covers nothing. Raises ValueError
     where a command has no zone.
     """
+    network = with_watchers(network, strategy.watchers)
     printed = {
         automaton.name: {location.name: _printed(location.name, location.named) for location in automaton.locations}
         for automaton in network.automata

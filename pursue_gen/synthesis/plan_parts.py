@@ -5,10 +5,12 @@
     -- Stage: Slocked=1
     -- Stage: rule1.rule10 rule2.rule20
     -- Stage: reachObj.win
-    -- Share: obj.lose obj3.lose
+    -- Watcher: obj3 bot1
+    -- Share: obj.lose obj3_for_bot1.lose obj3.lose
 
 In a plan with stages or shares each block names what matters to it. A stage's milestones are locations of automata and
-values of variables; a share's places are what it avoids.
+values of variables; a share's places are what it avoids. A watcher is an objective's automaton, and the robots for whom
+alone another one (here `obj3_for_bot1`) watches the same.
 """
 
 from __future__ import annotations
@@ -22,8 +24,10 @@ from pursue_gen.synthesis.strategy import Place, Strategy
 from pursue_gen.tga.ending import is_value
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.part import part_of
+from pursue_gen.tga.watchers import Watcher, watched_by
 
 _STAGE = re.compile(r"^ -- Stage:(.*)$", re.MULTILINE)
+_WATCHER = re.compile(r"^ -- Watcher:(.*)$", re.MULTILINE)
 _SHARE = re.compile(r"^ -- Share:(.*)$", re.MULTILINE)
 _LEFT_OUT_CLOCKS = re.compile(r"^ -- Left out clocks:(.*)$", re.MULTILINE)
 _LEFT_OUT = re.compile(r"^ -- Left out:(.*)$", re.MULTILINE)
@@ -38,7 +42,8 @@ def left_out_lines(strategy: Strategy, network: Network) -> List[str]:
         return []
     clocks = [f" -- Left out clocks: {' '.join(strategy.left_out_clocks)}"] if strategy.left_out_clocks else []
     if strategy.shares:
-        return [*(f" -- Share: {' '.join(map('.'.join, avoided))}" for avoided in strategy.shares), *clocks]
+        watchers = [f" -- Watcher: {' '.join((each.objective, *each.team))}" for each in strategy.watchers]
+        return [*watchers, *(f" -- Share: {' '.join(map('.'.join, avoided))}" for avoided in strategy.shares), *clocks]
     if strategy.stages:
         variables = dict(network.variables)
         return [
@@ -60,6 +65,19 @@ def read_stages(text: str, network: Network, file: str) -> Tuple[Tuple[Place, ..
 def read_shares(text: str, network: Network, file: str) -> Tuple[Tuple[Place, ...], ...]:
     """The shares of such a plan. Raises PursueError for an unknown place."""
     return _read_places(text, network, file, _SHARE, "share for")
+
+
+def read_watchers(text: str, network: Network, file: str) -> Tuple[Watcher, ...]:
+    """The watchers of such a plan. Raises PursueError for one that nobody can be."""
+    watchers: List[Watcher] = []
+    for match in _WATCHER.finditer(text):
+        words = match.group(1).split()
+        watcher = Watcher(words[0], tuple(words[1:])) if words else Watcher("", ())
+        if watched_by(network, watcher) is None and watcher.name not in {each.name for each in network.automata}:
+            message = f"the plan has a watcher '{' '.join(words)}', which the network cannot have"
+            raise _unknown(text, match, message, file)
+        watchers.append(watcher)
+    return tuple(watchers)
 
 
 def _read_places(

@@ -12,6 +12,7 @@ from typing import Iterable, Mapping, Optional, Tuple, Union
 from pursue_gen.tga.network import Constraint as Constraint
 from pursue_gen.tga.network import Edge
 from pursue_gen.tga.scale import common_denominator
+from pursue_gen.tga.watchers import Watcher
 
 Place = Tuple[str, str]
 """An automaton and one of its locations; as a milestone also a variable and one of its values."""
@@ -63,7 +64,8 @@ class Strategy:
 
     One in `shares` has for each of them the places that it is to avoid, of automata that no other share names. Shares
     are played at the same time, by different agents: a block belongs to the one whose places it names (see
-    `proof.shares`). A strategy has stages or shares, or neither.
+    `proof.shares`). A strategy has stages or shares, or neither. `watchers`: automata that the network has beside its
+    own; a share that names one of them may have the objective in its place.
 
     `left_out_clocks`: pauses of the environment (see `tga.pauses`) on which it does not rely. Its zones do not compare
     them, it wins whatever they are, and what only resets them makes no command stale.
@@ -74,6 +76,7 @@ class Strategy:
     stages: Tuple[Tuple[Place, ...], ...] = ()
     left_out_clocks: Tuple[str, ...] = ()
     shares: Tuple[Tuple[Place, ...], ...] = ()
+    watchers: Tuple[Watcher, ...] = ()
 
     @property
     def in_parts(self) -> bool:

@@ -45,6 +45,11 @@ def with_hidden(network: Network, part: Network) -> Network:
     return replace(part, automata=tuple(kept), channels=tuple(channels))
 
 
+def has_hidden(network: Network) -> bool:
+    """True if an automaton of the network stands for hidden ones."""
+    return network.automata[-1].name == HIDDEN
+
+
 def why_not_hidden(automaton: Automaton, part: Network) -> str:
     """Why an automaton cannot be hidden from the part; "" if it can: what it does when it receives must not matter."""
     variables, clocks = {name for name, _ in part.variables}, set(part.clocks)

@@ -32,6 +32,13 @@ def part_of(network: Network, automata: AbstractSet[str], variables: AbstractSet
     )
 
 
+def without_unnamed_clocks(network: Network) -> Network:
+    """The network without the clocks that none of its automata names."""
+    named = {clock for automaton in network.automata for clock in clocks_of(automaton)}
+    clocks = tuple(clock for clock in network.clocks if clock in named)
+    return network if clocks == network.clocks else replace(network, clocks=clocks, start=start_of(network, clocks))
+
+
 def start_of(network: Network, clocks: Sequence[str]) -> Tuple[Constraint, ...]:
     """What the network says of these clocks at the start; a clock of which it says nothing may have any value."""
     names = {None, *clocks}

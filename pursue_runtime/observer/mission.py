@@ -121,7 +121,8 @@ class Mission(MissionStatus):
                 continue
             automaton, place = self.model.automaton(name), position.locations[name]
             own = [edge for edge in automaton.edges_from(place) if edge.sync == "own" and edge.allowed(position.values)]
-            lost = [edge for edge in own if (name, edge.target) in self.model.bad]
+            # A deadline; of an objective, or of a watcher, whose strategy has no decision then.
+            lost = [edge for edge in own if automaton.kind == "safety" or (name, edge.target) in self.model.bad]
             if lost:
                 return self._take((Move(name, lost[0]),), now, DEADLINE)
             overstays = overstayed(self.model, position, name, self._tolerance)

@@ -30,7 +30,8 @@ from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, Command, Strategy
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.network import Automaton, ClockBound, Guard, Network, Objective
+from pursue_gen.tga.watchers import Watcher, with_watchers
 from tests.proof.test_stages import of_the_whole
 
 RANDOM = settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
@@ -72,7 +73,7 @@ RELIEVED = """
 poi "dock"
 poi "room"
 poi "gate"
-connect dock and room distance 10
+connect dock and room distance 30
 connect room and gate distance 10
 agent "bot1" controllable mobile 1 location dock
 agent "bot2" controllable mobile 1 location room
@@ -86,6 +87,44 @@ objective: patrol room every 90 by bot3
 """
 """The guest is also answered where one of two robots leaves the room and the other stays, which nobody has to do."""
 
+FOLLOWED = """
+poi "desk"
+poi "hall"
+poi "room"
+poi "gate"
+connect desk and hall distance 3
+connect hall and room distance 3
+connect room and gate distance 9
+event "call"
+event "serve" location room duration 2
+agent "bot1" controllable mobile 1 location hall
+agent "bot2" controllable mobile 1 location desk can_do serve
+agent "guest" mobile 2 location gate
+agent "clerk" location desk can_do call
+objective: always not guest at room or any robot at room
+objective: avoid bot1 at room and guest at gate
+objective: if call then serve within 30
+"""
+"""bot1 goes to the room while the guest is on the way there; bot2 may be in the room or not."""
+
+VISITED = """
+poi "room1"
+poi "hall"
+poi "room2"
+connect room1 and hall distance 3
+connect hall and room2 distance 3
+event "order"
+event "pick" location room1 duration 2
+event "drop" location room2 duration 2
+rule "rule1": pick before drop
+agent "bot1" controllable mobile 1 location hall
+agent "bot2" controllable mobile 1 location hall can_do pick, drop
+agent "clerk" location room2 can_do order
+objective: patrol room1, room2 every 40 by any robot
+objective: if order then drop within 45
+"""
+"""bot1 visits both rooms; where bot2 comes by on its way, it need not, but need not rely on it either."""
+
 
 def game_of(scenario: Scenario) -> Tuple[Network, Objective]:
     return played(translate(scenario), Rules()), scenario_objective(scenario)
@@ -97,6 +136,11 @@ def in_shares(text: str, reaction: Fraction = LATE) -> Tuple[Network, Objective,
     found = won_in_shares(network, objective, reaction, SolveOptions())
     assert found is not None
     return network, objective, found.strategy
+
+
+def whole(network: Network, strategy: Strategy) -> Strategy:
+    """The strategy with blocks that name everything."""
+    return replace(of_the_whole(with_watchers(network, strategy.watchers), strategy), watchers=strategy.watchers)
 
 
 def reason(network: Network, objective: Objective, strategy: Strategy) -> str:
@@ -113,15 +157,34 @@ def test_each_robot_keeps_a_promise_and_nobody_waits_for_those_whom_it_does_not_
     assert reason(network, objective, strategy) == ""
 
 
-def test_a_plan_in_shares_is_read_as_it_was_written() -> None:
-    network, objective, strategy = in_shares(NARROW)
+def test_who_follows_a_person_need_not_know_where_other_robots_are() -> None:
+    network, objective, strategy = in_shares(FOLLOWED)
+    firsts = [strategy.blocks[strategy.numbers_of(k, share[0])[0]] for k, share in enumerate(strategy.shares)]
+    seen = [names_of(block)[0] for block in firsts]
+    assert {"bot1", "guest", "obj", "obj2"} in seen
+    assert reason(network, objective, strategy) == ""
+
+
+@pytest.mark.parametrize("text", [NARROW, VISITED])
+def test_a_plan_in_shares_is_read_as_it_was_written(text: str) -> None:
+    network, objective, strategy = in_shares(text)
     assert read_plan(write_plan(strategy, network, objective), network, "plan.txt") == strategy
 
 
-@pytest.mark.parametrize("text", [BUILDINGS, NARROW])
+@pytest.mark.parametrize("text", [BUILDINGS, NARROW, VISITED])
 def test_what_is_proven_share_by_share_wins_the_game_as_a_whole(text: str) -> None:
     network, objective, strategy = in_shares(text, NOW)
-    assert verify(network, objective, of_the_whole(network, strategy)).ok
+    assert verify(network, objective, whole(network, strategy)).ok
+
+
+def test_who_keeps_a_promise_that_others_could_keep_too_follows_a_watcher_of_its_own() -> None:
+    network, objective, strategy = in_shares(VISITED)
+    assert strategy.watchers == (Watcher("obj", ("bot1",)), Watcher("obj2", ("bot1",)))
+    assert (("obj_for_bot1", "lose"), ("obj2_for_bot1", "lose"), ("obj", "lose"), ("obj2", "lose")) in strategy.shares
+    assert reason(network, objective, strategy) == ""
+    assert "obj_for_bot1" in reason(network, objective, replace(strategy, watchers=strategy.watchers[1:]))
+    own = tuple(tuple(place for place in share if place != ("obj", "lose")) for share in strategy.shares)
+    assert "obj may have to leave atRisk" in reason(network, objective, replace(strategy, shares=own))
 
 
 def test_shares_that_are_none_are_refused() -> None:
@@ -192,6 +255,29 @@ def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     return replace(strategy, blocks=tuple(blocks), shares=shares)
 
 
+@st.composite
+def other_watcher(draw: st.DrawFn, watcher: Automaton) -> Automaton:
+    """The automaton with an edge more or less, another deadline, or another beginning."""
+    edges = list(watcher.edges)
+    edge = draw(st.sampled_from(edges))
+    what = draw(st.sampled_from(["less", "turned", "silent", "loose", "deadline", "initial"]))
+    if what == "less":
+        edges.remove(edge)
+    elif what == "turned":
+        edges.append(replace(edge, source=edge.target, target=edge.source))
+    elif what == "silent":
+        edges.append(replace(edge, sync=None))
+    elif what == "loose":
+        edges.append(replace(edge, guard=Guard(), resets=()))
+    places = [replace(place, invariant=later(place.invariant, what == "deadline")) for place in watcher.locations]
+    initial = draw(st.sampled_from(["idle", "atRisk"])) if what == "initial" else watcher.initial
+    return replace(watcher, edges=tuple(edges), locations=tuple(places), initial=initial)
+
+
+def later(bounds: Tuple[ClockBound, ...], is_later: bool) -> Tuple[ClockBound, ...]:
+    return tuple(replace(bound, bound=bound.bound + 5) for bound in bounds) if is_later else bounds
+
+
 def _without(block: Block, name: str) -> Block:
     places = tuple(place for place in block.state.locations if place[0] != name)
     values = tuple(value for value in block.state.values if value[0] != f"P{name}")
@@ -239,6 +325,20 @@ def test_what_is_won_in_shares_is_not_lost_in_one_piece(seed: int) -> None:
 
 
 @RANDOM
+@given(data=st.data(), reaction=st.just(NOW))
+def test_who_keeps_a_wrong_watcher_that_passes_keeps_the_objective(data: st.DataObject, reaction: Fraction) -> None:
+    network, objective, strategy = in_shares(VISITED, reaction)
+    network = with_watchers(network, strategy.watchers)
+    watcher = network.automaton(data.draw(st.sampled_from(strategy.watchers)).name)
+    wrong = data.draw(other_watcher(watcher))
+    network = replace(network, automata=tuple(wrong if each is watcher else each for each in network.automata))
+    passes = verify(network, objective, strategy).ok
+    event("passes" if passes else "refused")
+    if passes:
+        assert verify(network, objective, whole(network, strategy)).ok
+
+
+@RANDOM
 @given(data=st.data(), seed=SEEDS)
 def test_a_strategy_with_wrong_claims_that_passes_wins_the_game_as_a_whole(data: st.DataObject, seed: int) -> None:
     _, network, objective, strategy = found_for(seed, NOW)
@@ -251,7 +351,7 @@ def test_a_strategy_with_wrong_claims_that_passes_wins_the_game_as_a_whole(data:
         return  # it speaks of clocks that its share does not have
     event("passes" if passes else "refused")
     if passes:
-        report = verify(network, objective, of_the_whole(network, strategy), limit=MANY)
+        report = verify(network, objective, whole(network, strategy), limit=MANY)
         event("too large to judge" if report.reason.startswith("limit") else "judged")
         assert report.ok or report.reason.startswith("limit"), (report.reason, report.play)
 
@@ -261,6 +361,7 @@ def test_a_strategy_with_wrong_claims_that_passes_wins_the_game_as_a_whole(data:
 @given(seed=SEEDS)
 def test_missions_stay_safe_by_commands_that_the_strategy_holds(seed: int) -> None:
     scenario, network, objective, strategy = found_for(seed, Rules().reaction)
+    network = with_watchers(network, strategy.watchers)
     won = Solution(network, objective, strategy, Rules().reaction, rules=Rules())
     runner = MissionRunner(make_case(scenario, won, SolveRequest(), "random", (), None)[0])
     for number in range(4):

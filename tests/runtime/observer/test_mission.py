@@ -300,6 +300,18 @@ def test_a_deadline_has_passed_when_the_tolerance_for_late_messages_is_over_and_
     assert journey.hear("answer", 6.05).status == "running" and journey.mission.on_time(6.2) == []
 
 
+def test_the_deadline_of_a_watcher_is_no_loss_of_the_mission() -> None:
+    """It is the strategy's own: it has no decision any more, and a new plan is asked for."""
+    watched = DEADLINE.replace("bad: [obj, lose]", "bad: null")
+    cover = "format: 1\ncover:\n- state: {obj: idle}\n  wait: [always]\n- state: {obj: atRisk}\n  wait: [always]\n"
+    journey = Journey(watched, cover, on_uncovered="plan", controllers=("one",))
+    journey.hear("_start_", 0.0)
+    journey.hear("call", 1.0)
+    moment, state = journey.tick_from(1.0)
+    assert state.locations["obj"] == "lose" and state.status == "holding", state
+    assert not journey.mission.late
+
+
 def test_an_answer_in_time_lifts_the_deadline() -> None:
     journey = Journey(DEADLINE)
     journey.hear("_start_", 0.0)

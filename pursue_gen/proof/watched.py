@@ -1,0 +1,90 @@
+"""That who keeps a watcher keeps its objective: whenever the objective's automaton is at risk the watcher's is, not
+shorter, and with no longer a deadline. All plays are looked at, whatever the clocks are."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import AbstractSet, Iterator
+
+from pursue_gen.language.network_names import AT_RISK, LOSE
+from pursue_gen.proof.moves import Arena, State
+from pursue_gen.tga.hidden import with_hidden
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Network
+from pursue_gen.tga.part import part_of
+from pursue_gen.tga.scale import common_denominator
+from pursue_gen.tga.watchers import Watcher
+
+_MOST = 100_000
+"""So many discrete states are looked at."""
+
+
+def why_it_may_miss(network: Network, watcher: Watcher, automata: AbstractSet[str], variables: AbstractSet[str]) -> str:
+    """Why the objective may be broken though the watcher is kept; "" if it cannot.
+
+    `automata` and `variables` are seen, the watcher's own among them; the others may be anywhere (see `tga.hidden`).
+    """
+    watched, narrower = network.automaton(watcher.objective), network.automaton(watcher.name)
+    fault = _why_it_is_none(watched, narrower) or ("a play begins in the middle" if network.start else "")
+    if fault:
+        return fault
+    loose = replace(watched, edges=tuple(_with_any(watched, variables)))
+    freed = replace(network, automata=tuple(loose if each is watched else each for each in network.automata))
+    game = with_hidden(freed, part_of(freed, automata | {watcher.objective}, variables))
+    arena = Arena(game, common_denominator(game.times))
+    places = {automaton.name: k for k, automaton in enumerate(game.automata)}
+    theirs, own = places[watcher.objective], places[watcher.name]
+    since, own_since = (arena.clock[_deadline(automaton).clock] for automaton in (watched, narrower))
+
+    def is_missed(state: State) -> bool:
+        return state[0][theirs] == AT_RISK != state[0][own]
+
+    found, waiting = {arena.initial}, [arena.initial]
+    if is_missed(arena.initial):
+        return "the objective is at risk before it is"
+    while waiting:
+        state = waiting.pop()
+        for move in arena.situation(state).moves:
+            target = move.target
+            if move.enabled is None or LOSE in (target[0][theirs], target[0][own]):
+                continue  # how long each is at risk is compared by the clocks
+            if is_missed(target):
+                return "the objective may be at risk when it is not"
+            stays = state[0][theirs] == AT_RISK and own_since not in move.resets
+            if target[0][theirs] == AT_RISK and since not in move.resets and not stays:
+                return "the objective may be at risk for longer"
+            if target not in found:
+                found.add(target)
+                waiting.append(target)
+        if len(found) > _MOST:
+            return "there are too many states to look at"
+    return ""
+
+
+def _why_it_is_none(watched: Automaton, own: Automaton) -> str:
+    """Why these are no automata of an objective with a deadline and its watcher; "" if they are."""
+    for automaton in (watched, own):
+        bounds = [location.invariant for location in automaton.locations if location.name == AT_RISK]
+        if len(bounds) != 1 or len(bounds[0]) != 1 or bounds[0][0].op != "<=":
+            return f"{automaton.name} has no deadline"
+        for edge in automaton.edges:
+            if edge.target == LOSE and (edge.source != AT_RISK or edge.sync is not None or not edge.controllable):
+                return f"{automaton.name} is lost otherwise than by its deadline"
+            if edge.assign or edge.guard.clocks or (edge.sync is not None and edge.sync.sends):
+                return f"{automaton.name} does more than watch"
+    if _deadline(watched).bound < _deadline(own).bound:
+        return f"{own.name} has a longer deadline"
+    return ""
+
+
+def _deadline(automaton: Automaton) -> ClockBound:
+    (bound,) = next(location.invariant for location in automaton.locations if location.name == AT_RISK)
+    return bound
+
+
+def _with_any(watched: Automaton, variables: AbstractSet[str]) -> Iterator[Edge]:
+    """The automaton's edges, where other variables may have any value: what tests them may happen, or not."""
+    for edge in watched.edges:
+        tests = tuple(c for c in edge.guard.integers if all(test.variable in variables for test in c))
+        yield replace(edge, guard=Guard(edge.guard.clocks, tests))
+        if len(tests) < len(edge.guard.integers):
+            yield Edge(edge.source, edge.source, sync=edge.sync)

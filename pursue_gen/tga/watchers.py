@@ -1,0 +1,124 @@
+"""Automata that watch for some robots alone what an objective's automaton watches for all.
+
+Who has to be at a place in time, whoever else comes by, follows an automaton of its own: the one that the objective
+would have if its robots alone could keep it. That is at risk whenever the objective's is, and not shorter: who keeps it
+keeps the objective (see `proof.watched`). What others do for the objective changes nothing in it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import AbstractSet, Iterable, Iterator, Optional, Set, Tuple
+
+from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
+from pursue_gen.tga.ends import is_agent
+from pursue_gen.tga.network import Automaton, Clause, Edge, Guard, Location, Network
+from pursue_gen.tga.part import clocks_of
+
+FOR = "_for_"
+"""Stands between the objective and the robots in the name of a watcher."""
+
+
+@dataclass(frozen=True)
+class Watcher:
+    """What watches for the robots of a team, in the network's order, whether they keep an objective."""
+
+    objective: str
+    team: Tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """Its automaton's name."""
+        return self.objective + FOR + "_".join(self.team)
+
+    @property
+    def clock(self) -> str:
+        """Its automaton's clock."""
+        return f"C{self.name}"
+
+
+def with_watchers(network: Network, watchers: Iterable[Watcher]) -> Network:
+    """The network with the automata of these watchers, each behind that of its objective; one that is there already, or
+    that nobody can be (see `watched_by`), is left out."""
+    for watcher in watchers:
+        automaton = watched_by(network, watcher)
+        if automaton is not None:
+            place = next(k for k, each in enumerate(network.automata, 1) if each.name == watcher.objective)
+            automata = (*network.automata[:place], automaton, *network.automata[place:])
+            network = replace(network, automata=automata, clocks=(*network.clocks, watcher.clock))
+    return network
+
+
+def watched_by(network: Network, watcher: Watcher) -> Optional[Automaton]:
+    """The automaton of a watcher. None where its names are taken, where the objective has no deadline or sets a
+    variable, where it would watch the same, or in the middle of a play."""
+    taken = {*network.clocks, *network.channels, *(name for name, _ in network.variables)}
+    taken.update(automaton.name for automaton in network.automata)
+    watched = next((each for each in network.automata if each.name == watcher.objective), None)
+    if network.start or watched is None or {watcher.name, watcher.clock} & taken or not _has_deadline(watched):
+        return None
+    (clock,) = clocks_of(watched)
+    channels, variables = _only_of_others(network, watcher.team)
+    edges = tuple(_narrowed(watched.edges, channels, variables))
+    if edges == watched.edges:
+        return None
+    return Automaton(
+        watcher.name,
+        tuple(_renamed(location, clock, watcher.clock) for location in watched.locations),
+        IDLE if watched.initial == IDLE and _is_kept_at_start(network, watched, watcher.team) else AT_RISK,
+        tuple(replace(edge, resets=(watcher.clock,) if edge.resets else ()) for edge in edges),
+    )
+
+
+def _has_deadline(automaton: Automaton) -> bool:
+    """True for an automaton with a deadline, its only clock, that sends, tests no clock, and sets nothing."""
+    if {location.name for location in automaton.locations} != {IDLE, AT_RISK, LOSE} or len(clocks_of(automaton)) != 1:
+        return False
+    return not any(e.assign or e.guard.clocks or (e.sync is not None and e.sync.sends) for e in automaton.edges)
+
+
+def _only_of_others(network: Network, team: Iterable[str]) -> Tuple[Set[str], Set[str]]:
+    """The channels on which only other robots send, and the variables that only they set."""
+    sent: Tuple[Set[str], Set[str]] = set(), set()
+    assigned: Tuple[Set[str], Set[str]] = set(), set()
+    for automaton in network.automata:
+        other = is_agent(automaton) and automaton.name not in team and any(e.controllable for e in automaton.edges)
+        for edge in automaton.edges:
+            assigned[other].update(name for name, _ in edge.assign)
+            if edge.sync is not None and edge.sync.sends:
+                sent[other].add(edge.sync.channel)
+    return sent[True] - sent[False], assigned[True] - assigned[False]
+
+
+def _narrowed(edges: Iterable[Edge], channels: AbstractSet[str], variables: AbstractSet[str]) -> Iterator[Edge]:
+    """The edges as if nobody sent on these channels: towards the risk whatever these variables are, away from it only
+    because of others."""
+    for edge in edges:
+        if edge.sync is not None and edge.sync.channel in channels:
+            continue
+        clauses = edge.guard.integers
+        tests = [(clause, tuple(test for test in clause if test.variable not in variables)) for clause in clauses]
+        if edge.target == AT_RISK:
+            kept: Tuple[Clause, ...] = tuple(clause for clause, own in tests if own == clause)
+        else:
+            kept = tuple(own for _, own in tests)
+        if all(kept):
+            yield replace(edge, guard=Guard(edge.guard.clocks, kept))
+
+
+def _renamed(location: Location, clock: str, new: str) -> Location:
+    bounds = (replace(bound, clock=new) if bound.clock == clock else bound for bound in location.invariant)
+    return replace(location, invariant=tuple(bounds))
+
+
+def _is_kept_at_start(network: Network, watched: Automaton, team: Iterable[str]) -> bool:
+    """True if one of the team keeps the objective at the start; or none of them ever breaks it by going away."""
+    feared = {edge.sync.channel for edge in watched.edges if edge.target == AT_RISK and edge.sync is not None}
+    leaving = [
+        (automaton.initial, edge)
+        for automaton in network.automata
+        if automaton.name in team
+        for edge in automaton.edges
+        if edge.sync is not None and edge.sync.channel in feared
+    ]
+    return not leaving or any(edge.source == initial for initial, edge in leaving)
