@@ -307,7 +307,7 @@ def test_the_deadline_of_a_watcher_is_no_loss_of_the_mission() -> None:
     journey = Journey(watched, cover, on_uncovered="plan", controllers=("one",))
     journey.hear("_start_", 0.0)
     journey.hear("call", 1.0)
-    moment, state = journey.tick_from(1.0)
+    _, state = journey.tick_from(1.0)
     assert state.locations["obj"] == "lose" and state.status == "holding", state
     assert not journey.mission.late
 
