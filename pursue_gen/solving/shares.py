@@ -9,6 +9,7 @@ proven (see `proof.shares`); where nothing does, nothing is known.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
@@ -34,17 +35,30 @@ from pursue_gen.tga.part import part_of, variables_of, without_unnamed_clocks
 from pursue_gen.tga.pauses import pauses
 from pursue_gen.tga.watchers import Watcher, watched_by, with_watchers
 
-WORK = 200_000_000
-"""The work that is spent on all games of groups."""
 
-_GAME = 20_000_000
-"""The work of one of them."""
+@dataclass(frozen=True)
+class _Effort:
+    """How hard shares are looked for: `work` for all games of groups, `game` for one of them, which has at most so many
+    discrete `states` and `clocks` (of more, zones cost more than is counted). `thorough`: games that are not won with
+    some hidden are played with all of them as well; `free`: they are played without the pauses of the environment.
+    """
 
-_STATES = 20_000
-"""So many discrete states it may have: few groups that need more are won with so little work."""
+    work: int
+    game: int = 20_000_000
+    states: int = 20_000
+    clocks: int = 6
+    thorough: bool = False
+    free: bool = True
 
-_CLOCKS = 6
-"""So many clocks at most: of more, zones cost more than is counted."""
+
+_EFFORTS = (
+    _Effort(80_000_000, game=4_000_000),
+    _Effort(200_000_000),
+    _Effort(60_000_000, thorough=True),
+    _Effort(60_000_000, thorough=True, free=False),
+    _Effort(300_000_000, game=120_000_000, states=200_000, clocks=8),
+)
+"""One after the other, until one wins: few groups that need more than the first are won with little work."""
 
 _WAYS = 30
 """So many ways to share out the promises are tried."""
@@ -76,24 +90,30 @@ def can_be_shared(network: Network, objective: Objective) -> bool:
 def won_in_shares(
     network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
 ) -> Optional[Found]:
-    """A proven strategy in shares; None where none is found with little work, or less if the options say so."""
-    limits = replace(options.limits, work=min(options.limits.work or WORK, WORK), states=_STATES)
-    budget = Budget(limits, options.progress, options.engine, whole=True)
-    ways = [(False, True), (True, True), (True, False)]
-    for thorough, free in ways if pauses(network) else ways[::2]:
-        search = _Search(network, objective, reaction, options, budget, thorough, free)
-        try:
+    """A proven strategy in shares; None where none is found with so much work, or less if the options say so."""
+    start, left = options.limits.now(), options.limits.work or sum(effort.work for effort in _EFFORTS)
+    won: _Won = {}
+    for effort in _EFFORTS:
+        work = min(effort.work, left)
+        if work < 1 or not (effort.free or pauses(network)):
+            continue
+        search = _Search(network, objective, reaction, options.since(start), replace(effort, work=work), won)
+        with suppress(LimitHit):
             strategy = search.found()
-        except LimitHit:
-            return None
-        if strategy is not None:
-            return Found(strategy, stats_of_all(search.stats))
+            if strategy is not None:
+                return Found(strategy, stats_of_all(search.stats))
+        left -= work - max(0, int(search.budget.work))
     return None
 
 
+_Game = Tuple[Network, Tuple[Place, ...], Tuple[Watcher, ...], bool]
+"""A group's game, what it avoids there, the watchers that it follows, and whether it is played without pauses."""
+
+_Won = Dict[_Game, Strategy]
+
+
 class _Search:
-    """`thorough`: games that are not won with some hidden are played with all of them as well; `free`: they are played
-    without the pauses of the environment."""
+    """`won`: the strategies that are known from less effort."""
 
     def __init__(
         self,
@@ -101,12 +121,13 @@ class _Search:
         objective: Objective,
         reaction: Fraction,
         options: SolveOptions,
-        budget: Budget,
-        thorough: bool,
-        free: bool,
+        effort: _Effort,
+        won: _Won,
     ) -> None:
         self._network, self._objective, self._reaction = network, objective, reaction
-        self._options, self._budget, self._thorough, self._free = options, budget, thorough, free
+        self._options, self._effort = options, effort
+        limits = replace(options.limits, work=effort.work, states=effort.states)
+        self.budget = Budget(limits, options.progress, options.engine, whole=True)
         self._robots = commanded_agents(network)
         self._taken = taken_over(network)
         self._setters: Dict[str, Set[str]] = {name: set() for name, _ in network.variables}
@@ -114,7 +135,8 @@ class _Search:
             for edge in automaton.edges:
                 for name, _ in edge.assign:
                     self._setters[name].add(automaton.name)
-        self._won: Dict[Tuple[Network, Tuple[Place, ...], Tuple[Watcher, ...]], Optional[Strategy]] = {}
+        self._won = won
+        self._lost: Set[_Game] = set()
         self._watched: Dict[_Group, Tuple[Watcher, ...]] = {}
         self._alone: Dict[_Group, bool] = {}
         self.stats: List[Stats] = []
@@ -227,14 +249,17 @@ class _Search:
         """A proven strategy of the group's game against these commands of others; None where none is found."""
         watchers = self._watchers(group)
         ways = [(shown, some) for shown in (_NEEDED, _PEOPLE) for some in dict.fromkeys(((), watchers))]
-        ways += [(shown, ()) for shown in (_PLACES, _ALL)[: 1 + self._thorough]]
+        ways += [(shown, ()) for shown in (_PLACES, _ALL)[: 1 + self._effort.thorough]]
         for shown, some in ways:
             game = self._game(group, theirs, shown, some)
-            key = game, group.bad, some
-            if key not in self._won:
-                strategy = self._solved(game, Objective(Kind.SAFETY, bad=_kept(group.bad, some)))
-                self._won[key] = strategy and replace(strategy, watchers=some)
-            if self._won[key] is not None:
+            key = game, group.bad, some, self._effort.free and bool(pauses(game))
+            if key not in self._won and key not in self._lost:
+                strategy = self._solved(game, Objective(Kind.SAFETY, bad=_kept(group.bad, some)), free=key[-1])
+                if strategy is None:
+                    self._lost.add(key)
+                else:
+                    self._won[key] = replace(strategy, watchers=some)
+            if key in self._won:
                 return self._won[key]
         return None
 
@@ -246,20 +271,19 @@ class _Search:
             self._watched[group] = tuple(w for w in watchers if watched_by(self._network, w) is not None)
         return self._watched[group]
 
-    def _solved(self, game: Network, wanted: Objective) -> Optional[Strategy]:
-        free = self._free and bool(pauses(game))
-        if len(game.clocks) > _CLOCKS:
+    def _solved(self, game: Network, wanted: Objective, free: bool) -> Optional[Strategy]:
+        if len(game.clocks) > self._effort.clocks:
             return None
-        share = min(1.0, _GAME / max(1, self._budget.work))
+        share = min(1.0, self._effort.game / max(1, self.budget.work))
         try:
-            verdict = self._budget.verdict(game, wanted, self._reaction, share, without_pauses=free)
+            verdict = self.budget.verdict(game, wanted, self._reaction, share, without_pauses=free)
             self.stats.append(verdict.stats)
             if verdict.strategy is None:
                 return None
             how = self._reaction, verdict.ranks, self._options
             return _without_hidden(prove(game, wanted, verdict.strategy, *how, otherwise=verdict.cautious))
         except (NotProven, LimitHit):
-            if self._budget.used_up:
+            if self.budget.used_up:
                 raise
             return None
 

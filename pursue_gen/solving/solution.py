@@ -22,6 +22,7 @@ from pursue_gen.solving.lost_promises import (
     promises,
     watched,
 )
+from pursue_gen.solving.one_robot import lost_for_one
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
@@ -191,6 +192,7 @@ def _with_little_work(
         if found is not None:
             return found
         lost = lost_promises(game, objective, reaction, options.since(start))
+        lost = lost or (lost_for_one(game, objective, reaction, options.since(start)) if shared else ())
         if lost:
             return lost
     if verdict is None and rests:
