@@ -128,6 +128,7 @@ def answer_times(
     """How long each objective's deadline runs at worst until it is met, by automata, in time units, where a strategy
     that wins is played as `worst_case` says. What was not found out is not in it, nor a deadline that never runs."""
     found: Dict[str, Fraction] = {}
+    watched = {watcher.name: watcher.objective for watcher in strategy.watchers}
     games: Iterable[Tuple[Network, Objective, Strategy]] = ((network, objective, strategy),)
     if strategy.in_parts:
         games = ((part.game, part.objective, part.strategy) for part in shares_of(network, objective, strategy))
@@ -145,7 +146,7 @@ def answer_times(
                 except PursueError:
                     return found
             if took:
-                found[automaton.name] = Fraction(took, searches.loop.arena.scale)
+                found[watched.get(automaton.name, automaton.name)] = Fraction(took, searches.loop.arena.scale)
     return found
 
 

@@ -9,6 +9,7 @@ from typing import Tuple
 
 import pytest
 
+from benchmarks.lab_scenarios import lab_scenario
 from benchmarks.ordinary_families import buildings_apart
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Respond, Scenario
@@ -94,6 +95,13 @@ def test_each_share_tells_its_own() -> None:
     found = answers(scenario, solution)
     assert [answer.as_json()["deadline"] for answer in found] == [75, 80]
     assert all(0 < answer.worst < 75 for answer in found)
+
+
+def test_a_promise_whose_watcher_is_followed_is_kept_as_soon() -> None:
+    scenario, solution = won(lab_scenario(22))
+    assert [watcher.objective for watcher in solution.strategy.watchers] == ["obj3"]
+    found = answers(scenario, solution)
+    assert [answer.as_json()["deadline"] for answer in found] == [65, 87, 36, 121]
 
 
 def test_simulated_missions_are_no_later() -> None:
