@@ -51,7 +51,7 @@ class _Effort:
     free: bool = True
 
 
-_EFFORTS = (
+EFFORTS = (
     _Effort(80_000_000, game=4_000_000),
     _Effort(200_000_000),
     _Effort(60_000_000, thorough=True),
@@ -88,12 +88,16 @@ def can_be_shared(network: Network, objective: Objective) -> bool:
 
 
 def won_in_shares(
-    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
+    network: Network,
+    objective: Objective,
+    reaction: Fraction,
+    options: SolveOptions,
+    efforts: Sequence[_Effort] = EFFORTS,
 ) -> Optional[Found]:
     """A proven strategy in shares; None where none is found with so much work, or less if the options say so."""
-    start, left = options.limits.now(), options.limits.work or sum(effort.work for effort in _EFFORTS)
+    start, left = options.limits.now(), options.limits.work or sum(effort.work for effort in efforts)
     won: _Won = {}
-    for effort in _EFFORTS:
+    for effort in efforts:
         work = min(effort.work, left)
         if work < 1 or not (effort.free or pauses(network)):
             continue

@@ -27,7 +27,7 @@ from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL, Rules, played
-from pursue_gen.solving.shares import can_be_shared, won_in_shares
+from pursue_gen.solving.shares import EFFORTS, can_be_shared, won_in_shares
 from pursue_gen.solving.without_pauses import lost_to_few_calls, verdict_with, won_without_pauses
 from pursue_gen.synthesis.cone import out_of_reach
 from pursue_gen.synthesis.enforced import enforced
@@ -188,13 +188,16 @@ def _with_little_work(
         lost = lost_alone(game, objective, reaction, options.since(start))
         if lost:
             return lost
-        found = won_in_shares(game, objective, reaction, options.since(start)) if shared else None
+        found = won_in_shares(game, objective, reaction, options.since(start), EFFORTS[:1]) if shared else None
         if found is not None:
             return found
-        lost = lost_promises(game, objective, reaction, options.since(start))
-        lost = lost or (lost_for_one(game, objective, reaction, options.since(start)) if shared else ())
+        lost = lost_for_one(game, objective, reaction, options.since(start)) if shared else ()
+        lost = lost or lost_promises(game, objective, reaction, options.since(start))
         if lost:
             return lost
+        found = won_in_shares(game, objective, reaction, options.since(start), EFFORTS[1:]) if shared else None
+        if found is not None:
+            return found
     if verdict is None and rests:
         found = won_without_pauses(game, objective, reaction, work, options.since(start))
         if found is not None:
