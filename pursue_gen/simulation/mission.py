@@ -191,7 +191,15 @@ class SimulatedMission:
         self._connections.send(f"state:{node.name}", latest, _to(node, lambda: node.on_state(state)), node.name)
 
     def _send_plan(self, node: ControllerNode, plan: Dict[str, Any]) -> None:
+        """Plans are latched: what is lost comes when the controller has connected once more."""
         self._connections.send(f"plan:{node.name}", 0.1, _to(node, lambda: node.on_plan(plan)), node.name)
+
+        def look() -> None:
+            if node.alive and self._plan is plan and node.plan != plan["plan"]:
+                self._send_plan(node, plan)
+
+        if self.faulty:
+            self.events.schedule(self.events.now + RECONNECTION[1], _to(node, look))
 
     def publish_plan(self, plan: Dict[str, Any]) -> None:
         """The observer publishes another plan."""

@@ -163,10 +163,10 @@ class ObserverNode:
 
 
 class ControllerNode:
-    """A controller. `offset`: seconds by which its clock is ahead."""
+    """A controller. `offset`: seconds by which its clock is ahead; `plan`: the number of the plan that it got last."""
 
     def __init__(self, stage: Stage, name: str, links: MissionLinks, offset: float) -> None:
-        self.name, self.life = name, 1
+        self.name, self.life, self.plan = name, 1, 0
         self.alive, self._restarted, self._newest = True, False, 0
         self._stage, self._links, self._offset = stage, links, offset
         self._timer = Timer(links.events, self._on_timer)
@@ -203,7 +203,8 @@ class ControllerNode:
         """Another plan has come."""
         if self.alive:
             strategy = Strategy(plan["strategies"][self.name])
-            word = self._scheduler.add_plan(plan["plan"], strategy, self._now)
+            self.plan = plan["plan"]
+            word = self._scheduler.add_plan(self.plan, strategy, self._now)
             self._links.publish_word(self.name, word, self._links.events.now)
             self._set_timer()
 
@@ -216,7 +217,7 @@ class ControllerNode:
         """A new process: it knows nothing."""
         self.alive = self._restarted = True
         self.life += 1
-        self._newest = 0
+        self._newest = self.plan = 0
         self._scheduler = self._new()
 
     def kill(self) -> None:

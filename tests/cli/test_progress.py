@@ -118,7 +118,8 @@ def test_after_a_limit_it_is_shown_of_the_search_for_what_is_large(large: Path) 
     told = on_terminal("solve", large, "--memory", 100, changed=IMPATIENT)
     assert told.status == 5
     assert told.err.index("error SYN010") < told.err.index("\rexplaining: ")
-    assert told.err.rsplit(ERASE, 1)[1].startswith("Without walker1")
+    # "Without walker1 …", or where that is not found within the limits: "Too large without walker1 …".
+    assert "ithout walker1" in told.err.rsplit(ERASE, 1)[1]
 
 
 @pytest.mark.parametrize("command", [["verify", FIRST], ["ws", FIRST, "--plan"], ["ws", FIRST], ["report", FIRST]])

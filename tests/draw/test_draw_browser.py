@@ -215,7 +215,7 @@ def test_the_tutorials_scenario_is_drawn_from_nothing_and_won(there: Browser, tm
             there.wait(f"document.getElementById('text').value === {made!r}")
         there.click("#solve")
         there.wait("document.getElementById('outcome').dataset.verdict === 'won'")
-        assert "Time to the goal: at most 34.65 time units" in there.text("#sentences")
+        assert "Time to the goal: at most 34.7 time units" in there.text("#sentences")
         there.click("#cancel")
         there.wait("document.getElementById('cancel').hidden")
         there.click("#save")
