@@ -22,9 +22,6 @@ from benchmarks.process import Ran, run
 from benchmarks.tables import markdown, number, seconds, verdict
 from pursue_gen.outcomes import LimitHit, Lost
 
-MEMORY_GOAL = 2048
-"""MiB: what each of these commands should need at most."""
-
 _QUICK_COMMAND = 5.0
 """Seconds of the processor: what takes less is measured twice, and the better figure counts."""
 

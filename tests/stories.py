@@ -16,6 +16,18 @@ from pursue_gen.workspace import Options, generate
 from pursue_gen.workspace.model_file import render
 from pursue_runtime.model import Model
 
+CARE_HOME = """poi "station"
+poi "corridor"
+poi "room1"
+poi "room3"
+connect station and corridor distance 5
+connect corridor and room1 distance 4
+connect corridor and room3 distance 12
+event "ring1"
+event "ring3"
+"""
+"""The floor of a home, with the bells of two rooms."""
+
 
 def scenario(text: str) -> Scenario:
     """The scenario of a text."""

@@ -13,7 +13,7 @@ from pursue_gen.simulation.faults import Crash, FaultPlan
 from pursue_gen.simulation.judge import Judge
 from pursue_gen.simulation.junk import junk_word
 from pursue_gen.simulation.meaning import broken_of
-from pursue_gen.simulation.nodes import ControllerNode, ObserverNode, PeopleNode
+from pursue_gen.simulation.nodes import ControllerNode, ObserverNode, PeopleNode, to_process
 from pursue_gen.simulation.opponents import Opponent, kind_in_mission
 from pursue_gen.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome, Settings
 from pursue_gen.simulation.planner import SimulatedPlanner
@@ -188,18 +188,18 @@ class SimulatedMission:
 
     def _send_state(self, node: ControllerNode, state: SystemState, latest: float) -> None:
         """Sends a state to a controller: to the process that is subscribed now."""
-        self._connections.send(f"state:{node.name}", latest, _to(node, lambda: node.on_state(state)), node.name)
+        self._connections.send(f"state:{node.name}", latest, to_process(node, lambda: node.on_state(state)), node.name)
 
     def _send_plan(self, node: ControllerNode, plan: Dict[str, Any]) -> None:
         """Plans are latched: what is lost comes when the controller has connected once more."""
-        self._connections.send(f"plan:{node.name}", 0.1, _to(node, lambda: node.on_plan(plan)), node.name)
+        self._connections.send(f"plan:{node.name}", 0.1, to_process(node, lambda: node.on_plan(plan)), node.name)
 
         def look() -> None:
             if node.alive and self._plan is plan and node.plan != plan["plan"]:
                 self._send_plan(node, plan)
 
         if self.faulty:
-            self.events.schedule(self.events.now + RECONNECTION[1], _to(node, look))
+            self.events.schedule(self.events.now + RECONNECTION[1], to_process(node, look))
 
     def publish_plan(self, plan: Dict[str, Any]) -> None:
         """The observer publishes another plan."""
@@ -220,7 +220,7 @@ class SimulatedMission:
         text = format_word(word)
         self._note(f"{node} publishes {text}")
         self._published.append(text)
-        deliver = _to(self._observer, lambda: self._observer.call("hear", text))
+        deliver = to_process(self._observer, lambda: self._observer.call("hear", text))
         self._connections.send(f"word:{node}", max(0.0, latest - self.events.now), deliver, node)
 
     def command_robot(self, node: str, order: Order, seq: int, newest: int, again: bool) -> None:
@@ -241,7 +241,7 @@ class SimulatedMission:
             self._became_true.hear(text, self.events.now)
             self._observer.call("hear", text)
 
-        self._connections.send(f"report:{agent}", 0.0, _to(self._observer, deliver), self._machine_of(agent))
+        self._connections.send(f"report:{agent}", 0.0, to_process(self._observer, deliver), self._machine_of(agent))
 
     def _machine_of(self, agent: str) -> str:
         return self._stage.controller_of(agent) or ""
@@ -256,7 +256,7 @@ class SimulatedMission:
             if self.faulty or self._observer.mission.seq == seq:
                 self._observer.call("hear", text)
 
-        self._connections.send(f"report:{agent}", 0.0, _to(self._observer, deliver))
+        self._connections.send(f"report:{agent}", 0.0, to_process(self._observer, deliver))
 
     def _choose_move(self, state: SystemState) -> None:
         """The uncontrollable agents choose what to do in this state."""
@@ -344,7 +344,7 @@ class SimulatedMission:
         """A node has connected to the observer: it reports again, and says when that is all. If that is lost, it has to
         connect once more."""
         say_again()
-        deliver = _to(self._observer, lambda: self._observer.on_reported(name))
+        deliver = to_process(self._observer, lambda: self._observer.on_reported(name))
         self._connections.send(connection, 0.0, deliver, machine)
         life = self._observer.life
 
@@ -385,17 +385,6 @@ def simulate_mission(stage: Stage, settings: Settings, seed: int, remaining: Opt
          record: bool = False) -> Outcome:
     """One mission: the same for the same stage, settings and seed. `record`: with its play, a line for each event."""
     return SimulatedMission(stage, settings, seed, remaining, record).run()
-
-
-def _to(node: Union[ObserverNode, ControllerNode], deliver: Action) -> Action:
-    """Delivers to the process that the node is now: what is on its way when that dies is lost."""
-    life = node.life
-
-    def arrive() -> None:
-        if node.life == life:
-            deliver()
-
-    return arrive
 
 
 def _described(state: SystemState) -> str:

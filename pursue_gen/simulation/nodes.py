@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Dict, List, Mapping, Optional, Protocol, Sequence
+from typing import Any, Dict, List, Mapping, Optional, Protocol, Sequence, Union
 
-from pursue_gen.simulation.event_queue import EventQueue, Timer
+from pursue_gen.simulation.event_queue import Action, EventQueue, Timer
 from pursue_gen.simulation.stage import Stage
 from pursue_runtime.controller.scheduler import CommandScheduler
 from pursue_runtime.observer.journal import Journal, Log, replay
@@ -272,3 +272,14 @@ class PeopleNode:
             assert word is not None, f"the user interface published {text!r}"
             self._links.publish_word("UI", word, now + stage.reaction)
         self._timer.set(*self._ui.next_moments(now))
+
+
+def to_process(node: Union[ObserverNode, ControllerNode], deliver: Action) -> Action:
+    """Delivers to the process that the node is now: what is on its way when that dies is lost."""
+    life = node.life
+
+    def arrive() -> None:
+        if node.life == life:
+            deliver()
+
+    return arrive

@@ -22,6 +22,7 @@ from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
+from tests.stories import CARE_HOME
 
 RULES = Rules()
 
@@ -149,16 +150,7 @@ def test_changes_that_do_not_help_are_named_once_and_not_all_of_them() -> None:
     assert "Not decided within the limits: later." in text
 
 
-CARE = """poi "station"
-poi "corridor"
-poi "room1"
-poi "room3"
-connect station and corridor distance 5
-connect corridor and room1 distance 4
-connect corridor and room3 distance 12
-event "ring1"
-event "ring3"
-agent "nora" controllable mobile 1 location station
+CARE = CARE_HOME + """agent "nora" controllable mobile 1 location station
 agent "resident1" location room1 can_do ring1
 agent "resident3" location room3 can_do ring3
 objective: if ring1 then nora at room1 within 40

@@ -22,17 +22,9 @@ from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from pursue_runtime.locations import is_movement
+from tests.stories import CARE_HOME
 
-NIGHT = """poi "station"
-poi "corridor"
-poi "room1"
-poi "room3"
-connect station and corridor distance 5
-connect corridor and room1 distance 4
-connect corridor and room3 distance 12
-event "ring1"
-event "ring3"
-event "fall"
+NIGHT = CARE_HOME + """event "fall"
 agent "nora" controllable mobile 2 location station
 agent "otto" controllable mobile 2 location room1
 agent "resident1" location room1 can_do ring1
