@@ -93,7 +93,8 @@ class Mission(MissionStatus):
         elif word.seq is not None and not self._is_current(word):
             self._reject("stale", f"{text}: this is state {self.seq}", level="info")
         elif word.seq is not None:
-            moves = self._moves_of(word, now) if self._is_commanded(word, now) else None
+            command = self._command_of(word, now)
+            moves = self._moves_of(command, now) if command is not None else None
             return self._take_command(moves, now) if moves else []
         else:
             return self._on_report(word, now)
@@ -223,19 +224,22 @@ class Mission(MissionStatus):
         since = since or [known[entry] for entry in known if word.agent in entry[0]] or list(known.values())
         return word.seq is not None and max(since, default=self.seq) <= word.seq <= self.seq
 
-    def _is_commanded(self, word: Word, now: float) -> bool:
-        """Return True, else count it, if the strategy commands this in the present state, now or sooner while only time
-        passed: a command of anybody else is refused."""
+    def _command_of(self, word: Word, now: float) -> Optional[Word]:
+        """Return a command with its agent if the strategy commands it in the present state, now or sooner while only
+        time passed; else None, and count it. One without an agent is for the first whom the strategy commands it."""
         if self._cover is None:
-            return True
+            return word
         state = self.state(now)
-        doers = [word.agent] if word.agent else list(state.locations)
-        zones = [zone for agent in doers for zone in self._cover.commands(state, agent, word.event)]
-        if was_reached(zones, state.clocks, self._tolerance):
-            return True
-        why = "the strategy does not command it here" if not zones else "the strategy does not command it yet"
-        self._reject("uncommanded", f"{format_word(word)}: {why}")
-        return False
+        zones = {
+            agent: self._cover.commands(state, agent, word.event)
+            for agent in ([word.agent] if word.agent else state.locations)
+        }
+        for agent, reached in zones.items():
+            if was_reached(reached, state.clocks, self._tolerance):
+                return word._replace(agent=agent)
+        when = "yet" if any(zones.values()) else "here"
+        self._reject("uncommanded", f"{format_word(word)}: the strategy does not command it {when}")
+        return None
 
     def _take_command(self, moves: Tuple[Move, ...], now: float) -> List[SystemState]:
         """Apply the moves of a command, unless a robot that takes part is not where the state has it."""

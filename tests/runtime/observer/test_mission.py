@@ -457,6 +457,27 @@ def test_a_command_that_the_strategy_does_not_hold_in_the_state_is_refused() -> 
     assert journey.logs[-1] == ("warn", "thief_leaves@1: the strategy does not command it here")
 
 
+DOG_ALONE = """
+format: 3
+cover:
+- state: {thief: b}
+  wait: [Cdog <= 3]
+  commands:
+  - {do: catch, agent: dog, when: [3 < Cdog]}
+"""
+
+
+def test_a_command_without_an_agent_is_for_the_one_whom_the_strategy_commands_it() -> None:
+    journey = Journey()
+    strategy = read_cover(read(DOG_ALONE))
+    journey.mission = Mission(Model(read(CHASE)), strategy, lambda *said: journey.logs.append(said))
+    journey.hear("_start_", 0.0)
+    journey.hear("bot_a2b", 2.0)
+    journey.hear("bot_going_a_to_b2b", 5.5)  # now the bot, the first in system order, could catch as well
+    state = journey.hear("catch@3", 7.0)
+    assert state.commanded and state.agent == "dog"
+
+
 def test_a_command_counts_from_when_the_strategy_commands_it_also_if_it_comes_late() -> None:
     journey = commanded()
     assert journey.hear("bot:bot_a2b@1", 2.0) is None
