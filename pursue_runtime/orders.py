@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from typing import Iterable, NamedTuple, Optional, Tuple
 
+from pursue_runtime.words import Word, format_word
+
 
 class Order(NamedTuple):
     """A robot is to do `event`, as of the state with the number `seq`.
@@ -19,21 +21,28 @@ class Order(NamedTuple):
     location: str
     at_once: bool = False
     acknowledged: bool = False
+    given: float = 0.0
+    """The ROS time (seconds) at which it was given, 0: not known. It belongs to the number: in another mission a state
+    may have the same one."""
 
     @property
     def key(self) -> Tuple[str, str, int]:
-        """What tells it from other orders of the mission."""
+        """Return what tells it from other orders of the mission."""
         return self.agent, self.event, self.seq
 
 
-_ORDER = re.compile(r"(\w+):(\w+)@(\d{1,18})/(\w+)(!?)(\+?)", re.ASCII)
+_ORDER = re.compile(r"(\w+):(\w+)@(\d{1,18})(?:~(\d{1,12}\.\d{1,9}))?/(\w+)(!?)(\+?)", re.ASCII)
 
 
 def format_order(order: Order) -> str:
-    """Return the order as it stands in a state: `bot1:fetch@7/doing_fetch_in_shelf`, with `!` behind it for one that is
-    done at once, and `+` for one that was acknowledged."""
-    agent, event, seq, location, at_once, acknowledged = order
-    return f"{agent}:{event}@{seq}/{location}{'!' * at_once}{'+' * acknowledged}"
+    """Return the order as it stands in a state: `bot1:fetch@7~1700000011.400000/doing_fetch_in_shelf`, with `!` behind
+    it for one that is done at once, and `+` for one that was acknowledged."""
+    return f"{order.agent}:{order_text(order)}/{order.location}{'!' * order.at_once}{'+' * order.acknowledged}"
+
+
+def order_text(order: Order) -> str:
+    """Return what the robot is sent: `fetch@7~1700000011.400000`."""
+    return format_word(Word("", order.event, order.seq, at=order.given or None))
 
 
 def parse_order(text: str) -> Optional[Order]:
@@ -41,8 +50,8 @@ def parse_order(text: str) -> Optional[Order]:
     match = _ORDER.fullmatch(text)
     if match is None:
         return None
-    agent, event, seq, location, at_once, acknowledged = match.groups()
-    return Order(agent, event, int(seq), location, bool(at_once), bool(acknowledged))
+    agent, event, seq, given, location, at_once, acknowledged = match.groups()
+    return Order(agent, event, int(seq), location, bool(at_once), bool(acknowledged), float(given or 0.0))
 
 
 def parse_orders(texts: Iterable[str]) -> Tuple[Order, ...]:

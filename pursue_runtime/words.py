@@ -28,7 +28,8 @@ class Word(NamedTuple):
 
     `seq` is the number of the state it is a command for, None: a report. `as_of` is the number of a state in which
     what is reported was going on, None: the report has no number, and counts in any state. `at` is the ROS time
-    (seconds) at which it became true, None: when it was received.
+    (seconds) at which it became true, None: when it was received; of an order, and its acknowledgement, when that was
+    given.
     """
 
     agent: str
@@ -38,25 +39,26 @@ class Word(NamedTuple):
     at: Optional[float] = None
 
 
-_NUMBER = r"#(\d{1,1000})(?:~(\d{1,12}\.\d{1,9}))?"
-_WORD = re.compile(rf"\s*(?:(\w+):)?(\w+)[!?]?(?:@(\d{{1,1000}})|{_NUMBER})?\s*", re.ASCII)
+_NUMBER = r"(\d{1,1000})(?:~(\d{1,12}\.\d{1,9}))?"
+_WORD = re.compile(rf"\s*(?:(\w+):)?(\w+)[!?]?(?:([@#]){_NUMBER})?\s*", re.ASCII)
 
 
 def parse_word(text: str) -> Optional[Word]:
-    """Reads `[agent:]event[@seq]` or `[agent:]event#as_of[~at]` (agent "" where none is named); None for anything else.
-    """
+    """Reads `[agent:]event[@seq[~at]]` or `[agent:]event#as_of[~at]` (agent "" where none is named); None for anything
+    else."""
     match = _WORD.fullmatch(text)
     if match is None:
         return None
-    agent, event, seq, as_of, at = match.groups()
-    return Word(agent or "", event, None if seq is None else int(seq), *_read_number(as_of, at))
+    agent, event, sign, digits, at = match.groups()
+    number, moment = _read_number(digits, at)
+    seq, as_of = (number, None) if sign == "@" else (None, number)
+    return Word(agent or "", event, seq, as_of, moment)
 
 
 def format_word(word: Word) -> str:
     """Writes what parse_word reads."""
     prefix = word.agent + ":" if word.agent else ""
-    number = "" if word.seq is None else f"@{word.seq}"
-    return prefix + word.event + number + _number(word.as_of, word.at)
+    return prefix + word.event + _number("@", word.seq, word.at) + _number("#", word.as_of, word.at)
 
 
 class RobotReport(NamedTuple):
@@ -74,7 +76,7 @@ class RobotReport(NamedTuple):
 
 _REPORT = re.compile(
     rf"\s*(\w+):({'|'.join((FAILED, BLOCKED, FREE, HELD, RESUME, DISPLACED, BACK))})"
-    rf"(?:{_NUMBER})?(?:\s+(\S.*))?\s*",
+    rf"(?:#{_NUMBER})?(?:\s+(\S.*))?\s*",
     re.ASCII,
 )
 
@@ -90,24 +92,25 @@ def parse_report(text: str) -> Optional[RobotReport]:
 
 def format_report(report: RobotReport) -> str:
     """Write what parse_report reads."""
-    return f"{report.agent}:{report.event}{_number(report.as_of, report.at)} {one_line(report.text)}".rstrip()
+    return f"{report.agent}:{report.event}{_number('#', report.as_of, report.at)} {one_line(report.text)}".rstrip()
 
 
 def said_at(text: str) -> Optional[float]:
     """Return the ROS time (seconds) at which what a text reports became true; None where it does not say."""
     report = parse_report(text) or parse_word(text)
-    return report.at if report is not None else None
+    return report.at if report is not None and report.as_of is not None else None
 
 
-def _number(as_of: Optional[int], at: Optional[float]) -> str:
-    """The number and the time of a report as they stand in a word: a time only behind a number."""
-    number = "" if as_of is None else f"#{as_of}"
-    return number if at is None or not number else f"{number}~{at:.6f}"
+def _number(sign: str, number: Optional[int], at: Optional[float]) -> str:
+    """The number and the time as they stand in a word: a time only behind a number."""
+    if number is None:
+        return ""
+    return f"{sign}{number}" if at is None else f"{sign}{number}~{at:.6f}"
 
 
-def _read_number(as_of: Optional[str], at: Optional[str]) -> Tuple[Optional[int], Optional[float]]:
-    """The number and the time of a report from their texts."""
-    return None if as_of is None else int(as_of), None if at is None else float(at)
+def _read_number(number: Optional[str], at: Optional[str]) -> Tuple[Optional[int], Optional[float]]:
+    """The number and the time from their texts."""
+    return None if number is None else int(number), None if at is None else float(at)
 
 
 def one_line(text: str) -> str:

@@ -219,7 +219,7 @@ class Exeggutor:
                 self._links[name].go(goal, self._poses[name][goal.movement.place.poi])
             for order in actions:
                 if self._links[name].do(order):
-                    self.announce(format_word(Word(name, ORDERED, order.seq)))
+                    self.announce(format_word(Word(name, ORDERED, order.seq, at=order.given or None)))
             if word is not None:
                 self.announce(word)
                 self._log("info", f"reports {in_words(word)}")

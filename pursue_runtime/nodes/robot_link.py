@@ -17,8 +17,7 @@ from pursue_runtime.controller.whereabouts import Position, yaw_of
 from pursue_runtime.data import DataError
 from pursue_runtime.nodes.node import Ending, subscribe
 from pursue_runtime.nodes.publishing import ServedFirst, is_recorder, listeners, publish_to_one
-from pursue_runtime.orders import Order
-from pursue_runtime.words import Word, format_word
+from pursue_runtime.orders import Order, order_text
 
 STALE = 1.0
 """Seconds of ROS time after which a transform that was not renewed does not say any more where the robot is."""
@@ -81,8 +80,8 @@ class RobotLink(rospy.SubscribeListener):
         self.watched = not settings.sources
         self._robot, self._settings, self._ending, self._log = robot, settings, ending, log
         self._on_result, self._on_statuses, self._place, self._on_connected = result, statuses, place, connected
-        self._done = 0  # the number of the last order that was published without one
-        self._logged = 0  # the number of the last order that the log has
+        self._done: Optional[Order] = None  # the last order that was published without its number
+        self._logged: Optional[Order] = None  # the last order that the log has
         self._lock = threading.Lock()
         self._standing: Dict[str, Message] = {}
         self._open = True
@@ -148,16 +147,16 @@ class RobotLink(rospy.SubscribeListener):
         Return True if it takes the place of an acknowledgement that it was sent: where `orders` is not numbered, each
         action is sent once, by its name alone, and nobody acknowledges it.
         """
-        is_plain = self._settings.orders != "numbered"
-        if is_plain and self._done == order.seq:
+        is_plain, order = self._settings.orders != "numbered", order._replace(acknowledged=False)
+        if is_plain and self._done == order:
             return True
         if is_plain and self.missing_subscriber(is_goal=False):
             return False
-        text = order.event if is_plain else format_word(Word("", order.event, order.seq))
+        text = order.event if is_plain else order_text(order)
         self._send(Message("" if order.at_once or is_plain else order.location, self._act, String(text)))
-        if self._logged != order.seq:
+        if self._logged != order:
             self._log("info", f"{self._robot} does {order.event}")
-        self._logged, self._done = order.seq, order.seq if is_plain else self._done
+        self._logged, self._done = order, order if is_plain else self._done
         return is_plain
 
     def missing_subscriber(self, is_goal: bool) -> str:

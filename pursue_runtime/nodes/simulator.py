@@ -91,7 +91,7 @@ class SimulatorNode:
         with self.lock:
             self.simulator.on_order(robot, rospy.get_time(), word.event, word.seq or 0)
             if word.seq is not None:
-                self.events.publish(format_word(Word(robot, ORDERED, word.seq)))
+                self.events.publish(format_word(Word(robot, ORDERED, word.seq, at=word.at)))
             self.act()
 
     def say_again(self) -> None:

@@ -77,7 +77,7 @@ class Mission(MissionStatus):
         report = parse_report(text) if readable else None
         word = parse_word(text) if readable and report is None else None
         if word is not None and word.event == ORDERED and word.seq is not None and self.status in LIVE:
-            return self._on_order_receipt(word.agent, word.seq, now)
+            return self._on_order_receipt(word.agent, word.seq, word.at, now)
         if self._automata.is_won() and self.status in LIVE:
             self._reject("impossible", f"{text[:80]} after the goal was reached", level="info")
         elif report is not None and self.status in LIVE:
@@ -308,9 +308,9 @@ class Mission(MissionStatus):
         waits = self._automata.is_won()
         return [(order, given) for order, given in self.orders.open_since() if waits or order.agent not in self.lost]
 
-    def _on_order_receipt(self, robot: str, seq: int, now: float) -> List[SystemState]:
+    def _on_order_receipt(self, robot: str, seq: int, given: Optional[float], now: float) -> List[SystemState]:
         """Take that a robot's side has an order; the state that is published again answers it."""
-        if self.orders.on_receipt(robot, seq):
+        if self.orders.on_receipt(robot, seq, given):
             if self.lost.get(robot, "").startswith(UNACKNOWLEDGED):
                 del self.lost[robot]
             if not self._automata.is_won():

@@ -43,7 +43,7 @@ class Orders:
         doer = moves[0].automaton
         if is_commanded or self._kinds.get(doer) == "agent":
             for order in self._begun(moves, seq, is_commanded, lost, locations):
-                self._standing[order.key], self._given[order.key] = order, now
+                self._standing[order.key], self._given[order.key] = order._replace(given=round(now, 6)), now
 
     def _begun(
         self, moves: Tuple[Move, ...], seq: int, is_commanded: bool, lost: Collection[str], locations: Mapping[str, str]
@@ -65,9 +65,14 @@ class Orders:
             if locations[doer] in (place, action(first.word, place)):
                 yield Order(robot, first.word, seq, place, at_once=True)
 
-    def on_receipt(self, robot: str, seq: int) -> bool:
-        """Take that the robot's side has the order of this number; return False where no such order is open."""
-        found = [key for key, order in self._standing.items() if (order.agent, order.seq) == (robot, seq)]
+    def on_receipt(self, robot: str, seq: int, given: Optional[float]) -> bool:
+        """Take that the robot's side has the order of this number, and of this time (None: the receipt has none);
+        return False where no such order is open."""
+        found = [
+            key
+            for key, order in self._standing.items()
+            if (order.agent, order.seq) == (robot, seq) and given in (None, order.given)
+        ]
         is_news = False
         for key in found:
             order = self._standing[key]

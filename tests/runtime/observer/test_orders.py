@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_runtime.orders import Order, format_order, parse_order
+from pursue_runtime.orders import Order, format_order, order_text, parse_order, parse_orders
 from pursue_runtime.state import format_state, parse_state
 from tests.runtime.observer.test_mission import Journey
 
@@ -63,7 +63,13 @@ def made() -> Journey:
 
 
 def orders(state: Any) -> List[str]:
-    return list(state.orders)
+    """The orders that stand in a state, without the times at which they were given."""
+    return [format_order(order._replace(given=0.0)) for order in parse_orders(state.orders)]
+
+
+def sent(state: Any) -> List[str]:
+    """What the controllers send for them: with the order's number, by which one that comes again is known."""
+    return [order_text(order) for order in parse_orders(state.orders)]
 
 
 # What is an order -----------------------------------------------------------------------------------------------------
@@ -114,6 +120,20 @@ def test_the_mission_is_won_when_all_that_was_ordered_is_acknowledged(made: Jour
     assert (state.status, state.seq, orders(state), made.mission.goal_at) == ("won", 2, [], 2.0)
 
 
+def test_what_is_ordered_in_another_mission_is_no_repetition_though_its_state_has_the_same_number() -> None:
+    """Whoever carries out actions goes on when a mission is over, and knows the numbers of its orders."""
+    texts, receipts = [], []
+    for start in (0.0, 1000.0):
+        journey = Journey(HANDOVER, EVERYWHERE, on_uncovered="warn")
+        journey.hear("_start_", start)
+        texts.append(sent(journey.hear("giver:handOver@1", start + 2.0)))
+        receipts.append([f"{name}:_order_@{text.partition('@')[2]}" for name, text in zip(("giver", "taker"), texts[-1])])
+    assert texts[0] == ["handOver@2~2.000000"] * 2 and texts[1] == ["handOver@2~1002.000000"] * 2
+    for receipt in receipts[0]:
+        assert journey.hear(receipt, 1002.1).status == "running", "the receipt of an order of the mission before"
+    assert [journey.hear(receipt, 1002.2).status for receipt in receipts[1]] == ["running", "won"]
+
+
 def test_at_the_goal_nothing_but_acknowledgements_counts(made: Journey) -> None:
     made.hear("giver:handOver@1", 2.0)
     assert made.hear("greet", 2.5) is None and made.hear("giver:lift@2", 3.5) is None
@@ -162,7 +182,10 @@ def test_orders_stand_in_the_text_of_the_state(made: Journey) -> None:
 NAMES = st.from_regex(r"[A-Za-z_][A-Za-z0-9_]{0,9}", fullmatch=True)
 
 
-@given(st.builds(Order, NAMES, NAMES, st.integers(0, 10**9), NAMES, st.booleans(), st.booleans()))
+GIVEN = st.integers(0, 10**15).map(lambda millionths: millionths / 1e6)
+
+
+@given(st.builds(Order, NAMES, NAMES, st.integers(0, 10**9), NAMES, st.booleans(), st.booleans(), GIVEN))
 def test_an_order_is_read_as_it_was_written(order: Order) -> None:
     assert parse_order(format_order(order)) == order
 
