@@ -27,6 +27,12 @@ _PROBES = (11, 19, 31, 63, 127, 255)
 """Where a search for a number that wins looks before it looks at the end of a long list: large numbers take longer."""
 
 
+_IN_IDEAL = ("ends", "reaction")
+"""Changes of the rules that the ideal game has too."""
+
+_TURNS = (("assumption", "control"), ("deadline", "within", "after"), ("game",), _IN_IDEAL)
+
+
 @dataclass(frozen=True)
 class Change:
     """A change that wins.
@@ -68,10 +74,11 @@ def findings(scenario: Scenario, rules: Rules, budget: Budget) -> Findings:
     won: Dict[int, _Win] = {}
     lost: Dict[int, str] = {}
     undecided: Dict[int, str] = {}
-    # Long lists last: they make numbers larger, and larger games.
-    for k in sorted(range(len(tried)), key=lambda k: (len(tried[k].values) > _PROBES[0], k)):
+    # What says most comes first. Long lists come last: they make numbers larger, and larger games.
+    for k in sorted(range(len(tried)), key=lambda k: (_turn(tried[k]), len(tried[k].values) > _PROBES[0], k)):
         knob = tried[k]
-        if knob.what == "game" and any(tried[n].what in ("ends", "reaction") for n in won):
+        if knob.what in _IN_IDEAL and any(tried[n].what == "game" for n in lost):
+            lost[k] = knob.say(knob.values[-1])  # the ideal game is easier still
             continue
         try:
             win = _least(knob, budget)
@@ -84,6 +91,8 @@ def findings(scenario: Scenario, rules: Rules, budget: Budget) -> Findings:
             lost[k] = knob.say(knob.values[-1])
         else:
             won[k] = win
+    if any(tried[k].what in _IN_IDEAL for k in won):
+        won = {k: win for k, win in won.items() if tried[k].what != "game"}
     helpful = sorted((k for k in won if tried[k].helps), key=lambda k: (-tried[k].helps, k))
     changes = [_change(tried[k], win) for k, win in sorted(won.items())]
     return Findings(
@@ -92,6 +101,11 @@ def findings(scenario: Scenario, rules: Rules, budget: Budget) -> Findings:
         tuple(text for _, text in sorted(undecided.items())),
         tuple(won[k].strategy for k in helpful),
     )
+
+
+def _turn(knob: Knob) -> int:
+    """What is tried before what: who prevents it, then which deadline would do, then how it is played."""
+    return next((turn for turn, some in enumerate(_TURNS) if knob.what in some), len(_TURNS))
 
 
 @dataclass(frozen=True)

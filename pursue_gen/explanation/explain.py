@@ -29,12 +29,16 @@ from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import EXPLAINING, NO_LIMITS, Limits, Listener
 from pursue_gen.tga import scenario_objective, translate
 
-WORK = 150_000_000
-"""The work of an explanation: ten to thirty seconds."""
+WORK, STATES = 60_000_000, 50_000
+"""The work of an explanation, and the discrete states of each of its games: two to four seconds."""
 
-_FOR_WHOLE, _FOR_ALL, _FOR_CHANGES, _FOR_CONFLICT, _FOR_ENDLESS = 0.03, 0.5, 0.5, 0.2, 0.1
+_FEW = 5_000
+"""So many discrete states has a scenario at most that is explained as a whole where one part of it is known to be lost.
+"""
+
+_FOR_WHOLE, _FOR_ALL, _FOR_CONFLICT, _FOR_CHANGES, _FOR_ENDLESS = 0.03, 0.5, 0.2, 0.5, 0.1
 """The part of what is left of the budget, where fewer promises are known to be lost, for the scenario as it is, and for
-its explanation; for changes; for which objectives exclude each other; and for whether time has to pass. The rest is for
+its explanation; for which objectives exclude each other; for changes; and for whether time has to pass. The rest is for
 plays."""
 
 _LINES, _FIRST_LINES = 10, 3
@@ -76,10 +80,12 @@ def explain(
     """Explains a scenario that is lost under these rules (that it is lost is not looked at), within the limits.
 
     Their seconds (none that nobody has set) and their work (WORK where they name none) are for everything, the memory
-    for each game that is solved, which `progress` reports. `parts`: as in `Lost`; where several are lost alone, each is
-    explained alone, and so is a single one where the whole is too large to be looked at, or no change is enough for it.
+    and the discrete states (STATES) for each game that is solved, which `progress` reports. `parts`: as in `Lost`;
+    where several are lost alone, each is explained alone, and so is a single one where the whole is too large to be
+    looked at, or no change is enough for it.
     """
-    budget = Budget(replace(limits.chosen, work=limits.work or WORK), progress, phase=EXPLAINING)
+    few = replace(limits.chosen, work=limits.work or WORK, states=limits.states or STATES)
+    budget = Budget(few, progress, phase=EXPLAINING)
     if not parts:
         return _explained(scenario, rules, budget)
     if len(parts) == 1 and _is_small(scenario, rules, budget):
@@ -97,11 +103,11 @@ def explain(
 
 def _explained(scenario: Scenario, rules: Rules, budget: Budget, conflicting: bool = True) -> Explanation:
     """The explanation of what is lost; `conflicting`: it may be that some of its objectives are not to blame."""
-    found = findings(scenario, rules, budget.split(_FOR_CHANGES))
-    network, objective = played(translate(scenario), rules), scenario_objective(scenario)
     together: Optional[Conflict] = None
     if conflicting and len(scenario.objectives) > 1:
         together = conflict(scenario, rules, budget.split(_FOR_CONFLICT))
+    found = findings(scenario, rules, budget.split(_FOR_CHANGES))
+    network, objective = played(translate(scenario), rules), scenario_objective(scenario)
     repeating: Tuple[Endless, ...] = ()
     plays: List[Play] = []
     with suppress(LimitHit):
@@ -118,7 +124,7 @@ def _is_small(scenario: Scenario, rules: Rules, budget: Budget) -> bool:
     """True if the whole scenario is decided with little work, and so can be changed in many ways."""
     try:
         network, objective = played(translate(scenario), rules), scenario_objective(scenario)
-        verdict_of(budget, network, objective, rules.reaction, _FOR_WHOLE)
+        verdict_of(budget.split(_FOR_WHOLE, _FEW), network, objective, rules.reaction)
     except LimitHit:
         return False
     return True
@@ -135,25 +141,28 @@ def render(explanation: Explanation, width: int = 110) -> str:
     texts = endless_texts(explanation)
     texts += [explanation.conflict.in_words()] if explanation.conflict else []
     lines = [line for text in texts for line in textwrap.wrap(text, width)]
+    if explanation.play:
+        lines += [f"{play_title(explanation)} (times in units):", *_told(explanation.play)]
     if explanation.changes:
         lines.append(f"Each of these alone would change that, the smallest change first ({how_found(explanation)}):")
         lines += [f"  - {_change(change)}" for change in explanation.changes]
     else:
         lines.append("No single small change that was tried would change that.")
-    if explanation.play:
-        lines += [f"{play_title(explanation)} (times in units):", *_told(explanation.play)]
-    else:
-        lines.append("A play that shows it was not found within the limits.")
     if explanation.attempts:
         lines.append("What else the robots could begin with, and why that fails:")
         lines += [line for text in attempt_texts(explanation) for line in _wrapped(text, width)]
     lines += _listed("Not enough alone:", explanation.lost, width)
-    lines += _listed("Not decided within the limits:", explanation.undecided, width)
+    lines += _listed("Not decided within the limits:", _undecided(explanation), width)
     if explanation.others:
         lines.insert(0, f"{listed(explanation.about)}:")
     for other in explanation.others:
         lines += [f"{listed(other.about)}:", render(other, width).rstrip()]
     return "\n".join(lines) + "\n"
+
+
+def _undecided(explanation: Explanation) -> Tuple[str, ...]:
+    """What was not decided within the limits."""
+    return (*(() if explanation.play else ("a play that shows it",)), *explanation.undecided)
 
 
 def how_found(explanation: Explanation) -> str:

@@ -77,10 +77,12 @@ class Budget:
         self.spend(verdict.stats.work)
         return verdict
 
-    def split(self, share: float) -> Budget:
-        """A budget of that share of what is left; what it spends is spent of this one too."""
-        some = copy.copy(self)
-        some._whole, some._limits, some.work = self, self.part(share), self.work * share
+    def split(self, share: float, states: int = 0) -> Budget:
+        """A budget of that share of what is left; what it spends is spent of this one too. `states`: the most discrete
+        states of each of its games, if fewer than now."""
+        some, limits = copy.copy(self), self.part(share)
+        fewest = min(filter(None, (states, limits.states)), default=0)
+        some._whole, some._limits, some.work = self, replace(limits, states=fewest), self.work * share
         some._start = self._limits.now()
         return some
 

@@ -277,7 +277,7 @@ def test_what_more_has_to_be_assumed_of_others_is_a_statement(name: str, claim: 
 @pytest.mark.parametrize("name", ["EB1", "WC2a", "CT3a"])
 def test_the_claims_about_the_published_scenarios_hold(reference_dir: Path, name: str) -> None:
     text = (reference_dir / name / "scenario.pur").read_text()
-    explanation = explain(parse(text, "x.pur"), DEFAULT, Limits(PLENTY))
+    explanation = explain(parse(text, "x.pur"), DEFAULT, Limits(PLENTY, work=150_000_000))
     check_claims(text, DEFAULT, explanation)
     found = {(change.what, change.name): (change.after, change.next_lost) for change in explanation.changes}
     if name == "EB1":
@@ -296,7 +296,7 @@ def rendered(name: str) -> str:
 
 def told(name: str) -> str:
     text = rendered(name)
-    return text[text.index("How it goes wrong") :].split("What else")[0].split("Not enough")[0]
+    return re.split("Each of these|What else|Not enough", text[text.index("How it goes wrong") :])[0]
 
 
 def tried(name: str) -> str:
@@ -347,8 +347,7 @@ def test_without_a_budget_nothing_is_claimed() -> None:
     assert explanation.changes == explanation.lost == explanation.play == ()
     assert "a later deadline" in explanation.undecided
     text = render(explanation)
-    assert "Not decided within the limits: " in text
-    assert "not found within the limits" in text
+    assert "Not decided within the limits: " in text and "a play that shows it" in text
 
 
 def test_the_ends_can_be_the_plans_or_the_reaction_shorter() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from contextlib import suppress
+from typing import Any
 
 import pytest
 
@@ -20,7 +21,7 @@ from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.native import engine as native
-from pursue_gen.synthesis.solve import solve
+from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.tga import scenario_objective, translate
 from tests.stories import CARE_HOME
 
@@ -138,7 +139,7 @@ def test_where_no_change_is_enough_for_all_what_is_lost_alone_is_explained() -> 
 
 def test_a_long_play_is_told_by_its_beginning_and_its_end() -> None:
     play = tuple(TimedLine(k, "bot", f"step {k}") for k in range(30))  # type: ignore[arg-type]
-    lines = render(Explanation((), (), (), play)).split("units):\n")[1].splitlines()
+    lines = render(Explanation((), (), (), play)).split("units):\n")[1].splitlines()[:-1]
     assert [line.split(" step ")[-1] for line in lines] == [
         "0", "1", "2", "   …  (21 more steps)", "24", "25", "26", "27", "28", "29",
     ]  # fmt: skip
@@ -147,7 +148,7 @@ def test_a_long_play_is_told_by_its_beginning_and_its_end() -> None:
 def test_changes_that_do_not_help_are_named_once_and_not_all_of_them() -> None:
     text = render(Explanation((), tuple("abcdefgh"), ("later", "later"), ()))
     assert "Not enough alone: a; b; c; d; e; f; and 2 more." in text
-    assert "Not decided within the limits: later." in text
+    assert "Not decided within the limits: a play that shows it; later." in text
 
 
 CARE = CARE_HOME + """agent "nora" controllable mobile 1 location station
@@ -179,3 +180,26 @@ def test_an_objective_of_a_random_scenario_is_won_in_its_part_where_it_is_won_al
 
 def shortened(text: str, factor: int) -> str:
     return re.sub(r"within (\d+)", lambda found: f"within {int(found.group(1)) // factor}", text)
+
+
+def test_a_large_scenario_is_not_searched_for_long_and_what_says_most_is_tried_first(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    reached = []
+
+    def counting(*given: Any, **how: Any) -> Verdict:
+        try:
+            return solve(*given, **how)
+        except LimitHit as problem:
+            reached.extend(map(int, re.findall(r"(\d+) discrete states were reached", problem.diagnostics[0].message)))
+            raise
+
+    monkeypatch.setattr("pursue_gen.synthesis.budget.solve", counting)
+    scenario = parse(lab_scenario(8), "lab.pur")
+    explanation = explain(scenario, RULES, parts=[("obj", "obj2")])
+    assert max(reached) <= 50_000
+    assert explanation.conflict is not None and len(explanation.conflict.objectives) == 2
+    assert [change.sentence for change in explanation.changes] == ["assume: person1 never at room2"]
+    assert "a later deadline" in explanation.undecided and not explanation.play
+    text = render(explanation)
+    assert text.index("both together cannot") < text.index("assume: person1") < text.index("a play that shows it")
