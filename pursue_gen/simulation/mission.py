@@ -266,7 +266,7 @@ class SimulatedMission:
             locations = tuple(state.locations[automaton.name] for automaton in network.automata)
             key = locations, tuple(state.values[name] for name, _ in network.variables)
             deed = self._opponent.next(key, (0.0, *(clocks[clock] for clock in network.clocks)))
-        self._word = deed.word if deed else ""
+        self._word = f"{deed.word}#{state.seq}" if deed and deed.word else ""
         self._move_timer.set(self.events.now + deed.delay if deed else None)
 
     def _act(self) -> None:

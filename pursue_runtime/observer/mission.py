@@ -360,9 +360,9 @@ class Mission(MissionStatus):
 
     def _is_over(self, agent: str, as_of: Optional[int], event: str) -> bool:
         """Return True, and count it, for a report of what the agent has left since: a cut link brings it late."""
-        if not self._beginnings.is_over(agent, as_of):
+        if not self._beginnings.is_over(agent, event, as_of):
             return False
-        begun = self._beginnings.of(agent)
+        begun = self._beginnings.of(agent, event)
         self._reject("stale", f"{event}#{as_of}: {agent} came in state {begun} to what it does now", level="info")
         return True
 

@@ -15,7 +15,7 @@ from pursue_runtime.sentences import in_words
 from pursue_runtime.simulator.simulator import ACTING, report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
-from pursue_runtime.words import PING, RESUME, START, RobotReport, Word, format_report, format_word, one_line
+from pursue_runtime.words import PING, RESUME, START, RobotReport, Word, format_report, format_word, one_line, parse_word
 from pursue_runtime.zones import due
 
 MARGIN = 0.05  # time units: how far inside an open bound something counts as possible
@@ -157,6 +157,7 @@ class MissionView:
         self._orders = None if orders is None else Plans(orders)
         self._since: Dict[Entry, SystemState] = {}  # in which is decided what stands in the present state
         self._ordered: Tuple[int, float, int] = (-1, 0.0, 0)  # the state of the last order, when (real), how often
+        self._events = {edge.word for automaton in model.automata for edge in automaton.edges}
         self._people = {automaton.name for automaton in model.of_kind("human")}
 
     def elapsed(self, now: float) -> float:
@@ -199,13 +200,18 @@ class MissionView:
         """The words to publish at this moment."""
         if self.state is None or self.state.status not in LIVE:
             return []
-        words = self._environment.due(now)
+        words = [self._numbered(text, self.state.seq) for text in self._environment.due(now)]
         order = self._next_order(now) if real >= self._resend_at() else None
         if order is not None and order[0] <= now + 1e-6:
             count = self._ordered[2] + 1 if self._ordered[0] == self.state.seq else 1
             self._ordered = (self.state.seq, real, count)
             words.append(format_word(order[1]))
         return words
+
+    def _numbered(self, text: str, seq: int) -> str:
+        """Return what a player says with the number of the state in which it says it; no events stay as they are."""
+        word = parse_word(text)
+        return text if word is None or word.event not in self._events else format_word(word._replace(as_of=seq))
 
     def next_moments(self, now: float) -> Tuple[Optional[float], Optional[float]]:
         """When to ask `due` again: in ROS time, and on the real clock; None: not before the next state."""

@@ -83,6 +83,32 @@ def test_a_report_that_was_held_back_ends_no_later_movement() -> None:
     assert play.location("bot") == "going_a_to_b"
 
 
+def child() -> dict:
+    """An agent that nobody controls, and that may ring wherever it is."""
+    made = mover("child", "agent", 3)
+    ring = {"word": "ring", "sync": "send", "when": ["Cchild > 1"], "set": {}, "reset": ["Cchild"], "controllable": False}
+    return {**made, "edges": [*made["edges"], *({"from": here, "to": here, **ring} for here in "ab")]}
+
+
+def test_what_an_agent_does_at_once_counts_once_though_its_word_comes_twice() -> None:
+    play = Play(endless(child()))
+    for at in (102.0, 102.01, 103.9):
+        play.hear(at, "child:ring#1")
+    assert play.mission.seq == 2 and play.mission.counts["stale"] == 2
+    play.hear(104.5, "child:ring#2")
+    assert play.mission.seq == 3
+
+
+def test_that_an_agent_has_done_something_at_once_makes_no_other_report_of_it_old() -> None:
+    play = Play(endless(child()))
+    play.hear(102.0, "child:child_a2b")
+    began = play.mission.seq
+    play.hear(105.5, f"child_going_a_to_b2b#{began}")
+    play.hear(107.0, "child:ring")
+    play.hear(109.0, f"child:child_b2a#{play.mission.seq - 1}")
+    assert play.location("child") == "going_b_to_a"
+
+
 def test_the_word_of_a_person_needs_no_number() -> None:
     play = Play(endless(worker("bot", "robot")))
     for at in (102.0, 110.0):
