@@ -1,5 +1,4 @@
-"""In which state each agent came to its location, or did something at once, and which reports are about what was before.
-"""
+"""In which state each agent came to its location, or did something at once; which reports are about what was before."""
 
 from __future__ import annotations
 

@@ -15,7 +15,17 @@ from pursue_runtime.sentences import in_words
 from pursue_runtime.simulator.simulator import ACTING, report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
-from pursue_runtime.words import PING, RESUME, START, RobotReport, Word, format_report, format_word, one_line, parse_word
+from pursue_runtime.words import (
+    PING,
+    RESUME,
+    START,
+    RobotReport,
+    Word,
+    format_report,
+    format_word,
+    one_line,
+    parse_word,
+)
 from pursue_runtime.zones import due
 
 MARGIN = 0.05  # time units: how far inside an open bound something counts as possible

@@ -86,7 +86,7 @@ def test_a_report_that_was_held_back_ends_no_later_movement() -> None:
 def child() -> dict:
     """An agent that nobody controls, and that may ring wherever it is."""
     made = mover("child", "agent", 3)
-    ring = {"word": "ring", "sync": "send", "when": ["Cchild > 1"], "set": {}, "reset": ["Cchild"], "controllable": False}
+    ring = {"word": "ring", "sync": "send", "when": ["Cchild > 1"], "reset": ["Cchild"], "controllable": False}
     return {**made, "edges": [*made["edges"], *({"from": here, "to": here, **ring} for here in "ab")]}
 
 

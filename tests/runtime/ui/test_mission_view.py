@@ -159,7 +159,8 @@ def test_a_restart_does_not_play_the_past_again() -> None:
 
 def test_what_players_say_has_the_number_of_the_state_in_which_they_say_it() -> None:
     """So it counts once, also where the message comes twice."""
-    played = mission(TraceEnvironment(steps((3.5, "thief_a2b"), (3.5, "boy:screw"), (3.5, "_ping_"), (3.5, "nonsense"))))
+    said = steps((3.5, "thief_a2b"), (3.5, "boy:screw"), (3.5, "_ping_"), (3.5, "nonsense"))
+    played = mission(TraceEnvironment(said))
     played.on_state(at(1, 100.0, event="_start_"), 100.0)
     played.on_state(at(4, 102.0), 102.0)
     assert played.due(103.5, 1.0) == ["thief_a2b#4", "boy:screw#4", "_ping_", "nonsense"]
