@@ -248,9 +248,13 @@ class Observer:
             with self.lock:
                 if self.mission.status != WAITING:
                     self.newest.note((self.mission.seq, self.mission.status in ENDED), self.now())
+                if self.inbox.returning is None:
+                    self.inbox.notice_absence(self.now())
+                    if self.inbox.returning is not None:
+                        self.publish([])  # sets the alarm
             self.check_for_another()
             for node, reported in list(self.last_report.items()):
-                is_silent = now > reported + self.settings.silence
+                is_silent = self.inbox.returning is None and now > reported + self.settings.silence
                 if is_silent and node not in self.mission.silent and self.mission.status in LIVE:
                     self.call("silent", node)
             with self.lock:

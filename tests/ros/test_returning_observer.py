@@ -48,17 +48,19 @@ def errand(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
 
 
+@pytest.mark.parametrize("then", [signal.SIGKILL, signal.SIGCONT], ids=["killed", "suspended"])
 def test_who_was_in_time_has_met_the_deadline_though_the_observer_returns_after_it(
-    ros: Ros, errand: Path, tmp_path: Path
+    ros: Ros, errand: Path, tmp_path: Path, then: signal.Signals
 ) -> None:
-    """The observer hears nothing from when the action begins until the deadline has passed; then it is killed."""
+    """The observer hears nothing from when the action begins until the deadline has passed; then it is killed, or goes
+    on."""
     with launched(ros, errand, tmp_path, ("porter",), mode="still", time_unit=UNIT, record=True) as run:
         begun = run.until_step("stamp")
         start = float(begun["stamp"]) - begun["clocks"]["Creach"] * UNIT
         process = run.kill("observer", signal.SIGSTOP)
         run.until(lambda: [entry for entry in run.of(EVENTS, "simulator") if "stampDONE" in entry["data"]])
         run.until(lambda: time.time() > start + (DEADLINE + 0.5) * UNIT)
-        os.kill(process, signal.SIGKILL)
+        os.kill(process, then)
         assert run.until_over() == "won", run.output()
     ended = (float(run.now()["stamp"]) - start) / UNIT
     words = [parse_word(entry["data"]) for entry in run.of(EVENTS, "simulator")]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import Any, List, Tuple
 
@@ -81,6 +82,55 @@ def test_who_was_not_in_time_or_does_not_say_when_has_missed_it(away: Observer, 
     away.tick(130.0)
     assert away.mission.status == "lost" and "a deadline has passed" in away.mission.reason
     assert all(115.0 < state.stamp <= 115.2 for state in states), "it is lost at the deadline, not when that is noticed"
+
+
+class Suspended:
+    """An observer that looked at the time at 110.5, was suspended, and goes on 20 seconds later."""
+
+    def __init__(self, path: Path) -> None:
+        self.observer = Observer(path)
+        self.observer.hear(*CALLED)
+        self.passed = 0.0
+        log = lambda level, text: self.observer.logs.append((level, text))
+        self.inbox = Inbox(self.observer.mission, self.observer.journal, log, clock=lambda: self.passed)
+        assert self.inbox.next_moments(110.5)[0] == pytest.approx(115.1)
+        self.passed = 20.0
+
+
+@pytest.mark.parametrize("is_first", [True, False], ids=["words-first", "time-first"])
+@pytest.mark.parametrize(
+    "words, status",
+    [
+        (["answer#2", "answer#2~114.200000"], "running"),
+        (["answer#2", "answer#2~115.500000"], "lost"),
+        (["answer"], "lost"),
+        ([], "lost"),
+    ],
+)
+def test_an_observer_that_was_suspended_hears_first_what_was_reported_meanwhile(
+    tmp_path: Path, words: List[str], status: str, is_first: bool
+) -> None:
+    suspended = Suspended(tmp_path / "journal.jsonl")
+    inbox, mission = suspended.inbox, suspended.observer.mission
+    if not is_first:
+        assert inbox.on_alarm(130.5, time.monotonic()) == []
+    for word in words:
+        assert inbox.call("hear", word, now=130.5) == []
+    inbox.on_alarm(131.0, time.monotonic())
+    inbox.on_alarm(131.6, time.monotonic() + 2.0)
+    inbox.on_alarm(131.7, time.monotonic() + 2.0)
+    assert mission.status == status and inbox.returning is None
+    assert "warn" in dict(suspended.observer.logs) and ("deadline" in mission.reason) == (status == "lost")
+
+
+def test_a_word_that_comes_after_a_deadline_does_not_meet_it_though_nobody_has_looked_at_the_time(
+    tmp_path: Path,
+) -> None:
+    suspended = Suspended(tmp_path / "journal.jsonl")
+    suspended.passed = 0.5  # not for long enough to hear first what was reported
+    states = suspended.inbox.call("hear", "answer", now=115.4)
+    assert [state.status for state in states] == ["lost"] and 115.0 < states[0].stamp <= 115.2
+    assert suspended.observer.mission.status == "lost"
 
 
 def test_nothing_counts_before_the_newest_state_that_anybody_has_seen(away: Observer) -> None:
