@@ -6,13 +6,16 @@ Times are seconds of a monotonic clock.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Mapping
+from typing import Dict, Iterable, List, Mapping
 
 SILENCE = 3.0
 """Seconds without a message after which a publisher counts as silent."""
 
 FIRST_WAIT, LAST_WAIT = 4.0, 60.0
 """Seconds until the connections to a publisher that stays silent are renewed again: at first, and at most."""
+
+ANSWER_LOOKS = 4
+"""So many looks at a connection without an answer of its publisher, and it is tried anew."""
 
 PATIENCE = 10.0
 """Seconds after which a master that does not know this node, or refuses connections, counts as lost."""
@@ -84,6 +87,21 @@ class Peers:
             if peer.renewed > peer.received:
                 peer.wait = min(2 * peer.wait, LAST_WAIT)
             peer.count, peer.renewed, peer.stale = 0, now, False
+
+
+class Unanswered:
+    """Keeps for how many looks connections have been waiting for an answer of their publishers.
+
+    Looks are counted, not seconds: a node that stood still has not waited meanwhile.
+    """
+
+    def __init__(self) -> None:
+        self._looks: Dict[int, int] = {}
+
+    def look(self, waiting: Iterable[int]) -> List[int]:
+        """Take which connections have no answer yet; return those that are to be tried anew."""
+        self._looks = {each: self._looks.get(each, 0) + 1 for each in waiting}
+        return [each for each, looks in self._looks.items() if looks % ANSWER_LOOKS == 0]
 
 
 class MasterWatch:

@@ -4,7 +4,8 @@ A TCP connection that was cut for t seconds may need t more before it delivers a
 after 150 s. So every node watches topics on which each publisher sends about once a second. A publisher that was silent
 for a while gets a second connection, on every topic, as soon as it answers calls again. The old one is kept for a time,
 and only listens: the publisher sends there what it had sent before, and nothing else. So no message is lost or comes
-twice.
+twice. One whose first connection is not answered is tried again: rospy waits a minute for a connection that a busy
+machine does not take, and for ever for an answer.
 
 When that is done is decided in `pursue_runtime.links`.
 """
@@ -16,6 +17,7 @@ import http.client
 import threading
 import time
 import xmlrpc.client
+from functools import partial
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Set, Tuple
 from xml.parsers.expat import ExpatError
 
@@ -32,6 +34,7 @@ from pursue_runtime.links import (
     UNREACHABLE,
     MasterWatch,
     Peers,
+    Unanswered,
 )
 from pursue_runtime.nodes.node import ERROR, STALE, WARN, Ending, Report, start_thread, worse
 
@@ -47,6 +50,7 @@ CALL = 1.0
 MASTER_PERIOD = 5.0
 """Seconds between two calls to a master that answers."""
 
+_UNKNOWN = "unknown"  # the name of a publisher that has not answered yet
 _OLD = "#old"  # mark of a connection that only listens for what is late
 _NO_ANSWER_OF_A_MASTER = (xmlrpc.client.Error, http.client.HTTPException, ExpatError, ValueError, TypeError)
 _CALL_ERRORS = (OSError, xmlrpc.client.Error, http.client.HTTPException)
@@ -85,6 +89,7 @@ class Links:
         self._ending = ending
         self._lock = threading.Lock()
         self._peers = Peers()
+        self._unanswered = Unanswered()
         self._master = MasterWatch()
         self._busy: Set[str] = set()
         self._late: List[Tuple[float, Any]] = []
@@ -126,8 +131,11 @@ class Links:
                 self._late = [(end, connection) for end, connection in self._late if end > now]
             for connection in over:
                 connection.close()
-            for name in due:
-                threading.Thread(target=self._renew, args=(name,), name=f"renew {name}", daemon=True).start()
+            waiting = {id(connection): (impl, connection) for impl, connection in _waiting()}
+            tasks = [partial(self._renew, name) for name in due]
+            tasks += [partial(self._try_again, *waiting[each]) for each in self._unanswered.look(waiting)]
+            for task in tasks:
+                threading.Thread(target=task, name="renew", daemon=True).start()
             time.sleep(PERIOD)
 
     def _renew(self, name: str) -> None:
@@ -148,6 +156,16 @@ class Links:
                 self._peers.on_renewed(name, time.monotonic())
         if answered:
             rospy.logwarn("%s was silent for a while: connected to it anew", name)
+
+    def _try_again(self, impl: Any, connection: Any) -> None:
+        """Connects anew to a publisher that has not answered yet, if it answers calls: it has sent nothing so far."""
+        uri = connection.endpoint_id
+        if not self._answers(uri, [(impl, connection)]) or connection.callerid_pub != _UNKNOWN:
+            return
+        connection.close()
+        with contextlib.suppress(*_CALL_ERRORS):  # what is missing then is found with the master's help
+            connect(impl.resolved_name, uri)
+        rospy.logwarn("%s: %s did not answer: connected to it anew", impl.resolved_name, uri)
 
     @staticmethod
     def _answers(uri: str, connections: List[Tuple[Any, Any]]) -> bool:
@@ -269,5 +287,13 @@ def _subscriptions() -> List[Any]:
 def _live(impl: Any) -> Iterator[Any]:
     """Its connections that are or were established, but for those that were put aside."""
     for connection in list(impl.connections if impl is not None else ()):
-        if connection.callerid_pub != "unknown" and not connection.endpoint_id.endswith(_OLD):
+        if connection.callerid_pub != _UNKNOWN and not connection.endpoint_id.endswith(_OLD):
             yield connection
+
+
+def _waiting() -> Iterator[Tuple[Any, Any]]:
+    """Topics and their connections that no publisher has answered yet."""
+    for impl in _subscriptions():
+        for connection in list(impl.connections):
+            if connection.callerid_pub == _UNKNOWN and not connection.done:
+                yield impl, connection

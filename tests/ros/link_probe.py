@@ -1,24 +1,45 @@
 """Two nodes that show what a link loses: `link_probe.py talker|listener`.
 
-The talker counts on pursue/events, ten times a second; on SIGUSR1 it drops its connections. The listener prints the
-numbers, one a line. Both watch their links as the nodes of a mission do.
+The talker counts on pursue/events, ten times a second; on SIGUSR1 it drops its connections. `link_probe.py deaf` is a
+talker that does not answer the first who connects there. The listener prints the numbers, one a line. All of them watch
+their links as the nodes of a mission do.
 """
 
 from __future__ import annotations
 
 import os
 import signal
+import socket
 import sys
 import time
+from typing import Any, List
 
 import rospy
+from rospy.impl.tcpros_base import TCPROSServer
 from std_msgs.msg import String
 
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report, init_node
 
 
+def be_deaf() -> None:
+    """Leave the first connection for pursue/events as it is: accepted, and without an answer."""
+    answer = TCPROSServer._tcp_server_callback
+    left: List[socket.socket] = []
+
+    def answer_later(self: Any, connection: socket.socket, address: Any) -> None:
+        if not left and b"pursue/events" in connection.recv(65536, socket.MSG_PEEK):
+            left.append(connection)
+        else:
+            answer(self, connection, address)
+
+    TCPROSServer._tcp_server_callback = answer_later
+
+
 def main(role: str) -> None:
+    if role == "deaf":
+        be_deaf()
+        role = "talker"
     init_node(role)
     pulses = rospy.Subscriber("/diagnostics", rospy.AnyMsg, lambda _: None, queue_size=100)
     ending = Ending()

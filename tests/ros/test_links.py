@@ -115,10 +115,10 @@ def nodes(ros: Ros, workspace: Path, logs: Path, rooms: Optional[Lab] = None) ->
 # Links of single topics ----------------------------------------------------------------------------------------------
 
 
-def talk(made: Nodes, workspace: Path) -> int:
+def talk(made: Nodes, workspace: Path, talker: str = "talker") -> int:
     """Starts talker and listener, and waits until they are connected: the last number that was heard then."""
-    for role in ("listener", "talker"):
-        made.start(role, f"source devel/setup.bash; exec /usr/bin/python3 {PROBE} {role}", role)
+    for name, role in (("listener", "listener"), ("talker", talker)):
+        made.start(name, f"source devel/setup.bash; exec /usr/bin/python3 {PROBE} {role}", name)
     until(lambda: len(heard(made)) > 20, made.logs)
     return max(heard(made))
 
@@ -148,6 +148,15 @@ def test_a_connection_that_was_dropped_is_made_again(ros: Ros, built: Build, tmp
         talk(made, workspace)
         made.kill("talker", signal.SIGUSR1)
         more(made)
+
+
+def test_a_first_connection_that_is_not_answered_is_tried_again(ros: Ros, built: Build, tmp_path: Path) -> None:
+    """rospy waits for the answer for ever, and for a minute where a busy machine does not even take the connection."""
+    workspace = built("thesis/scenario_1", "distributed", make_whole)
+    with nodes(ros, workspace, tmp_path) as made:
+        since = talk(made, workspace, "deaf")
+        assert "connected to it anew" in made.log("listener"), made.logs()
+        until(lambda: once(made, since), made.logs)
 
 
 def test_the_messages_of_a_node_that_stood_still_are_received_whole(ros: Ros, built: Build, tmp_path: Path) -> None:

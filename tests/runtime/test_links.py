@@ -7,7 +7,7 @@ from typing import Any, Dict, List
 
 import pytest
 
-from pursue_runtime.links import FIRST_WAIT, LAST_WAIT, MASTER_PROBLEMS, MasterWatch, Peers
+from pursue_runtime.links import FIRST_WAIT, LAST_WAIT, MASTER_PROBLEMS, MasterWatch, Peers, Unanswered
 
 REGISTERED, NOT_REGISTERED, REFUSED, FOREIGN, UNREACHABLE = "known", "stranger", "refused", "foreign", "unreachable"
 
@@ -54,6 +54,13 @@ def test_only_the_silent_one_is_due() -> None:
     for now in range(10):
         peers.update({"/bot1": now, "/bot2": min(now, 2)}, float(now))
     assert peers.due() == ["/bot2"] and len(peers) == 2
+
+
+def test_a_connection_without_an_answer_is_tried_anew_after_some_looks_and_again_after_as_many() -> None:
+    unanswered = Unanswered()
+    due = [unanswered.look([1, 2] if look != 5 else [1]) for look in range(1, 13)]
+    assert [look for look, found in enumerate(due, 1) if 1 in found] == [4, 8, 12]
+    assert [look for look, found in enumerate(due, 1) if 2 in found] == [4, 9], "it was away at the fifth look"
 
 
 def tries(peers: Any, since: int, until: int, count: int) -> List[float]:
