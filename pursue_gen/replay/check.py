@@ -15,7 +15,7 @@ from pursue_gen.replay.moves import Move, Moves, after, place_of
 from pursue_gen.replay.orders import Entry, Orders, in_time, of_plan, since_for
 from pursue_gen.replay.record import MissionRecord
 from pursue_gen.replay.robots import Done, check_robots
-from pursue_gen.replay.steps import ReplayedStep, aged, delays, zones_of
+from pursue_gen.replay.steps import ReplayedStep, aged, change, delays, where, zones_of
 from pursue_gen.replay.word_matches import WordMatches, match_words, unmatched_words
 from pursue_gen.tga.network import Edge
 from pursue_runtime.locations import is_end, is_movement
@@ -155,7 +155,7 @@ class _Checker:
         if state.seq > 1:
             self._report(UNRECORDED, "gap", state, f"the recording begins with state {state.seq}")
         elif place_of(state) != self.moves.initial:
-            self._report(FAULT, "start", state, f"this is not where the scenario begins: {_where(state)}")
+            self._report(FAULT, "start", state, f"this is not where the scenario begins: {where(state)}")
         self._resume(state)
         if state.seq == 1:
             self._started(state)
@@ -181,7 +181,7 @@ class _Checker:
     def _next(self, before: SystemState, state: SystemState) -> None:
         if before.status == WAITING:
             if place_of(state) != self.moves.initial:
-                self._report(FAULT, "start", state, f"this is not where the scenario begins: {_where(state)}")
+                self._report(FAULT, "start", state, f"this is not where the scenario begins: {where(state)}")
             self._started(state)
             return
         if before.status in ENDED:
@@ -201,7 +201,7 @@ class _Checker:
         elif state.discrete() != before.discrete():
             could = ", ".join(self.moves.possible(place_of(before))) or "nothing"
             what = f"{state.event} by {state.agent}" if state.event else "what happened"
-            changed = _change(before, state)
+            changed = change(before, state)
             self._report(FAULT, "step", state, f"{what} is no step of the model ({changed}); possible: {could}")
             self._resume(state)
         self._clocks(state)
@@ -324,7 +324,7 @@ class _Checker:
             parts = ([zone for zones in part for zone in zones] for part in cover)
             if not cover or not all(in_time(zones, state.clocks, 0.0, self._tolerance) for zones in parts):
                 what = "at these clocks" if cover else "in this state"
-                text = f"the strategy does not know what to do {what}: {_where(state)}{self._is_reliable()}"
+                text = f"the strategy does not know what to do {what}: {where(state)}{self._is_reliable()}"
                 found.append(Finding(WORLD, "uncovered", state.seq, text))
         return found
 
@@ -389,13 +389,3 @@ class _Checker:
     def _is_reliable(self) -> str:
         """What else could be the reason for a strategy that does not fit."""
         return "" if self._game.given else " (if the workspace has another strategy than a new solution: --workspace)"
-
-
-def _where(state: SystemState) -> str:
-    return " ".join(f"{name}={location}" for name, location in state.locations.items())
-
-
-def _change(before: SystemState, state: SystemState) -> str:
-    old: Dict[str, object] = {**before.locations, **before.values}
-    new: Dict[str, object] = {**state.locations, **state.values}
-    return ", ".join(f"{name}: {old[name]} to {new[name]}" for name in old if old[name] != new.get(name))

@@ -61,3 +61,15 @@ def delays(steps: Sequence[ReplayedStep], orders: Mapping[int, Orders]) -> Tuple
         since = due_since(zones_of(known, step), aged(step.before, step.state), back)
         found += [] if since is None else [since]
     return tuple(found)
+
+
+def where(state: SystemState) -> str:
+    """Return where everything is in a state, in one line."""
+    return " ".join(f"{name}={location}" for name, location in state.locations.items())
+
+
+def change(before: SystemState, state: SystemState) -> str:
+    """Return which locations and variables differ in the next state, in one line."""
+    old: Dict[str, object] = {**before.locations, **before.values}
+    new: Dict[str, object] = {**state.locations, **state.values}
+    return ", ".join(f"{name}: {old[name]} to {new[name]}" for name in old if old[name] != new.get(name))
