@@ -13,7 +13,7 @@ from pursue_gen.report.commands import CommandsTable, Game, commands_table
 from pursue_gen.report.html import Section, table
 from pursue_gen.report.thesis_figures import Times, thesis_times
 from pursue_gen.simulation.outcome import Settings
-from pursue_gen.simulation.outcome_texts import END_TEXTS
+from pursue_gen.simulation.outcome_texts import END_TEXTS, driven_words
 from pursue_gen.simulation.runs import Case, Summary, case_of, simulate
 from pursue_gen.solving.solution import Solution
 from pursue_gen.tga.network import Kind
@@ -93,6 +93,7 @@ def section(
     goal = won.objective.kind is not Kind.SAFETY
     parts.append(f"<h3>{'Times to the goal' if goal else 'Simulated missions'}</h3>")
     parts.append(_times(won, missions, thesis_times(scenario.name, robots)) if goal else _safety(missions))
+    parts += [f"<p>{safe(text)}</p>" for one in missions[-1:] for text in driven_words(one.summary)]
     failed = sum(one.summary.failed for one in missions)
     if failed:
         parts.append(f"<p><strong>{failed} simulated missions failed.</strong></p>")

@@ -8,6 +8,7 @@ from typing import Any, Dict, List, Optional, Tuple, Union
 from pursue_gen.simulation.became_true import BecameTrue
 from pursue_gen.simulation.commands import EPSILON
 from pursue_gen.simulation.connections import RECONNECTION, Connections
+from pursue_gen.simulation.driven import Driven
 from pursue_gen.simulation.event_queue import Action, EventQueue, Timer
 from pursue_gen.simulation.faults import Crash, FaultPlan
 from pursue_gen.simulation.judge import Judge
@@ -60,6 +61,7 @@ class SimulatedMission:
         offset = self.fault_plan.offset
         self._judge = Judge(stage.arena, stage.commands, bad, stage.reaction, self.faulty, offset, broken)
         self._promises = Promises(stage.scenario, exact=not self.faulty)
+        self._driven = Driven(stage.scenario)
         self._connections = Connections(self.events, self.fault_plan, name, stage.reaction)
         self._kind = kind_in_mission(settings.opponent, name, remaining)
         self._opponent = Opponent(stage, self._kind, name, remaining)
@@ -129,6 +131,7 @@ class SimulatedMission:
         return Outcome(
             self._seed, self._kind, end, time, reason, len(self._judge.steps), mission.plan, self._judge.off_model,
             self._judge.lateness, cause, tuple(problems), happened, tuple(self.lines), self._promises.duties,
+            self._driven.units,
         )
 
     def _cause(self, mission: Mission) -> str:
@@ -170,6 +173,7 @@ class SimulatedMission:
             self._note(_described(state))
         self._judge.on_state(state, moment)
         self._promises.on_state(state, moment)
+        self._driven.on_state(state)
         for node in self._controllers.values():
             self._send_state(node, state, self._stage.reaction)
         for mover in self._agents.values():

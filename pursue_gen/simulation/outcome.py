@@ -32,7 +32,8 @@ class Outcome:
 
     `lateness`: the longest time, in time units, for which a command was due; `cause`: which fault was too long for the
     strategy, if the mission was not won; `problems`: what must never be; `happened`: how often which fault did;
-    `play`: what happened, a line for each event, where it was asked for; `duties`: as `Promises` has them.
+    `play`: what happened, a line for each event, where it was asked for; `duties`: as `Promises` has them;
+    `driven`: how far each robot drove, in units of distance.
     """
 
     seed: int
@@ -49,3 +50,4 @@ class Outcome:
     happened: Mapping[str, int] = field(default_factory=dict)
     play: Tuple[str, ...] = ()
     duties: Tuple[Duty, ...] = ()
+    driven: Mapping[str, float] = field(default_factory=dict)

@@ -53,10 +53,17 @@ def _notes(summary: Summary, guaranteed: Optional[str]) -> List[str]:
     if summary.bound is not None:
         bound = at_most(Fraction(f"{summary.bound:.6f}"))
         lines.append(f"With the workspace's controllers, and without faults: at most {bound} time units.")
+    lines += driven_words(summary)
     if summary.happened:
         faults = ", ".join(f"{kind} {times:,}" for kind, times in summary.happened.items())
         lines += [f"Faults: {faults}.", f"Missions that went on with a new plan: {summary.planned:,}."]
     return lines
+
+
+def driven_words(summary: Summary) -> List[str]:
+    """How far each robot drove, as a sentence; none where no robot can."""
+    units = ", ".join(f"{name} {driven:.1f}" for name, driven in summary.driven.items())
+    return [f"Driven in a mission, on average, in units of distance: {units}."] if units else []
 
 
 def failure(outcome: Outcome, again: str) -> List[str]:
@@ -79,6 +86,7 @@ def as_json(summary: Summary, facts: Dict[str, Any]) -> Dict[str, Any]:
             {"objective": a.objective, "limit": a.limit, "calls": a.calls, "worst": a.latest, "untried": a.untried}
             for a in summary.answers
         ],
+        "driven": dict(summary.driven),
         "bound": summary.bound,
         "happened": summary.happened,
         "planned": summary.planned,

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from statistics import median
-from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import error
 from pursue_gen.language.scenario import Patrol, Scenario
@@ -82,7 +82,8 @@ class Answers:
 class Summary:
     """What the missions came to. `failures`: the first few that must never be, with their plays; `failed`: how many
     there are; `happened`: how often which fault did; `planned`: missions in which a new plan came into force;
-    `answers`: one for each objective that is called upon with a limit."""
+    `answers`: one for each objective that is called upon with a limit; `driven`: how far each robot drove
+    on average, in units of distance."""
 
     missions: int
     rows: Tuple[Row, ...]
@@ -93,6 +94,7 @@ class Summary:
     bound: Optional[float]
     remaining: bool
     answers: Tuple[Answers, ...] = ()
+    driven: Mapping[str, float] = field(default_factory=dict)
 
 
 def case_of(scenario: Scenario, won: Solution, options: Options, settings: Settings) -> Tuple[Case, bool]:
@@ -180,12 +182,14 @@ def simulate(case: Case, seeds: Sequence[int], jobs: int = 1, progress: Callable
     failures come with their plays. `played`: the outcomes of these missions, if other machines play them."""
     times: Dict[str, List[float]] = {}
     happened: Counter[str] = Counter()
+    driven: Counter[str] = Counter()
     failed: List[Outcome] = []
     count = planned = done = 0
     duties: List[Tuple[Duty, ...]] = []
     for outcome in outcomes(case, seeds, jobs) if played is None else played:
         times.setdefault(outcome.end, []).append(outcome.time)
         happened.update(outcome.happened)
+        driven.update(outcome.driven)
         planned += outcome.plan > 0
         duties.append(outcome.duties)
         if outcome.end == FAILED:
@@ -199,7 +203,8 @@ def simulate(case: Case, seeds: Sequence[int], jobs: int = 1, progress: Callable
     players = MissionRunner(case) if failed else None
     plays = tuple(players.run(outcome.seed, record=True) for outcome in failed) if players else ()
     kinds, answers = dict(sorted(happened.items())), _answers(case.scenario, duties)
-    return Summary(done, rows, plays, count, kinds, planned, case.settings.bound, remaining, answers)
+    average = {name: units / max(1, done) for name, units in driven.items()}
+    return Summary(done, rows, plays, count, kinds, planned, case.settings.bound, remaining, answers, average)
 
 
 def _answers(scenario: Scenario, missions: Sequence[Sequence[Duty]]) -> Tuple[Answers, ...]:

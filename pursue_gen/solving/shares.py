@@ -285,7 +285,7 @@ class _Search:
             if verdict.strategy is None:
                 return None
             how = self._reaction, verdict.ranks, self._options
-            return _without_hidden(prove(game, wanted, verdict.strategy, *how, otherwise=verdict.cautious))
+            return without_hidden(prove(game, wanted, verdict.strategy, *how, otherwise=verdict.cautious))
         except (NotProven, LimitHit):
             if self.budget.used_up:
                 raise
@@ -342,7 +342,7 @@ def _decisive(network: Network, game: Network) -> Iterator[str]:
                     yield from variables_of(edge)
 
 
-def _without_hidden(strategy: Strategy) -> Strategy:
+def without_hidden(strategy: Strategy) -> Strategy:
     """The strategy in the names of the network itself."""
     if not strategy.blocks or strategy.blocks[0].state.locations[-1][0] != HIDDEN:
         return strategy

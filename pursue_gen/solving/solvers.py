@@ -13,6 +13,7 @@ from typing import Optional
 from pursue_gen.diagnostics import PursueError, usage_error
 from pursue_gen.files import write_texts
 from pursue_gen.outcomes import LimitHit
+from pursue_gen.solving.calm import calm
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.quick import quick, within
 from pursue_gen.solving.rules import Rules, played
@@ -63,10 +64,10 @@ def _built_in(network: Network, objective: Objective, rules: Rules, options: Sol
         return fastest_solution(network, objective, rules, options)
     won = solution(network, objective, rules, options)
     left = options.since(start)
-    if objective.kind is Kind.SAFETY or options.optimize == _FIRST:
+    if options.optimize == _FIRST:
         return _timed(won, left.limits)
     with suppress(LimitHit), enforced(left.limits.chosen):
-        return quick(won, left)
+        return calm(won, left) if objective.kind is Kind.SAFETY else quick(won, left)
     return won  # what is proven stays so
 
 

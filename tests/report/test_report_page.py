@@ -84,6 +84,14 @@ def answer_to(there: Browser, question: str) -> str:
 # Without a browser ----------------------------------------------------------------------------------------------------
 
 
+def test_it_says_how_far_each_robot_drove(catch: str) -> None:
+    driven = re.search(r"<p>Driven in a mission, on average, in units of distance: (.*?)\.</p>", catch)
+    assert driven is not None
+    units = dict(robot.split() for robot in driven[1].split(", "))
+    assert units.keys() == {"polBot1", "polBot2"} and all(float(far) >= 0 for far in units.values())
+    assert any(map(float, units.values()))
+
+
 def test_two_runs_give_the_same_bytes_without_paths_or_dates(catch: str) -> None:
     assert catch == won_page(CATCH, 3)
     assert str(Path.cwd()) not in catch and not re.search(r"\b20\d\d-\d\d-\d\d\b", catch)

@@ -1,0 +1,161 @@
+"""A strategy for a safety objective without moves that no promise needs, proven like any other.
+
+On a patrol robots set off only for places that are due (see `due_moves`), as late as is won with little work. Commands
+that are given while nothing is owed are left out, all of them if the strategy wins without; else those of some robots,
+or some of each. A share commands nothing then that it did not command before, and the checker has the last word: where
+it refuses, the strategy stays as it is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
+
+from pursue_gen.language.network_names import AT_RISK
+from pursue_gen.outcomes import LimitHit, NotProven
+from pursue_gen.proof.checker import LIMIT, verify
+from pursue_gen.proof.shares import shares_of
+from pursue_gen.solving.due_moves import only_due, patrols
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.proving import prove
+from pursue_gen.solving.shares import without_hidden
+from pursue_gen.solving.solution import Solution
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.strategy import Block, DiscreteState, Move, Strategy
+from pursue_gen.tga.network import Kind, Network, Objective
+
+_RESERVES = tuple(Fraction(tenths, 10) for tenths in (1, 2, 3, 4, 6, 10))
+"""The parts of a period that a robot has to spare when it sets off for a visit; the first that wins counts."""
+
+_WORK, _STATES = 20_000_000, 20_000
+"""The work of all games in which robots set off for what is due, and the discrete states of each."""
+
+_SHARE = 0.3
+"""The part of what is left that one of them gets."""
+
+_LOOKS, _SYMBOLIC = 12, 6_000
+"""So many strategies with fewer commands are looked at for a game, with so many symbolic states each."""
+
+
+@dataclass(frozen=True)
+class _Game:
+    """A share, or the game itself: its number, what is played in it, by which strategy, and what is for patrols."""
+
+    number: Optional[int]
+    network: Network
+    objective: Objective
+    strategy: Strategy
+    patrols: FrozenSet[str]
+
+
+def calm(won: Solution, options: SolveOptions) -> Solution:
+    """The solution without moves that no promise needs, as far as little work finds one; the same where there is a
+    goal. Within the limits; raises LimitHit at them."""
+    if won.objective.kind is not Kind.SAFETY or won.strategy.counter:
+        return won
+    start = options.limits.now()
+    budget = Budget(replace(options.limits, work=_WORK, states=_STATES), options.progress, options.engine)
+    for game in _games(won):
+        for fewer in (_when_due, _owed):
+            strategy = fewer(game, won.reaction, budget, options.since(start))
+            if strategy is None:
+                continue
+            whole = _with(won.strategy, game, strategy)
+            report = verify(
+                won.network, won.objective, whole, won.reaction, LIMIT, limits=options.limits.since(start)
+            )
+            if report.ok:
+                won, game = won.with_strategy(whole), replace(game, strategy=strategy)
+    return won
+
+
+def _games(won: Solution) -> Iterator[_Game]:
+    """The game, or those of its shares, as they are played now."""
+    strategy, visited = won.strategy, patrols(won.network)
+    if not strategy.in_parts:
+        yield _Game(None, won.network, won.objective, strategy, visited)
+        return
+    for part in shares_of(won.network, won.objective, strategy):
+        if not part.fault:
+            yield _Game(part.stage, part.game, part.objective, part.strategy, visited)
+
+
+def _with(whole: Strategy, game: _Game, strategy: Strategy) -> Strategy:
+    """The whole strategy with this one for the game's share."""
+    if game.number is None:
+        return strategy
+    first = whole.shares[game.number][0]
+    own = set(whole.numbers_of(game.number, first))
+    others = tuple(block for number, block in enumerate(whole.blocks) if number not in own)
+    return replace(whole, blocks=(*others, *without_hidden(strategy).blocks))
+
+
+def _when_due(game: _Game, reaction: Fraction, budget: Budget, options: SolveOptions) -> Optional[Strategy]:
+    """A proven strategy by which robots set off for what is due alone; None where none is found, or none of them is on
+    a patrol."""
+    free = bool(game.strategy.left_out_clocks)
+    for reserve in _RESERVES:
+        due = only_due(game.network, game.objective, game.patrols, reserve)
+        if due is None or budget.used_up:
+            return None
+        try:
+            verdict = budget.verdict(due.network, game.objective, reaction, _SHARE, without_pauses=free)
+            if verdict.strategy is not None:
+                found = due.in_names_of(verdict.strategy)
+                return prove(game.network, game.objective, found, reaction, options=options)
+        except (LimitHit, NotProven):
+            continue
+    return None
+
+
+_Given = Tuple[DiscreteState, Tuple[Move, ...]]
+"""A command, by the state in which it is given."""
+
+
+def _owed(game: _Game, reaction: Fraction, budget: Budget, options: SolveOptions) -> Optional[Strategy]:
+    """The strategy without commands that are given while nothing is owed, as far as it wins without them; None where
+    all are needed."""
+    idle = _idle(game)
+    found: Optional[Strategy] = None
+    groups, looks = [idle] if idle else [], 0
+    while groups and looks < _LOOKS:
+        some, looks = groups.pop(), looks + 1
+        fewer = _without(found or game.strategy, set(some))
+        try:
+            how = replace(options, progress=None)
+            found = prove(game.network, game.objective, fewer, reaction, options=how, states=_SYMBOLIC)
+        except (LimitHit, NotProven):
+            groups += _smaller(some)
+    return found
+
+
+def _idle(game: _Game) -> List[_Given]:
+    """The commands that are given where no promise waits for anything."""
+    owed = {(name, AT_RISK) for name, _ in game.objective.bad}
+    blocks = (block for block in game.strategy.blocks if owed.isdisjoint(block.state.locations))
+    return [(block.state, command.moves) for block in blocks for command in block.commands]
+
+
+def _smaller(some: Sequence[_Given]) -> List[List[_Given]]:
+    """The commands of each robot; of one robot the first and the second half of them."""
+    robots: Dict[str, List[_Given]] = {}
+    for given in some:
+        robots.setdefault(given[1][0].automaton, []).append(given)
+    if len(robots) > 1:
+        return list(robots.values())
+    half = len(some) // 2
+    return [list(some[half:]), list(some[:half])] if half else []
+
+
+def _without(strategy: Strategy, gone: Set[_Given]) -> Strategy:
+    """The strategy that waits where it gives these commands."""
+    return replace(strategy, blocks=tuple(_waiting(block, gone) for block in strategy.blocks))
+
+
+def _waiting(block: Block, gone: Set[_Given]) -> Block:
+    left_out = [command for command in block.commands if (block.state, command.moves) in gone]
+    if not left_out:
+        return block
+    kept = tuple(command for command in block.commands if command not in left_out)
+    return replace(block, wait=(*block.wait, *(zone for c in left_out for zone in c.zones)), commands=kept)

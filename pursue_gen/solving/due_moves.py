@@ -1,0 +1,175 @@
+"""Games in which robots set off only for what is due: where a promise waits for its answer, or a place of a patrol for
+its next visit.
+
+A robot then goes nowhere while nothing is due. On a patrol it sets off for a place when the time that is left until the
+visit is that of the way there, and a reserve; and each of its ways brings it nearer to a place that is due. Moves are
+only taken from the controller, so a strategy for such a game is one for the game itself, in whose names `in_names_of`
+puts it.
+"""
+
+from __future__ import annotations
+
+import heapq
+import math
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Tuple
+
+from pursue_gen.language.network_names import AT_RISK, IDLE
+from pursue_gen.language.numbers import Number
+from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Network, Objective, Test
+from pursue_runtime.locations import is_movement
+
+_DUE = "@due_"
+"""With the name of an automaton, the variable that is 1 while its deadline is running."""
+
+
+@dataclass(frozen=True)
+class Duty:
+    """A deadline: its automaton, clock and length. `visits`: of a patrol, the places at which each robot ends it."""
+
+    name: str
+    clock: str
+    deadline: Number
+    visits: Mapping[str, Tuple[str, ...]]
+
+
+@dataclass(frozen=True)
+class DueMoves:
+    """The game, and for its edges those that they were before."""
+
+    network: Network
+    before: Mapping[Edge, Edge]
+
+    def in_names_of(self, strategy: Strategy) -> Strategy:
+        """A strategy for this game as one for the game that it was made of."""
+        return replace(strategy, blocks=tuple(map(self._block, strategy.blocks)))
+
+    def _block(self, block: Block) -> Block:
+        values = tuple(pair for pair in block.state.values if not pair[0].startswith(_DUE))
+        commands: Dict[Tuple[Move, ...], Tuple[Zone, ...]] = {}
+        for command in block.commands:
+            moves = tuple(replace(move, edge=self.before.get(move.edge, move.edge)) for move in command.moves)
+            commands[moves] = (*commands.get(moves, ()), *command.zones)
+        together = tuple(Command(zones, moves) for moves, zones in commands.items())
+        return replace(block, state=replace(block.state, values=values), commands=together)
+
+
+def patrols(network: Network) -> FrozenSet[str]:
+    """The automata whose deadlines robots begin, and nobody else: each place of a patrol has one."""
+    return frozenset(automaton.name for automaton in network.automata if _is_patrol(network, automaton))
+
+
+def _is_patrol(network: Network, automaton: Automaton) -> bool:
+    begins = [edge for edge in automaton.edges if edge.source != AT_RISK and edge.target == AT_RISK]
+    return bool(begins) and all(
+        sent.controllable and is_movement(sent.target) for edge in begins for _, sent in _senders(network, edge)
+    )
+
+
+def duties(network: Network, objective: Objective, known: AbstractSet[str]) -> Tuple[Duty, ...]:
+    """What has a deadline of the objective's promises; `known`: those of patrols (see `patrols`)."""
+    names = dict.fromkeys(name for name, _ in objective.bad)
+    watching = [automaton for automaton in network.automata if automaton.name in names]
+    bounds = ((each, place.invariant) for each in watching for place in each.locations if place.name == AT_RISK)
+    return tuple(_duty(network, each, bound[0], each.name in known) for each, bound in bounds if bound)
+
+
+def _duty(network: Network, automaton: Automaton, bound: ClockBound, patrol: bool) -> Duty:
+    visits: Dict[str, Tuple[str, ...]] = {}
+    for edge in automaton.edges:
+        if patrol and edge.source == AT_RISK and edge.target == IDLE:
+            for name, sent in _senders(network, edge):
+                visits[name] = tuple(dict.fromkeys((*visits.get(name, ()), sent.target)))
+    return Duty(automaton.name, bound.clock, bound.bound, visits)
+
+
+def _senders(network: Network, edge: Edge) -> Iterator[Tuple[str, Edge]]:
+    """The edges that send what this one receives, each with its agent."""
+    if edge.sync is not None:
+        sent = replace(edge.sync, sends=True)
+        yield from ((automaton.name, other) for automaton in network.automata for other in automaton.edges
+                    if other.sync == sent)  # fmt: skip
+
+
+def only_due(
+    network: Network, objective: Objective, visited: AbstractSet[str], reserve: Fraction
+) -> Optional[DueMoves]:
+    """The game in which robots set off only for what is due: for a visit when all that is left of its period is the way
+    there and this part of the period. None where none of the objective's promises is for a patrol; `visited`: those
+    that are."""
+    known = duties(network, objective, visited)
+    called = [duty for duty in known if not duty.visits]
+    if len(called) == len(known):
+        return None
+    before: Dict[Edge, Edge] = {}
+    automata: List[Automaton] = []
+    for automaton in network.automata:
+        telling = any(automaton.name == duty.name for duty in called)
+        nearer = {duty.name: _distances(automaton, duty.visits.get(automaton.name, ())) for duty in known}
+        edges: List[Edge] = []
+        for edge in automaton.edges:
+            some = [_telling(automaton.name, edge)] if telling else [edge]
+            if _sets_off(edge):
+                some = list(_for_duties(edge, automaton, known, nearer, reserve))
+            before.update((new, edge) for new in some if new != edge)
+            edges += some
+        automata.append(replace(automaton, edges=tuple(dict.fromkeys(edges))))
+    at_risk = {automaton.name for automaton in automata if automaton.initial == AT_RISK}
+    variables = tuple((_DUE + duty.name, int(duty.name in at_risk)) for duty in called)
+    return DueMoves(replace(network, automata=tuple(automata), variables=(*network.variables, *variables)), before)
+
+
+def _telling(name: str, edge: Edge) -> Edge:
+    """The edge of a promise's automaton, with the variable that is 1 while its deadline is running."""
+    if AT_RISK not in (edge.source, edge.target) or edge.source == edge.target:
+        return edge
+    return replace(edge, assign=(*edge.assign, (_DUE + name, int(edge.target == AT_RISK))))
+
+
+def _sets_off(edge: Edge) -> bool:
+    return edge.controllable and is_movement(edge.target) and not is_movement(edge.source)
+
+
+def _for_duties(
+    edge: Edge,
+    automaton: Automaton,
+    known: Sequence[Duty],
+    nearer: Mapping[str, Mapping[str, Number]],
+    reserve: Fraction,
+) -> Iterator[Edge]:
+    """The edge with which a robot sets off, once for each patrol to whose place it leads, and for each promise."""
+    clocks, integers = edge.guard.clocks, edge.guard.integers
+    ends = [other.target for other in automaton.edges if other.source == edge.target]
+    called = tuple(Test(_DUE + duty.name, 1) for duty in known if not duty.visits)
+    if called:
+        yield replace(edge, guard=Guard(clocks, (*integers, called)))
+    for duty in known:
+        far = nearer[duty.name]
+        if edge.source in far and all(end in far and far[end] < far[edge.source] for end in ends):
+            latest = Fraction(duty.deadline) * (1 - reserve) - Fraction(far[edge.source])
+            due = ClockBound(duty.clock, ">=", max(0, math.floor(latest)))
+            yield replace(edge, guard=Guard((*clocks, due), integers))
+
+
+def _distances(automaton: Automaton, places: Sequence[str]) -> Dict[str, Number]:
+    """How long an agent takes at most to the nearest of these places, its rests included, from where it can come there.
+    """
+    bounds = {place.name: place.invariant for place in automaton.locations}
+    ways: Dict[str, List[Tuple[str, Number]]] = {}
+    for edge in automaton.edges:
+        if is_movement(edge.target) and bounds[edge.target]:
+            rest = max((bound.bound for bound in edge.guard.clocks if bound.op in (">", ">=")), default=0)
+            for other in automaton.edges:
+                if other.source == edge.target != other.target:
+                    ways.setdefault(other.target, []).append((edge.source, rest + bounds[edge.target][0].bound))
+    found: Dict[str, Number] = {}
+    waiting: List[Tuple[Number, str]] = [(0, place) for place in places]
+    while waiting:
+        far, place = heapq.heappop(waiting)
+        if place not in found:
+            found[place] = far
+            for origin, takes in ways.get(place, ()):
+                heapq.heappush(waiting, (far + takes, origin))
+    return found
