@@ -58,7 +58,7 @@ class Decided:
 
 def decided(scenario: Scenario, rules: Rules, budget: Budget) -> Optional[Decided]:
     """What is decided of several objectives, within the budget; None where there is one."""
-    statements = tuple(_statements(scenario))
+    statements = tuple(each_statement(scenario))
     if len(statements) < 2:
         return None
     found: List[Tuple[Known, _Statement]] = []
@@ -137,7 +137,7 @@ def _with_one_robot(network: Network) -> Iterator[Network]:
         yield idle(network, set(robots) - {robot})
 
 
-def _statements(scenario: Scenario) -> Iterator[Tuple[str, _Statement]]:
+def each_statement(scenario: Scenario) -> Iterator[Tuple[str, _Statement]]:
     """The objectives of each statement, and its text."""
     found: Dict[Span, List[StatedObjective]] = {}
     for objective in scenario.objectives:

@@ -15,6 +15,9 @@ from pursue_gen.lsp.fixes import Fix
 from pursue_gen.lsp.outline import Fold, Symbol
 from pursue_gen.lsp.tokens import Occurrence
 
+_COSTS = "discrete states of the game of this objective alone, which those of others multiply"
+"""What a number of states behind an objective means."""
+
 _ITEM_KINDS = {
     "word": lsp.CompletionItemKind.Keyword,
     "sign": lsp.CompletionItemKind.Operator,
@@ -133,6 +136,13 @@ def folding_ranges(folds: Iterable[Fold]) -> List[lsp.FoldingRange]:
     """What can be folded away."""
     kinds = lsp.FoldingRangeKind
     return [lsp.FoldingRange(f.first, f.last, kind=kinds.Comment if f.comment else kinds.Region) for f in folds]
+
+
+def inlay_hints(document: Document, start: int, end: int) -> List[lsp.InlayHint]:
+    """What the objectives between these offsets cost, behind their statements."""
+    ends = ((document.positions.of_span(size.span)[1], size.in_words()) for size in document.sizes)
+    places = ((lsp.Position(*document.positions.position(at)), words) for at, words in ends if start <= at <= end)
+    return [lsp.InlayHint(place, words, tooltip=_COSTS, padding_left=True) for place, words in places]
 
 
 def code_actions(document: Document, uri: str, found: Sequence[Fix], pages: Optional[str]) -> List[lsp.CodeAction]:

@@ -5,17 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePosixPath
-from typing import Dict, Optional, Tuple
+from typing import TYPE_CHECKING, Dict, Optional, Tuple
 
 from lark import Token
 
-from pursue_gen.diagnostics import Diagnostic
+from pursue_gen.diagnostics import Diagnostic, Severity
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.names import KINDS
 from pursue_gen.language.parser import Reading, read
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.lsp.positions import UTF_16, Positions, plain
 from pursue_gen.lsp.tokens import COMMENTS, Occurrence, Statement, all_tokens, occurrences, statements
+
+if TYPE_CHECKING:
+    from pursue_gen.explanation.sizes import Size
 
 
 @dataclass(frozen=True)
@@ -90,6 +93,14 @@ class Document:
         if self.reading.partial is not None:
             return self.reading.partial
         return Scenario(self._name or "", self.file, self.text, (), (), (), (), (), (), (), (), ())
+
+    @cached_property
+    def sizes(self) -> Tuple[Size, ...]:
+        """What the statements of its objectives cost; () while something is wrong with it, or there is none."""
+        from pursue_gen.explanation.sizes import sizes
+
+        wrong = any(finding.severity is Severity.ERROR for finding in self.findings)
+        return () if wrong or self.reading.partial is None else sizes(self.reading.partial)
 
     def statement_at(self, offset: int) -> Optional[Statement]:
         """The statement that an offset is in, or right behind of."""

@@ -150,6 +150,11 @@ class Session:
         """The ranges that can be folded."""
         return convert.folding_ranges(folds(document))
 
+    def count(self, document: Document, params: lsp.InlayHintParams) -> List[lsp.InlayHint]:
+        """How many states the objectives in a range cost."""
+        start, end = (convert.offset_of(document, place) for place in (params.range.start, params.range.end))
+        return convert.inlay_hints(document, start, end)
+
     def format(self, document: Document, _params: lsp.DocumentFormattingParams) -> List[lsp.TextEdit]:
         """The edit that formats the text; none while it has syntax errors, which are shown anyway."""
         try:
@@ -201,6 +206,7 @@ class Session:
         self._register_request(lsp.TEXT_DOCUMENT_RENAME, self.rename, lsp.RenameOptions(prepare_provider=True))
         self._register_request(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL, self.outline)
         self._register_request(lsp.TEXT_DOCUMENT_FOLDING_RANGE, self.fold)
+        self._register_request(lsp.TEXT_DOCUMENT_INLAY_HINT, self.count)
         self._register_request(lsp.TEXT_DOCUMENT_FORMATTING, self.format)
         kinds = [lsp.CodeActionKind.QuickFix]
         self._register_request(lsp.TEXT_DOCUMENT_CODE_ACTION, self.fix, lsp.CodeActionOptions(code_action_kinds=kinds))

@@ -51,6 +51,7 @@ def test_what_it_can_do(editor: Editor) -> None:
     assert editor.abilities["renameProvider"] == {"prepareProvider": True}
     assert editor.abilities["foldingRangeProvider"] and editor.abilities["documentFormattingProvider"]
     assert editor.abilities["codeActionProvider"] == {"codeActionKinds": ["quickfix"]}
+    assert editor.abilities["inlayHintProvider"]
     assert editor.abilities["positionEncoding"] == "utf-16"
 
 
@@ -111,6 +112,19 @@ def test_hover(editor: Editor) -> None:
     answer = editor.at("hover", *place(EMOJI, ' poi "'))
     assert "to b: distance 3" in answer["contents"]["value"]
     assert editor.at("hover", 0, 4) is None
+
+
+def test_the_states_that_an_objective_costs_stand_behind_it(editor: Editor) -> None:
+    lines = EMOJI.split("\n")
+    whole = {"start": {"line": 0, "character": 0}, "end": {"line": len(lines), "character": 0}}
+    hints = editor.about("inlayHint", range=whole)
+    ends = [place(EMOJI, words) for words in (lines[-3], lines[-2])]
+    assert [hint["position"] for hint in hints] == [{"line": line, "character": column} for line, column in ends]
+    assert all(hint["label"].endswith(" states") for hint in hints)
+    first = {"start": {"line": 0, "character": 0}, "end": {"line": 1, "character": 0}}
+    assert editor.about("inlayHint", range=first) == []
+    editor.change(EMOJI.replace("do hand", "do hnd"))
+    assert editor.about("inlayHint", range=whole) == []
 
 
 def test_outline_folds_and_formatting(editor: Editor) -> None:
