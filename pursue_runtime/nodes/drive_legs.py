@@ -184,7 +184,7 @@ class DriveLegs:
             link.go(due.goal, robot.poses[due.goal.movement.place.poi])
         if due.act is not None:
             self._acts += 1
-            link.do(Order(robot.name, due.act.event, self._acts, session.location, given=round(rospy.get_time(), 6)))
+            link.do(Order(robot.name, due.act.event, self._acts, session.location))
         if due.drive is not None:
             self._publish(due.drive)
 

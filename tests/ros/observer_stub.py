@@ -31,7 +31,7 @@ def on_event(message: String) -> None:
     if message.data == START and os.environ["LAST_STATUS"] and not begun:
         begun.append(rospy.get_time())
         publish(1, 0.0, RUNNING)
-    elif message.data == "thief_a2b":
+    elif message.data == "thief_a2b#1":
         publish(2, 3.0, os.environ["LAST_STATUS"], "thief_a2b", "thief")
 
 
