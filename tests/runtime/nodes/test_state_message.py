@@ -15,7 +15,8 @@ from pursue_runtime.state import SystemState
 
 STATE = SystemState(
     7, 100.25, {"bot": "a", "rule": "first"}, {"Pbot": -12}, {"Cbot": 1.5}, "bot_a2b", "bot", "holding",
-    "{bot} is late", 0.5, 2, ("bot",), "f843eea7df12", ("bot",), held=("bot",), commanded=True, orders=("bot:ring@7~100.250000/a!",),
+    "{bot} is late", 0.5, 2, ("bot",), "f843eea7df12", ("bot",), held=("bot",), commanded=True,
+    orders=("bot:ring@7~100.250000/a!",),
 )  # fmt: skip
 
 

@@ -1,0 +1,73 @@
+"""Which mission a node belongs to, without a master."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, Dict, List
+
+import pytest
+
+pytest.importorskip("rospy", reason="ROS is not installed")
+
+from pursue_runtime.data import Package
+from pursue_runtime.nodes import membership as module
+from pursue_runtime.nodes.membership import Membership
+from pursue_runtime.state import SystemState
+from tests.runtime.models import model_data, mover, worker
+
+DIGEST = "ab" * 32
+PEOPLE: Dict[str, Any] = {
+    "format": 1, "controller": "UI", "commands_agents": ["nurse"], "reaction": 0.1, "strategy": [],
+}  # fmt: skip
+
+
+class Node:
+    """The membership of a node whose data are in a folder, and what becomes of it."""
+
+    def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch, **files: Any) -> None:
+        mission = {"format": 1, "mission": DIGEST, "scenario": "example"}
+        data = model_data(mover("bot", "robot", 9), worker("nurse", "human"))
+        for name, content in {"model": data, "mission": mission, **files}.items():
+            (folder / f"{name}.yaml").write_text(json.dumps(content))
+        self.done: List[str] = []
+        note = lambda name: lambda *_: self.done.append(name)
+        witness = SimpleNamespace(publish=note("witness"))
+        monkeypatch.setattr(module, "Witness", lambda newest: witness)
+        monkeypatch.setattr(module, "StatePrinter", lambda _: SimpleNamespace(on_state=note("printed")))
+        monkeypatch.setattr(module.rospy, "get_param", lambda *_: {})
+        monkeypatch.setattr(module.rospy, "logerr", lambda *_: None)
+        ending: Any = SimpleNamespace(renew=note("renewed"))
+        self.membership = Membership(Package("UI", "example", str(folder / "script")), ending, str(folder))
+
+    def state(self, **changes: Any) -> SystemState:
+        """A state of this mission."""
+        start = self.membership.model.initial()
+        made = SystemState(1, 100.0, *start, status="running", mission=self.membership.source.mission)
+        return made._replace(**changes)
+
+
+def test_a_state_of_its_mission_counts_and_one_of_another_that_is_not_here_does_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node = Node(tmp_path, monkeypatch)
+    assert node.membership.model.scenario == "example"
+    assert node.membership.takes(node.state()) and node.done == ["printed"] and node.membership.trouble == ""
+    assert not node.membership.takes(node.state(mission="f" * 12, stamp=200.0, status="waiting", seq=0))
+    assert node.membership.trouble == "does not have mission ffffffffffff: send it to this machine"
+    assert node.membership.takes(node.state(stamp=300.0, status="waiting", seq=0)) and node.membership.trouble == ""
+
+
+def test_a_state_that_is_not_of_its_model_is_refused_and_the_observer_learns_what_it_knows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node = Node(tmp_path, monkeypatch)
+    assert not node.membership.takes(node.state(locations={"bot": "nowhere"}))
+    assert node.done == ["witness"] and node.membership.refused
+
+
+def test_people_have_a_part_of_the_strategy_where_there_is_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert Node(tmp_path, monkeypatch).membership.people() is None
+    people = Node(tmp_path, monkeypatch, people=PEOPLE).membership.people()
+    assert people is not None and list(people.agents) == ["nurse"]

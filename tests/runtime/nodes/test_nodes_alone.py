@@ -1,0 +1,233 @@
+"""What the smaller nodes do with what they receive, without a master."""
+
+from __future__ import annotations
+
+import io
+import threading
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, Dict, List, Tuple
+
+import pytest
+
+pytest.importorskip("rospy", reason="ROS is not installed")
+
+import rosbag
+import rospy
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from std_msgs.msg import String
+
+from pursue_runtime.controller.settings import Settings
+from pursue_runtime.controller.whereabouts import Position
+from pursue_runtime.nodes import positions, recorder, robot_link
+from pursue_runtime.nodes.communication_manager import CommunicationManager
+from pursue_runtime.nodes.markers import MarkersNode
+from pursue_runtime.nodes.node import ERROR, OK, WARN
+from pursue_runtime.nodes.recorder import Bag, Recorder
+from pursue_runtime.nodes.robot_link import RobotLink
+from pursue_runtime.nodes.simulator import SimulatorNode
+from pursue_runtime.nodes.state_message import message_of
+from pursue_runtime.nodes.witness import Witnesses
+from pursue_runtime.state import SystemState
+from pursue_runtime.ui.markers import BALL, DISC, TEXT
+
+STATE = SystemState(7, 100.0, {"bot": "a"}, {"Pbot": 1}, {"Cbot": 1.0}, status="running")
+
+
+# The simulator --------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def simulator(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """A simulator that notes what it publishes and when it wakes."""
+    made: Any = SimulatorNode.__new__(SimulatorNode)
+    made.lock, made.done, made.reported = threading.RLock(), [], 0
+    made.events = SimpleNamespace(publish=made.done.append)
+    made.alarm = SimpleNamespace(set=lambda *given: made.done.append(given))
+    made.simulator = SimpleNamespace(
+        on_order=lambda *given: made.done.append(given), due=lambda *_: [], next_moments=lambda: (105.0, 53.0)
+    )
+    monkeypatch.setattr(rospy, "get_time", lambda: 100.0)
+    monkeypatch.setattr("pursue_runtime.nodes.simulator.time.monotonic", lambda: 50.0)
+    return made
+
+
+def test_an_action_is_acknowledged_with_its_number_each_time_and_the_simulator_sleeps_until_there_is_more(
+    simulator: Any,
+) -> None:
+    simulator.on_order(String("ring@7~99.500000"), "bot")
+    assert simulator.done == [("bot", 100.0, "ring", 7), "bot:_order_@7~99.500000", (105.0, 3.0)]
+    simulator.done.clear()
+    simulator.on_order(String("ring"), "bot")
+    assert simulator.done == [("bot", 100.0, "ring", 0), (105.0, 3.0)], "it has no number"
+
+
+# The recorder ---------------------------------------------------------------------------------------------------------
+
+
+def test_a_bag_keeps_who_has_published_what(tmp_path: Path) -> None:
+    bag = Bag(str(tmp_path / "m.bag"))
+    header = {"type": "std_msgs/String", "md5sum": String._md5sum, "message_definition": String._full_text}
+    for second, node in enumerate(("one", "two", "one"), 1):
+        message = rospy.AnyMsg()
+        message._buff = b"\x02\x00\x00\x00hi"
+        bag.note("/words", message, {**header, "callerid": node}, rospy.Time(second))
+    bag.close()
+    with rosbag.Bag(str(tmp_path / "m.bag")) as made:
+        connections = [each.header["callerid"] for each in made._get_connections()]
+        read = [(message.data, at.secs) for _, message, at in made.read_messages()]
+    assert sorted(connections) == [b"one", b"two"] and read == [("hi", 1), ("hi", 2), ("hi", 3)]
+
+
+def test_the_last_states_of_a_mission_before_this_one_are_not_recorded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(recorder, "stamp", lambda: rospy.Time(1))
+    made: Any = Recorder.__new__(Recorder)
+    made.lock, made.open, made.status, made.count, made.done = threading.Lock(), True, "", 0, []
+    made.states, made.texts = "/pursue/state", "/pursue/system_state"
+    made.membership = SimpleNamespace(takes=lambda state: state.seq == 7)
+    made.bag = SimpleNamespace(note=lambda topic, *_: made.done.append(topic))
+    made.ending = SimpleNamespace(end=lambda status: made.done.append(status))
+
+    def receive(topic: str, state: SystemState) -> None:
+        message: Any = rospy.AnyMsg()
+        buffer = io.BytesIO()
+        message_of(state).serialize(buffer)
+        message._buff, message._connection_header = buffer.getvalue(), {}
+        made.on_message(message, topic)
+
+    receive("/pursue/state", STATE._replace(seq=90))
+    assert made.done == [] and made.status == ""
+    receive("/pursue/events", STATE)
+    receive("/pursue/state", STATE)
+    assert made.done == ["/pursue/events", "/pursue/state"] and made.status == "running"
+    receive("/pursue/state", STATE._replace(status="won"))
+    assert made.done[2:] == ["/pursue/state", 0]
+
+
+# What is connected, and who has seen a mission ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("orders, sockets, connected", [
+    (1, ["open"], True), (1, [None, "open"], True), (1, [None], False), (1, [], False), (0, ["open"], False),
+])  # fmt: skip
+def test_a_reader_is_connected_both_ways_or_not_at_all(orders: int, sockets: List[Any], connected: bool) -> None:
+    made: Any = CommunicationManager.__new__(CommunicationManager)
+    made.orders = SimpleNamespace(get_num_connections=lambda: orders)
+    made.statuses = SimpleNamespace(impl=SimpleNamespace(connections=[SimpleNamespace(socket=s) for s in sockets]))
+    assert made.reader_connected() is connected
+
+
+def test_an_answer_of_a_witness_is_kept_and_passed_on_once_somebody_follows() -> None:
+    made: Any = Witnesses.__new__(Witnesses)
+    made.seen, made._on_state, passed = {}, None, []
+    made._receive(STATE, "/bot")
+    made.follow(lambda *given: passed.append(given))
+    made._receive(STATE._replace(seq=8), "/bot")
+    assert passed == [(STATE, "/bot"), (STATE._replace(seq=8), "/bot")] and made.seen["/bot"].seq == 8
+
+
+# Pictures -------------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def markers() -> Any:
+    """The node that shows a mission in rviz."""
+    kinds = {"CYLINDER": 3, "SPHERE": 2, "LINE_LIST": 5, "ARROW": 0, "TEXT_VIEW_FACING": 9, "DELETEALL": 3}
+    made: Any = MarkersNode.__new__(MarkersNode)
+    made.frame, made.lock, made.shown, made.state = "map", threading.Lock(), [], None
+
+    class Marker(SimpleNamespace):
+        """A marker of rviz."""
+
+        def __init__(self, **given: Any) -> None:
+            where = SimpleNamespace(position=SimpleNamespace(), orientation=SimpleNamespace())
+            parts = {"header": SimpleNamespace(), "color": SimpleNamespace(), "pose": where, "scale": SimpleNamespace()}
+            super().__init__(**parts, **given)
+
+    for name, number in kinds.items():
+        setattr(Marker, name, number)
+    made.messages = SimpleNamespace(Marker=Marker)
+    made.membership = SimpleNamespace(source=SimpleNamespace(mission="m1"), refused="", trouble="", counts={})
+    return made
+
+
+@pytest.mark.parametrize("kind, scale", [(TEXT, (0.0, 0.4)), (DISC, (0.4, 0.01)), (BALL, (0.4, 0.4))])
+def test_a_text_has_a_height_and_what_lies_on_the_floor_has_none(
+    markers: Any, kind: str, scale: Tuple[float, float]
+) -> None:
+    mark: Any = SimpleNamespace(group="g", kind=kind, text="", colour=(1, 1, 1), points=[(1.0, 2.0)], size=0.4)
+    marker = markers.marker(mark, 3)
+    assert (marker.scale.x, marker.scale.z) == scale and (marker.id, marker.ns) == (3, "g")
+
+
+def test_it_reports_why_it_shows_nothing(markers: Any) -> None:
+    assert markers.report()[:3] == (False, WARN, "no state from the observer yet")
+    markers.state = STATE
+    assert markers.report()[:3] == (True, OK, "running")
+    markers.membership.refused = "state 3"
+    assert markers.report()[:3] == (False, ERROR, "refused state 3")
+
+
+def test_a_position_is_shown_when_it_has_changed(monkeypatch: pytest.MonkeyPatch) -> None:
+    watch: Any = positions._Watch.__new__(positions._Watch)
+    watch._settings = {"bot": Settings(simulated=False, ends="pose")}
+    watch._poses, watch._paths, watch._frames, watch._renewed = {}, {}, None, {}
+    shown: List[Dict[str, Position]] = []
+    looks = iter([Position(1.0, 2.0, 0.0), Position(1.001, 2.0, 0.0), Position(3.0, 2.0, 0.0)])
+    watch._ending = SimpleNamespace(called=False)
+
+    def sleep(_: float) -> None:
+        found = next(looks, None)
+        watch._poses = {} if found is None else {"bot": found}
+        watch._ending.called = found is None
+
+    monkeypatch.setattr(positions.time, "sleep", sleep)
+    watch.run(lambda places, _: shown.append(places))
+    assert shown == [{"bot": Position(1.0, 2.0, 0.0)}, {"bot": Position(3.0, 2.0, 0.0)}]
+    assert watch._transform("bot", watch._settings["bot"]) is None, "nobody listens to tf"
+
+
+# A robot's topics -----------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def link(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """The link to a real robot: `topics` has its subscriptions, `places` what is known of its position."""
+    topics: Dict[str, Any] = {}
+
+    class Publisher:
+        """Takes the place of rospy's."""
+
+        def __init__(self, topic: str, *_: object, **__: object) -> None:
+            self.resolved_name = topic
+
+    monkeypatch.setattr(rospy, "Publisher", Publisher)
+    monkeypatch.setattr(robot_link, "ServedFirst", lambda *_: None)
+    subscribe = lambda topic, _, callback, *__, **___: topics.update({topic: callback})
+    monkeypatch.setattr(robot_link, "subscribe", subscribe)
+    places: List[Any] = []
+    nothing: Any = lambda *_: None
+    statuses: List[Any] = []
+    settings = Settings(simulated=False, ends="pose", on_stop="keep")
+    made: Any = RobotLink("bot", settings, nothing, nothing, nothing, statuses.append, places.append, nothing)
+    made.topics, made.places, made.statuses = topics, places, statuses
+    return made
+
+
+def test_a_real_robots_goals_are_known_from_its_status(link: Any) -> None:
+    pytest.importorskip("actionlib_msgs")
+    goal = SimpleNamespace(id="bot-1", stamp=rospy.Time(5))
+    answer = SimpleNamespace(goal_id=goal, status=3, text="done")
+    link.topics["bot/move_base/status"](SimpleNamespace(status_list=[answer]))
+    assert [(each.goal, each.status, each.text) for each in link.statuses[0]] == [("bot-1", 3, "done")]
+
+
+def test_a_pose_of_amcl_counts_until_tf_has_shown_the_robot(link: Any) -> None:
+    message = PoseWithCovarianceStamped()
+    message.header.frame_id, message.pose.pose.position.x = "map", 2.0
+    message.pose.pose.orientation.w = 1.0
+    link._pose(message)
+    assert link.places == [Position(2.0, 0.0, 0.0)]
+    link._seen_by_tf = True
+    link._pose(message)
+    assert len(link.places) == 1
