@@ -8,7 +8,7 @@ are not looked at, nor what is so at the same time: more may seem possible than 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import AbstractSet, Dict, Iterable, Mapping, NamedTuple, Optional, Set, Tuple
+from typing import AbstractSet, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple, Union
 
 from pursue_gen.synthesis.strategy import Block
 from pursue_gen.tga.network import Automaton, Edge, Guard, Network
@@ -27,6 +27,10 @@ def commanded(blocks: Iterable[Block]) -> Commanded:
     """The edges that the commands of these blocks take."""
     moves = (command.moves[0] for block in blocks for command in block.commands if command.moves)
     return {(move.automaton, move.edge) for move in moves}
+
+
+_Fact = Tuple[str, Union[str, int]]
+"""An automaton and its location, a variable and its value, or "" and a channel on which somebody sends."""
 
 
 class Extent(NamedTuple):
@@ -52,29 +56,35 @@ def live(network: Network, commands: Commanded, begin: Optional[Extent] = None) 
     values: Dict[str, Set[int]] = {name: set(begin.values[name]) for name, _ in network.variables}
     sent: Set[str] = set()
 
-    def is_possible(name: str, edge: Edge) -> bool:
-        if edge.source not in places[name] or not may_hold(edge.guard, values):
-            return False
-        return edge.sync is None or edge.sync.sends or edge.sync.channel in sent
+    def awaited(name: str, edge: Edge) -> Sequence[_Fact]:
+        """What the edge waits for, any of it; nothing where it is possible."""
+        if edge.source not in places[name]:
+            return [(name, edge.source)]
+        if edge.sync is not None and not edge.sync.sends and edge.sync.channel not in sent:
+            return [("", edge.sync.channel)]
+        clause = next((some for some in edge.guard.integers if not may_hold(Guard(integers=(some,)), values)), ())
+        return [(test.variable, test.value) for test in clause]
 
-    grown = True
-    while grown:
-        grown = False
-        for name, edges in free.items():
-            for edge in edges:
-                if not is_possible(name, edge):
-                    continue
-                if edge.target not in places[name]:
-                    places[name].add(edge.target)
-                    grown = True
-                if edge.sync is not None and edge.sync.sends and edge.sync.channel not in sent:
-                    sent.add(edge.sync.channel)
-                    grown = True
-                for variable, value in edge.assign:
-                    if value not in values[variable]:
-                        values[variable].add(value)
-                        grown = True
-    automata = tuple(_with(a, (edge for edge in free[a.name] if is_possible(a.name, edge))) for a in network.automata)
+    waiting: Dict[_Fact, List[Tuple[str, Edge]]] = {}
+    pending = [(name, edge) for name, edges in free.items() for edge in edges]
+    found: Set[Tuple[str, int]] = set()
+    while pending:
+        name, edge = pending.pop()
+        number = name, id(edge)  # to look for an edge by what it says takes long
+        facts = () if number in found else awaited(name, edge)
+        for fact in facts:
+            waiting.setdefault(fact, []).append((name, edge))
+        if not facts and number not in found:
+            found.add(number)
+            places[name].add(edge.target)
+            pending += waiting.pop((name, edge.target), ())
+            if edge.sync is not None and edge.sync.sends:
+                sent.add(edge.sync.channel)
+                pending += waiting.pop(("", edge.sync.channel), ())
+            for variable, value in edge.assign:
+                values[variable].add(value)
+                pending += waiting.pop((variable, value), ())
+    automata = tuple(_with(a, (edge for edge in free[a.name] if (a.name, id(edge)) in found)) for a in network.automata)
     return replace(network, automata=automata), Extent(places, values)
 
 
