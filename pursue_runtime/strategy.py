@@ -137,13 +137,14 @@ class Cover(StateTable[Covered]):
 
     `stages`: for each stage of the strategy its milestones, locations of automata or values of variables; the stage
     ends when all are reached. Until then each part of the stage must know what to do. `shares`: for each share the
-    places of automata that it avoids; each must know what to do all the time. Raises KeyError, TypeError or ValueError.
+    places of automata that it avoids; each must know what to do all the time. `agents`: with orders of passage all who
+    are commanded; so must each of them. Raises KeyError, TypeError or ValueError.
     """
 
     def __init__(self, data: Mapping[str, Any]) -> None:
         super().__init__(((entry["state"], _covered(entry)) for entry in data["cover"]), _left_out_clocks(data))
         self._stages = [[(str(name), str(place)) for name, place in stage] for stage in data.get("stages", ())]
-        self._shares = [str(share[0][0]) for share in data.get("shares", ())]
+        self._always = [*(str(share[0][0]) for share in data.get("shares", ())), *map(str, data.get("agents", ()))]
 
     def zones(self, state: SystemState) -> List[List[Zone]]:
         """The zones of each entry that applies in this state; () where a part of the stage, or a share, has no entry
@@ -163,12 +164,13 @@ class Cover(StateTable[Covered]):
         return any((agent, event) in covered.commands for covered in self.entered(entry))
 
     def _awaited(self, state: SystemState) -> List[str]:
-        """The automata and variables that are not at their milestones of the present stage, or one of each share."""
+        """The automata and variables that are not at their milestones of the present stage, or one of each share, or
+        the agents with orders of passage."""
         for stage in self._stages:
             awaited = [name for name, wanted in stage if _parts(state, (name,)) != (wanted,)]
             if awaited:
                 return awaited
-        return self._shares
+        return self._always
 
 
 def _covered(entry: Mapping[str, Any]) -> Covered:

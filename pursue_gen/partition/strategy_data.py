@@ -37,8 +37,8 @@ def strategy_data(sub: SubStrategy, reaction: Fraction) -> Dict[str, Any]:
 
 
 def cover_data(strategy: Strategy) -> Dict[str, Any]:
-    """For each state what the strategy does, and in which zones: wait, or a command; its stages or shares, if it has
-    any, and the clocks that it leaves out."""
+    """For each state what the strategy does, and in which zones: wait, or a command; its stages, shares, or agents
+    with orders of passage, if it has any, and the clocks that it leaves out."""
     cover: List[Dict[str, Any]] = []
     for block in strategy.blocks:
         does: Dict[str, Any] = {"wait": _zones(block.wait)} if block.wait else {}
@@ -48,7 +48,8 @@ def cover_data(strategy: Strategy) -> Dict[str, Any]:
     parts = {"stages": strategy.stages, "shares": strategy.shares}
     places = {name: [[list(place) for place in some] for some in all_of_them] for name, all_of_them in parts.items()}
     named = {name: some for name, some in places.items() if some}
-    return {"format": 3, **named, **_left_out(strategy.left_out_clocks), "cover": cover}
+    agents = {"agents": list(strategy.commanded)} if strategy.passages else {}
+    return {"format": 4 if agents else 3, **named, **agents, **_left_out(strategy.left_out_clocks), "cover": cover}
 
 
 def _left_out(clocks: Sequence[str]) -> Dict[str, List[str]]:

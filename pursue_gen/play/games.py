@@ -37,6 +37,6 @@ def session_of(
         setup = setup_of(scenario.giving_up(scenario.optional), rules)
         game: GameOf = counter_game(setup, limits.memory, progress)
     else:
-        setup = setup_of(found.scenario, rules, found.solution.strategy.watchers)
+        setup = setup_of(found.scenario, rules, found.solution.strategy)
         game = StrategyPlay(setup, Advisor(setup, found.solution.strategy), seed)
     return Session(game, event_texts(setup.scenario, setup.network), beginning(setup))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Iterator, Optional, Sequence, Tuple
+from typing import Iterator, Optional, Tuple
 
 from pursue_gen.explanation.policy import Window, longest, window
 from pursue_gen.explanation.position import Position
@@ -23,10 +23,9 @@ from pursue_gen.synthesis.game import (
     is_goal,
     joint_moves,
 )
-from pursue_gen.synthesis.strategy import Command
+from pursue_gen.synthesis.strategy import Command, Strategy, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind, Network, Objective, is_end
-from pursue_gen.tga.watchers import Watcher, with_watchers
 from pursue_gen.tga.words import event_word
 from pursue_gen.zones.dbm import is_strict
 
@@ -131,9 +130,12 @@ class PlayState:
         return self.status != RUNNING
 
 
-def setup_of(scenario: Scenario, rules: Rules, watchers: Sequence[Watcher] = ()) -> Setup:
-    """The setup of a scenario; `watchers`: those of the strategy. Raises PursueError where it has no objective."""
-    network, objective = with_watchers(played(translate(scenario), rules), watchers), scenario_objective(scenario)
+def setup_of(scenario: Scenario, rules: Rules, strategy: Optional[Strategy] = None) -> Setup:
+    """The setup of a scenario; `strategy`: the one that is played, whose automata are in the network.
+
+    Raises PursueError where the scenario has no objective."""
+    network, objective = played(translate(scenario), rules), scenario_objective(scenario)
+    network = network if strategy is None else with_automata_of(network, strategy)
     return Setup(scenario, rules, network, objective, compile_game(network, objective))
 
 

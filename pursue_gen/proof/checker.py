@@ -19,13 +19,14 @@ from pursue_gen.proof.closed_loop import ClosedLoop, in_words, sample
 from pursue_gen.proof.left_out import proven_part
 from pursue_gen.proof.moves import Arena
 from pursue_gen.proof.native.search import searches_of
+from pursue_gen.proof.passage_times import latest
+from pursue_gen.proof.passages import Fault, played
 from pursue_gen.proof.search import Depth, Found, Searches
 from pursue_gen.proof.shares import shares_of
 from pursue_gen.proof.stages import Part, parts_of
 from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits, Listener
-from pursue_gen.synthesis.strategy import Command, Strategy, Zone, ZoneKey
+from pursue_gen.synthesis.strategy import Command, Strategy, Zone, ZoneKey, with_automata_of
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tga.watchers import with_watchers
 
 LIMIT = 1_000_000
 """So many symbolic states are explored unless the caller says otherwise; the published plans need up to some 30,000, a
@@ -87,7 +88,9 @@ def verify(
     if reaction < 0:
         raise PursueError([error("SYN103", f"the reaction time is {reaction}", hint="give 0 or more time units")])
     prompt = reaction == 0 if prompt is None else prompt
-    network = with_watchers(network, strategy.watchers)
+    network = with_automata_of(network, strategy)
+    if strategy.passages:
+        return _with_passages(network, objective, strategy, reaction, LimitMonitor(limits, progress, PROVING))
     if strategy.in_parts:
         if strategy.stages and strategy.left_out_clocks:
             return Report(False, "left out: a strategy in stages leaves no clock out", (), frozenset(), 0)
@@ -128,6 +131,20 @@ def _names_all(part: Network, strategy: Strategy) -> bool:
     return all(tuple([name for name, _ in state.locations]) == automata for state in states) and all(
         tuple([name for name, _ in state.values]) == variables for state in states
     )
+
+
+def _with_passages(
+    network: Network, objective: Objective, strategy: Strategy, reaction: Fraction, monitor: LimitMonitor
+) -> Report:
+    """The outcome of a strategy with orders of passage: all of its plays are one course of events."""
+    try:
+        found = played(network, objective, strategy, monitor)
+        latest(found, strategy, reaction)
+    except Fault as fault:
+        return Report(False, f"passages: {fault}", (), frozenset(), 0)
+    used = [(b, "wait", n) for b, block in enumerate(strategy.blocks) for n in range(len(block.wait))]
+    commands = [(b, k, 0) for b, block in enumerate(strategy.blocks) for k in range(len(block.commands))]
+    return Report(True, "", (), frozenset((*used, *commands)), len(found.course.events))
 
 
 def _in_parts(

@@ -28,13 +28,13 @@ from pursue_gen.zones.dbm import Dbm, raw
 
 
 def named_part(network: Network, strategy: Strategy) -> Network:
-    """The part of the network that the strategy speaks of; the network itself where it names everything, or has stages
-    or shares.
+    """The part of the network that the strategy speaks of; the network itself where it names everything, or has stages,
+    shares or passages.
 
     The first block says what is named: one that names something else covers nothing. The clocks that it leaves out are
     not in the part.
     """
-    if strategy.shares:
+    if strategy.shares or strategy.passages:
         return network
     names = _names(network, strategy)
     part = network if names is None else with_clocks_of(part_of(network, *names), network, strategy)
@@ -152,7 +152,6 @@ def _why_an_edge_matters(automaton: Automaton, kept: Automaton, part: Network, h
     """Why an edge of the automaton that the part does not have may change something there, other than by a move of the
     environment."""
     variables = {name for name, _ in part.variables}
-    listened = _channels(a for a in part.automata if a.name != automaton.name)[1]
     for edge in automaton.edges:
         if edge in kept.edges or (hiding and is_loosened(edge, automaton, kept)):
             continue
@@ -161,7 +160,8 @@ def _why_an_edge_matters(automaton: Automaton, kept: Automaton, part: Network, h
             return f"{what}, by an edge that is left out"
         if edge.sync is None:
             continue
-        if edge.sync.sends and edge.sync.channel in listened:
+        others = (a for a in part.automata if a.name != automaton.name)
+        if edge.sync.sends and edge.sync.channel in _channels(others)[1]:
             return f"sends {edge.sync.channel} by an edge that is left out"
         if not edge.sync.sends:
             rivals = (e for e in kept.edges if e.sync == edge.sync and e.source == edge.source)

@@ -15,14 +15,13 @@ from pursue_gen.language.network_names import AT_RISK
 from pursue_gen.proof.closed_loop import ClosedLoop
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.native.search import searches_of
+from pursue_gen.proof.passage_times import INSTANT, latest
+from pursue_gen.proof.passages import Fault, played
 from pursue_gen.proof.shares import shares_of
 from pursue_gen.proof.stages import parts_of
 from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor, Limits
-from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Kind, Location, Network, Objective
-
-INSTANT = Fraction(1, 1000)
-"""Who may act as soon as a clock is past a bound acts within this time, in time units."""
 
 LIMIT = 20_000
 """So many symbolic states are explored."""
@@ -99,6 +98,8 @@ def worst_case(
     """
     if objective.kind is Kind.SAFETY:
         return None
+    if strategy.passages:
+        return _of_course(network, objective, strategy, reaction, limits)
     if strategy.stages:
         return _of_stages(network, objective, strategy, reaction, limit, limits)
     if len(strategy.blocks) > _BLOCKS * max(limit, LIMIT):
@@ -132,7 +133,7 @@ def answer_times(
     games: Iterable[Tuple[Network, Objective, Strategy]] = ((network, objective, strategy),)
     if strategy.in_parts:
         games = ((part.game, part.objective, part.strategy) for part in shares_of(network, objective, strategy))
-    for whole, wanted, own in games if not strategy.stages else ():
+    for whole, wanted, own in games if not (strategy.stages or strategy.passages) else ():
         game = named_part(whole, own)
         searches = searches_of(ClosedLoop(game, wanted, own, reaction, None, INSTANT))
         for k, automaton in enumerate(game.automata):
@@ -148,6 +149,17 @@ def answer_times(
             if took:
                 found[watched.get(automaton.name, automaton.name)] = Fraction(took, searches.loop.arena.scale)
     return found
+
+
+def _of_course(
+    network: Network, objective: Objective, strategy: Strategy, reaction: Fraction, limits: Limits
+) -> Optional[Fraction]:
+    """The longest way through the events of a strategy with orders of passage."""
+    try:
+        found = played(with_automata_of(network, strategy), objective, strategy, LimitMonitor(limits))
+        return latest(found, strategy, reaction)
+    except (Fault, PursueError):
+        return None
 
 
 def _of_stages(

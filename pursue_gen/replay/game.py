@@ -20,10 +20,9 @@ from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.plan import read_plan, write_plan
-from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tga.watchers import with_watchers
 from pursue_runtime.bounded import BadText, exact, read_yaml, whole
 
 DISTRIBUTED, DEDICATED = "distributed", "dedicated"
@@ -135,7 +134,7 @@ def game_of(source: Source, limits: Limits = NO_LIMITS, progress: Optional[Liste
     strategy: Strategy
     if source.plan is not None:
         strategy = read_plan(source.plan[0], network, source.plan[1])
-        network = with_watchers(network, strategy.watchers)
+        network = with_automata_of(network, strategy)
     else:
         try:
             won = solved(ideal, objective, source.rules, asked)

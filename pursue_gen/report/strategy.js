@@ -55,7 +55,8 @@
     if (before !== undefined) parts.push(make("p", { className: "kind" }, where(s)));
     if (rest(s)) parts.push(make("p", { className: "kind" }, rest(s)));
     if (s.goal) return [...parts, make("p", { className: "goal" }, "The goal is reached.")];
-    if (s.done) return [...parts, make("p", { className: "goal" }, "This part is done; the next stage begins when all parts of this one are.")];
+    if (s.done) return [...parts, make("p", { className: "goal" }, book.ordered ? "That was its last step."
+      : "This part is done; the next stage begins when all parts of this one are.")];
     const list = make("ul");
     s.ours.map(step).forEach((c) => list.append(make("li", {}, order(c), card(c.target, n))));
     if (s.wait.length || !s.ours.length) list.append(make("li", {}, waiting(s)));
@@ -237,7 +238,7 @@
       const count = book.parts.filter((part) => part[0] === stage).length;
       const begins = stage ? "when stage " + stage + " is done" : "from the start";
       at("tree").append(make("h4", {}, until ? `Stage ${stage + 1} of ${stages}, ${begins}${together(count)}`
-        : `${count} shares, played at the same time`));
+        : book.ordered ? "The steps of each agent" : `${count} shares, played at the same time`));
     }
     const end = k + 1 < book.parts.length ? book.parts[k + 1][3] : book.states.length;
     const names = who.map((name) => book.automata.find((a) => a.name === name).shown).join(" and ");

@@ -46,6 +46,12 @@ def _stages(strategy: StrategyData) -> List[str]:
     in_stages, called = f"in {counted(stages, 'stage')}, one after the other", "part of a stage"
     if not any(part.until for part in strategy.parts):
         in_stages, called = f"in {counted(len(strategy.parts), 'share')}, all at the same time", "share"
+    if strategy.ordered:
+        text = (
+            "All agents play their steps at the same time. Where two must not meet they pass a place in an order: "
+            "whoever sets off for it has it until it sets off from there."
+        )
+        return [f"<p>{text}</p>"]
     text = (
         f"It is played {in_stages}. A {called} speaks only of those who matter to it: all others may be anywhere and "
         "do whatever they can, and its commands are right all the same."

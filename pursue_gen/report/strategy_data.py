@@ -15,7 +15,7 @@ from pursue_gen.proof.live import commanded
 from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import Game, State, initial_state, is_goal, joint_moves
-from pursue_gen.synthesis.strategy import DiscreteState, Place, Strategy, Zone
+from pursue_gen.synthesis.strategy import Block, DiscreteState, Place, Strategy, Zone
 from pursue_gen.tga.network import Objective
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.watchers import FOR
@@ -70,7 +70,8 @@ class StrategyData:
 
     `automata`: name, kind (see `_kind`), and for each of its places the words and the parts of `Words`. `left_out`: the
     automata that the strategy does not speak of, as they cannot matter. `parts`: of a strategy in stages or shares; the
-    last place of each automaton then stands for all: the part does not speak of it.
+    last place of each automaton then stands for all: the part does not speak of it. `ordered`: with orders of passage;
+    a part then is what one agent does, step by step.
     """
 
     automata: Tuple[Tuple[str, str, Tuple[Tuple[str, Tuple[str, ...]], ...]], ...]
@@ -81,6 +82,7 @@ class StrategyData:
     left_out: Tuple[str, ...] = ()
     labels: Mapping[str, str] = field(default_factory=dict)
     parts: Tuple[StagePart, ...] = ()
+    ordered: bool = False
 
     def is_free(self, automaton: int, place: int) -> bool:
         """True if a situation with this place does not speak of the automaton."""
@@ -148,6 +150,11 @@ def _in_parts(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyData
     zones: List[Tuple[str, str]] = []
     situations: List[Situation] = []
     parts: List[StagePart] = []
+    for k, agent in enumerate(won.strategy.commanded if won.strategy.passages else ()):
+        blocks = tuple(won.strategy.blocks[n] for n in won.strategy.numbers_of(k, (agent, "")))
+        parts.append(StagePart(0, (agent,), "", len(situations)))
+        situations += _Steps(words, every, automata, free).of(agent, blocks, len(situations))
+    zones += words.zones
     for number, (stage, place, wanted, is_last) in enumerate(_objectives(won)):
         key = number if won.strategy.shares else stage
         blocks = tuple(won.strategy.blocks[n] for n in won.strategy.numbers_of(key, place))
@@ -165,7 +172,7 @@ def _in_parts(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyData
     left_out = tuple(automaton.name for automaton in won.network.automata if automaton.name not in named)
     owners = _owners(scenario, won, reach_obj)
     found = tuple(zones), tuple(situations), left_out, scenario.labels, tuple(parts)
-    return StrategyData(automata, tuple(shown), owners, *found)
+    return StrategyData(automata, tuple(shown), owners, *found, ordered=bool(won.strategy.passages))
 
 
 def _until(scenario: Scenario, words: Words, place: Place) -> str:
@@ -206,6 +213,38 @@ class _Moved:
         )
 
 
+@dataclass(frozen=True)
+class _Steps:
+    """What one agent is commanded, step by step, in a strategy with orders of passage."""
+
+    words: _Builder
+    every: Sequence[str]
+    automata: Sequence[Tuple[str, str, Tuple[Tuple[str, Tuple[str, ...]], ...]]]
+    free: Situation
+
+    def of(self, agent: str, blocks: Sequence[Block], before: int) -> List[Situation]:
+        """A situation for each command, in their order, each of which leads to the next; `before`: so many are before
+        the first one."""
+        commanding = [block for block in blocks if block.commands]
+        found: List[Situation] = []
+        for block in commanding:
+            command = block.commands[0]
+            text = self.words.words.move(agent, command.moves[0].edge)
+            when, target = self.words.numbered(command.zones), before + len(found) + 1
+            step = Transition(self.every.index(agent), text, when, target)
+            wait = self.words.numbered(block.wait)
+            found.append(Situation(self._places(block.state), self.free.values, wait, (step,)))
+        last = commanding[-1].commands[0].moves[0]
+        end = DiscreteState(((agent, last.edge.target),), ())
+        return [*found, Situation(self._places(end), self.free.values, done=True)]
+
+    def _places(self, state: DiscreteState) -> Tuple[int, ...]:
+        places = list(self.free.places)
+        for name, location in state.locations:
+            places[self.every.index(name)] = self.words.number(name, location)
+        return tuple(places)
+
+
 def as_json(data: StrategyData) -> Dict[str, Any]:
     """The data for the page's script: short keys, each text once."""
     texts: Dict[str, int] = {}
@@ -218,6 +257,7 @@ def as_json(data: StrategyData) -> Dict[str, Any]:
         for s in data.situations
     ]
     return {
+        "ordered": data.ordered,
         "parts": [[part.stage, list(part.who), part.until, part.first] for part in data.parts],
         "automata": [
             {"name": name, "shown": data.labels.get(name) or shown_name(name, kind), "kind": kind, "places": places}
@@ -248,6 +288,11 @@ class _Builder:
     def place(self, automaton: str, location: str) -> Tuple[str, Tuple[str, ...]]:
         """A place in words, and its parts where it is an agent's."""
         return self.words.place(automaton, location), self.words.parts.get(location, ())
+
+    def number(self, automaton: str, location: str) -> int:
+        """The number of a location."""
+        k = next(k for k, each in enumerate(self.game.automata) if each.name == automaton)
+        return self._places[k][location]
 
     def situations(self) -> Tuple[Situation, ...]:
         """In the order in which plays meet them, from the start; then, if there are any, the rest."""
@@ -286,7 +331,7 @@ class _Builder:
             key = tuple((m.automaton, m.edge.source, m.edge.target, str(m.edge.sync)) for m in command.moves)
             who = next(k for k, a in enumerate(self.game.automata) if a.name == first.automaton)
             text = self.words.move(first.automaton, first.edge)
-            commands.append(Transition(who, text, self._numbered(command.zones), number(targets[key])))
+            commands.append(Transition(who, text, self.numbered(command.zones), number(targets[key])))
         others = []
         for move in moves:
             known = move.target in self._blocks or is_goal(self.game, move.target)
@@ -295,10 +340,10 @@ class _Builder:
                 text = self.words.move(self.game.automata[move.owner].name, edge)
                 others.append(Transition(move.owner, text, (), number(move.target)))
         return Situation(
-            state.locations, values, self._numbered(block.wait), tuple(commands), tuple(others), goal=False
+            state.locations, values, self.numbered(block.wait), tuple(commands), tuple(others), goal=False
         )
 
-    def _numbered(self, zones: Tuple[Zone, ...]) -> Tuple[int, ...]:
+    def numbered(self, zones: Tuple[Zone, ...]) -> Tuple[int, ...]:
         for zone in zones:
             if zone not in self._zone_numbers:
                 self._zone_numbers[zone] = len(self.zones)

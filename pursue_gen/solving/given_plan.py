@@ -18,10 +18,9 @@ from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.enforced import enforced
 from pursue_gen.synthesis.limits import PROVING
 from pursue_gen.synthesis.plan import read_plan
-from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.scale import common_denominator, scaled
-from pursue_gen.tga.watchers import with_watchers
 
 
 @dataclass(frozen=True)
@@ -78,7 +77,7 @@ def trials(
         except PursueError as problem:
             done.append(Trial(rules, None, problem))
             continue
-        watched = with_watchers(game, proven.watchers)
+        watched = with_automata_of(game, proven)
         done.append(Trial(rules, Solution(watched, objective, proven, rules.reaction, rules=rules)))
         break
     return tuple(done)

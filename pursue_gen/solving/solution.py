@@ -24,6 +24,7 @@ from pursue_gen.solving.lost_promises import (
 )
 from pursue_gen.solving.one_robot import lost_for_one
 from pursue_gen.solving.options import DEFAULT, SolveOptions
+from pursue_gen.solving.passages import passing_robots, won_by_passages
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL, Rules, played
@@ -33,12 +34,11 @@ from pursue_gen.synthesis.cone import out_of_reach
 from pursue_gen.synthesis.enforced import enforced
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
 from pursue_gen.synthesis.solve import Stats, Verdict, solve
-from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.tga.pauses import pauses
-from pursue_gen.tga.watchers import with_watchers
 
 _CANNOT_BE_MET = "SYN021"
 
@@ -48,6 +48,9 @@ _MANY = 100
 _EASY = 100_000
 """With so little work a game is easy: then agents who rest between calls keep their pauses. Else strategies that know
 them take long to prove, too."""
+
+_CROWD = 4
+"""So many robots that must not be at one place are no easy game: an order of passage is looked for first."""
 
 _SLOWER = Fraction(11, 10)
 """So much longer a smaller strategy may take."""
@@ -60,9 +63,9 @@ _FOR_IDEAL = 50_000_000
 class Solution:
     """A proven strategy for the objective in `network` (the game as it is played, ends and slack included).
 
-    The network has the watchers that the strategy follows. `rules` are those of that game, `reaction` is theirs, in
-    time units; `guarantee`: how long it takes at worst, where that was computed; `within`: in how many time units it
-    has to come to the goal, where that is given; `warnings`: what to know before it is used.
+    The network has the watchers and passages that the strategy follows. `rules` are those of that game, `reaction` is
+    theirs, in time units; `guarantee`: how long it takes at worst, where that was computed; `within`: in how many time
+    units it has to come to the goal, where that is given; `warnings`: what to know before it is used.
     """
 
     network: Network
@@ -120,8 +123,10 @@ def _first(
     if in_parts and not alone:
         known = _with_little_work(game, objective, rules.reaction, options)
         if isinstance(known, Found):
-            watched = with_watchers(game, known.strategy.watchers)
+            watched = with_automata_of(game, known.strategy)
             return Solution(watched, objective, known.strategy, rules.reaction, known.stats, rules=rules)
+        if isinstance(known, Strategy):
+            return Solution(with_automata_of(game, known), objective, known, rules.reaction, rules=rules)
         if isinstance(known, tuple):
             return known
         verdict = known
@@ -177,13 +182,21 @@ def _smaller(won: Solution, options: SolveOptions) -> Optional[Solution]:
 
 def _with_little_work(
     game: Network, objective: Objective, reaction: Fraction, options: SolveOptions
-) -> Union[Verdict, Found, Tuple[Objective, ...], None]:
-    """The verdict in one piece, or a proven strategy that leaves out agents, or pauses of the environment, or parts of
-    the objective that are lost; None where little work finds neither (see `shares`, `lost_promises`, `crowds` and
-    `without_pauses`)."""
+) -> Union[Verdict, Strategy, Found, Tuple[Objective, ...], None]:
+    """The verdict in one piece, or a proven strategy with orders of passage, or one that leaves out agents, or pauses
+    of the environment, or parts of the objective that are lost; None where little work finds neither (see `passages`,
+    `shares`, `lost_promises`, `crowds` and `without_pauses`)."""
     start, work, rests = options.limits.now(), little_work(game), bool(pauses(game))
     several, shared = len(promises(objective)) > 1, can_be_shared(game, objective)
+    passing = passing_robots(game, objective)
+    strategy = won_by_passages(game, objective, reaction, options) if passing >= _CROWD else None
+    if strategy is not None:
+        return strategy
     verdict = verdict_with(game, objective, reaction, min(work, _EASY) if rests or several else work, options)
+    if verdict is None and 0 < passing < _CROWD:
+        strategy = won_by_passages(game, objective, reaction, options.since(start))
+        if strategy is not None:
+            return strategy
     if verdict is None and several:
         lost = lost_alone(game, objective, reaction, options.since(start))
         if lost:

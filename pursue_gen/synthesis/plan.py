@@ -21,6 +21,7 @@ from pursue_gen.outcomes import Invalid, NotProven
 from pursue_gen.synthesis.plan_parts import (
     left_out_lines,
     read_left_out_clocks,
+    read_passages,
     read_shares,
     read_stages,
     read_watchers,
@@ -28,8 +29,9 @@ from pursue_gen.synthesis.plan_parts import (
 )
 from pursue_gen.synthesis.plan_reader import RUN_AGAIN, Names, Reader, printed_location
 from pursue_gen.synthesis.plan_text import assign_text, guard_text, sync_text, zones_text
-from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Move, Strategy, Zone
+from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Move, Strategy, Zone, with_automata_of
 from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.passages import with_passages
 from pursue_gen.tga.uppaal_words import with_own_names
 from pursue_gen.tga.watchers import with_watchers
 
@@ -61,7 +63,8 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     """
     text = _ESCAPE.sub("", text).replace("\r\n", "\n")
     watchers = read_watchers(text.partition("\nState:")[0], network, file)
-    network = with_watchers(network, watchers)
+    passages = read_passages(text.partition("\nState:")[0], network, file)
+    network = with_passages(with_watchers(network, watchers), passages)
     text = with_own_names(text, network)
     header = _HEADER.search(text)
     if header is None:
@@ -69,7 +72,7 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     above = text[: header.start()]
     stages, shares = read_stages(above, network, file), read_shares(above, network, file)
     left_out_clocks = read_left_out_clocks(above, network, file)
-    reader = Reader(Names(spoken_of(above, network, file)), file, bool(stages or shares))
+    reader = Reader(Names(spoken_of(above, network, file)), file, bool(stages or shares or passages))
     first = text.count("\n", 0, header.end()) + 1
     blocks: List[Block] = []
     seen: Set[DiscreteState] = set()
@@ -92,7 +95,7 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
         reader.line, reader.text = first, ""
         reader.fail("PLN003", "the strategy is empty: no state follows its title", RUN_AGAIN)
     counter = header.group(1).lower().startswith("counter")
-    return Strategy(tuple(blocks), counter, stages, left_out_clocks, shares, watchers)
+    return Strategy(tuple(blocks), counter, stages, left_out_clocks, shares, watchers, passages)
 
 
 def _start(reader: Reader, line: str, seen: Set[DiscreteState]) -> _Open:
@@ -185,7 +188,7 @@ def write_plan(strategy: Strategy, network: Network, objective: Objective) -> st
     A block that says nothing (no zone to wait in and no command) is left out: it covers nothing. Raises ValueError
     where a command has no zone.
     """
-    network = with_watchers(network, strategy.watchers)
+    network = with_automata_of(network, strategy)
     printed = {
         automaton.name: {
             location.name: printed_location(location.name, location.named) for location in automaton.locations

@@ -7,10 +7,12 @@
     -- Stage: reachObj.win
     -- Watcher: obj3 bot1
     -- Share: obj.lose obj3_for_bot1.lose obj3.lose
+    -- Passage: hall2 bot1 bot3 bot1
 
-In a plan with stages or shares each block names what matters to it. A stage's milestones are locations of automata and
-values of variables; a share's places are what it avoids. A watcher is an objective's automaton, and the robots for whom
-alone another one (here `obj3_for_bot1`) watches the same.
+In a plan with stages, shares or passages each block names what matters to it. A stage's milestones are locations of
+automata and values of variables; a share's places are what it avoids. A watcher is an objective's automaton, and the
+robots for whom alone another one (here `obj3_for_bot1`) watches the same; a passage is a place, and the robots that are
+there one after the other.
 """
 
 from __future__ import annotations
@@ -24,10 +26,12 @@ from pursue_gen.synthesis.strategy import Place, Strategy
 from pursue_gen.tga.ending import is_value
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.part import part_of
+from pursue_gen.tga.passages import Passage, passage_automaton
 from pursue_gen.tga.watchers import Watcher, watched_by
 
 _STAGE = re.compile(r"^ -- Stage:(.*)$", re.MULTILINE)
 _WATCHER = re.compile(r"^ -- Watcher:(.*)$", re.MULTILINE)
+_PASSAGE = re.compile(r"^ -- Passage:(.*)$", re.MULTILINE)
 _SHARE = re.compile(r"^ -- Share:(.*)$", re.MULTILINE)
 _LEFT_OUT_CLOCKS = re.compile(r"^ -- Left out clocks:(.*)$", re.MULTILINE)
 _LEFT_OUT = re.compile(r"^ -- Left out:(.*)$", re.MULTILINE)
@@ -36,11 +40,14 @@ _LEFT_OUT = re.compile(r"^ -- Left out:(.*)$", re.MULTILINE)
 def left_out_lines(strategy: Strategy, network: Network) -> List[str]:
     """The lines with the automata, variables and clocks that the strategy leaves out; none where there are none.
 
-    Of a strategy in stages a line for each of them, with its milestones; of one in shares with what each avoids.
+    Of a strategy in stages a line for each of them, with its milestones; of one in shares with what each avoids; of one
+    with passages with their robots.
     """
     if not strategy.blocks:
         return []
     clocks = [f" -- Left out clocks: {' '.join(strategy.left_out_clocks)}"] if strategy.left_out_clocks else []
+    if strategy.passages:
+        return [f" -- Passage: {' '.join((each.place, *each.robots))}" for each in strategy.passages]
     if strategy.shares:
         watchers = [f" -- Watcher: {' '.join((each.objective, *each.team))}" for each in strategy.watchers]
         return [*watchers, *(f" -- Share: {' '.join(map('.'.join, avoided))}" for avoided in strategy.shares), *clocks]
@@ -78,6 +85,20 @@ def read_watchers(text: str, network: Network, file: str) -> Tuple[Watcher, ...]
             raise _unknown(text, match, message, file)
         watchers.append(watcher)
     return tuple(watchers)
+
+
+def read_passages(text: str, network: Network, file: str) -> Tuple[Passage, ...]:
+    """The passages of such a plan. Raises PursueError for one that cannot be."""
+    passages: List[Passage] = []
+    for match in _PASSAGE.finditer(text):
+        words = match.group(1).split()
+        passage = Passage(words[0], tuple(words[1:])) if len(words) > 1 else None
+        known = {each.name for each in network.automata}
+        if passage is None or (passage_automaton(network, passage) is None and passage.name not in known):
+            message = f"the plan has a passage '{' '.join(words)}', which the network cannot have"
+            raise _unknown(text, match, message, file)
+        passages.append(passage)
+    return tuple(passages)
 
 
 def _read_places(

@@ -10,9 +10,10 @@ from functools import cached_property
 from typing import Iterable, Mapping, Optional, Tuple, Union
 
 from pursue_gen.tga.network import Constraint as Constraint
-from pursue_gen.tga.network import Edge
+from pursue_gen.tga.network import Edge, Network
+from pursue_gen.tga.passages import Passage, with_passages
 from pursue_gen.tga.scale import common_denominator
-from pursue_gen.tga.watchers import Watcher
+from pursue_gen.tga.watchers import Watcher, with_watchers
 
 Place = Tuple[str, str]
 """An automaton and one of its locations; as a milestone also a variable and one of its values."""
@@ -67,6 +68,9 @@ class Strategy:
     `proof.shares`). A strategy has stages or shares, or neither. `watchers`: automata that the network has beside its
     own; a share that names one of them may have the objective in its place.
 
+    One with `passages` has an automaton for each of them, too (see `tga.passages`). A block is for the one agent that
+    it commands, or that it tells to wait, and names what that has to know (see `proof.passages`).
+
     `left_out_clocks`: pauses of the environment (see `tga.pauses`) on which it does not rely. Its zones do not compare
     them, it wins whatever they are, and what only resets them makes no command stale.
     """
@@ -77,11 +81,17 @@ class Strategy:
     left_out_clocks: Tuple[str, ...] = ()
     shares: Tuple[Tuple[Place, ...], ...] = ()
     watchers: Tuple[Watcher, ...] = ()
+    passages: Tuple[Passage, ...] = ()
 
     @property
     def in_parts(self) -> bool:
-        """True if its blocks do not all name the same: it has stages or shares."""
-        return bool(self.stages or self.shares)
+        """True if its blocks do not all name the same: it has stages, shares or passages."""
+        return bool(self.stages or self.shares or self.passages)
+
+    @cached_property
+    def commanded(self) -> Tuple[str, ...]:
+        """The automata that it commands, in the order of their first commands."""
+        return tuple(dict.fromkeys(command.moves[0].automaton for b in self.blocks for command in b.commands))
 
     def numbers_of(self, stage: int, place: Place) -> Tuple[int, ...]:
         """The numbers of the blocks that lead to a milestone; of a share: `place` is its first one."""
@@ -89,11 +99,16 @@ class Strategy:
 
     @cached_property
     def parts(self) -> Tuple[Optional[Tuple[int, Place]], ...]:
-        """For each block its stage and milestone, or its share and the first place of that; None where it has none."""
+        """For each block its stage and milestone, or its share and the first place of that, or with passages the number
+        of its agent, and that agent; None where it has none."""
         return tuple(map(self._part, self.blocks))
 
     def _part(self, block: Block) -> Optional[Tuple[int, Place]]:
         places = {**{name: str(value) for name, value in block.state.values}, **dict(block.state.locations)}
+        if self.passages:
+            senders = {command.moves[0].automaton for command in block.commands}
+            agents = [k for k, name in enumerate(self.commanded) if name in (senders or places)]
+            return (agents[0], (self.commanded[agents[0]], "")) if len(agents) == 1 else None
         if self.shares:
             own = [k for k, avoided in enumerate(self.shares) if any(name in places for name, _ in avoided)]
             return (own[0], self.shares[own[0]][0]) if len(own) == 1 else None
@@ -110,6 +125,11 @@ class Strategy:
         zones = (zone for b in self.blocks for zones in (b.wait, *(c.zones for c in b.commands)) for zone in zones)
         once = {id(zone): zone for zone in zones}  # most zones stand in many places
         return common_denominator(constraint.bound for zone in once.values() for constraint in zone)
+
+
+def with_automata_of(network: Network, strategy: Strategy) -> Network:
+    """The network with the strategy's own automata: its watchers and passages."""
+    return with_passages(with_watchers(network, strategy.watchers), strategy.passages)
 
 
 def with_edges(blocks: Iterable[Block], automaton: str, changed: Mapping[Edge, Edge]) -> Tuple[Block, ...]:

@@ -13,6 +13,7 @@ from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Automaton, Network
 from pursue_gen.tga.objectives import events_done, stated
 from pursue_gen.tga.own_turns import own_turns
+from pursue_gen.tga.passages import OF, words_of
 
 _END = names.done("")
 
@@ -48,6 +49,11 @@ def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
     for battery in scenario.batteries:
         texts = {str(level): f"{level} of {battery.capacity}" for level in levels(scenario, battery)}
         found.append(Status(names.level(battery.agent.name), f"battery of {battery.agent.shown}", texts))
+    words = words_of(network)
+    for automaton in network.automata:
+        if (automaton.name, automaton.initial) in words:
+            texts = {place.name: words[automaton.name, place.name] for place in automaton.locations}
+            found.append(Status(automaton.name, scenario.shown(automaton.name.partition(OF)[0]), texts))
     found += _assumptions(scenario)
     for name, objective in stated(scenario).items():
         if isinstance(objective, Patrol) and objective.order and names.rule_turn(name) in variables:

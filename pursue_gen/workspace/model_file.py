@@ -38,7 +38,7 @@ def model_data(network: Network, objective: Objective, scenario: Scenario, react
         "reaction": number(reaction),
         "clocks": inline(network.clocks),
         "variables": inline(dict(network.variables)),
-        "automata": [_automaton(each, kinds.get(each.name, "safety"), partners) for each in network.automata],
+        "automata": [_automaton(each, kinds.get(each.name) or _own_kind(each), partners) for each in network.automata],
         "objective": inline({"kind": objective.kind.value, "goal": goal, "bad": bad, **says}),
     }
     if scenario.labels:
@@ -82,6 +82,12 @@ def _kinds(scenario: Scenario, objective: Objective) -> Dict[str, str]:
     for agent in scenario.agents:
         kinds[agent.name] = "robot" if agent.is_robot else "human" if agent.controllable else "agent"
     return kinds
+
+
+def _own_kind(automaton: Automaton) -> str:
+    """The kind of a safety objective's automaton, or of one that the strategy has beside the network's own: who watches
+    an objective is one, an order of passage follows events as a rule does."""
+    return "safety" if any(location.name == names.LOSE for location in automaton.locations) else "rule"
 
 
 def _partners(scenario: Scenario) -> Dict[str, List[str]]:

@@ -46,7 +46,7 @@ class RelaxedPlanner:
 
     def choose(self, state: State, moves: Sequence[JointMove]) -> Sequence[JointMove]:
         """Of the controller's moves from the state, those by one edge that a relaxed plan begins with; none: wait."""
-        plan = self._plan(state)
+        plan = self.plan(state)
         first = [move.edges[0] for move in moves if move.edges[0] in plan]
         if not first:
             return ()
@@ -54,7 +54,7 @@ class RelaxedPlanner:
         best = min(first, key=lambda k: (self._game.edges[k].duration, k))
         return [move for move in moves if move.edges[0] == best]
 
-    def _plan(self, state: State) -> Set[int]:
+    def plan(self, state: State) -> Set[int]:
         """The edges of a relaxed plan from the state to the goal; empty if there is none."""
         goals: List[Fact] = [("at", automaton, location) for automaton, location in self._game.goal]
         achiever, support = self._achievers(state, set(goals))

@@ -1,0 +1,124 @@
+"""The one course of a play in which nothing is chosen: its events, and which of them come before which.
+
+Robots that pass places in an order do the same things whatever the delays are; only the order in which robots that do
+not wait for each other do them differs. Then all plays are told by one set of events and a partial order. Every
+automaton and every variable has a chain of states, each begun by an event and ended by the next one of its own. Two
+states can be so at the same time if and only if neither ends before the other begins, and several if each two can
+(Winskel, "Event structures", 1987; Nielsen, Plotkin, Winskel, "Petri nets, event structures and domains", 1981).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
+
+from pursue_gen.tga.network import Edge, Guard
+
+Value = Union[str, int]
+"""The location of an automaton, or what a variable is."""
+
+Stay = Tuple[str, int]
+"""An automaton or a variable, and the number of a state in its chain."""
+
+START = -1
+"""Begins the first state of each chain."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """A joint move: the sender's edge (or one of its own) and those of all that receive it.
+
+    `needs`: the states without which it cannot happen; `ends`: those that it ends, its sender's among them; `resets`:
+    clocks; `block`: the number of the block that commands it, None for a move of the environment.
+    """
+
+    sender: str
+    edge: Edge
+    receivers: Tuple[Tuple[str, Edge], ...]
+    needs: Mapping[str, int]
+    ends: Mapping[str, int]
+    resets: Tuple[str, ...]
+    block: Optional[int]
+
+
+class Course:
+    """The events so far, each after those that it needs, and the chains of states."""
+
+    def __init__(self, start: Mapping[str, Value]) -> None:
+        self.events: List[Event] = []
+        self.values: Dict[str, List[Value]] = {name: [value] for name, value in start.items()}
+        self._begun: Dict[str, List[int]] = {name: [START] for name in start}
+        self._where: Dict[Tuple[str, Value], List[int]] = {(name, value): [0] for name, value in start.items()}
+        self._down: List[int] = []
+
+    def now(self, name: str) -> Value:
+        """Where an automaton is, or what a variable is, after all events so far."""
+        return self.values[name][-1]
+
+    def last(self, name: str) -> int:
+        """The number of that state."""
+        return len(self.values[name]) - 1
+
+    def holds(self, guard: Guard) -> bool:
+        """True if the guard's tests of variables hold after all events so far."""
+        return all(any(self.now(test.variable) == test.value for test in clause) for clause in guard.integers)
+
+    def add(self, event: Event, changed: Mapping[str, Value]) -> None:
+        """Adds an event that is possible now; `changed`: what begins with it, for each state that it ends."""
+        number = len(self.events)
+        down = 1 << number
+        for stay in event.needs.items():
+            begin = self.begin(stay)
+            down |= self._down[begin] if begin != START else 0
+        self.events.append(event)
+        self._down.append(down)
+        for name, value in changed.items():
+            self._where.setdefault((name, value), []).append(len(self.values[name]))
+            self.values[name].append(value)
+            self._begun[name].append(number)
+
+    def stays(self, name: str, value: Value) -> Sequence[int]:
+        """The numbers of the states in which it is so."""
+        return self._where.get((name, value), ())
+
+    def begin(self, stay: Stay) -> int:
+        """The event that begins a state."""
+        return self._begun[stay[0]][stay[1]]
+
+    def end(self, stay: Stay) -> Optional[int]:
+        """The event that ends a state; None for the last one."""
+        begun = self._begun[stay[0]]
+        return begun[stay[1] + 1] if stay[1] + 1 < len(begun) else None
+
+    def is_before(self, one: int, other: int) -> bool:
+        """True if `other` cannot happen unless `one` has happened, or is the same event."""
+        return one == START or (other != START and bool(self._down[other] >> one & 1))
+
+    def may_meet(self, one: Stay, other: Stay) -> bool:
+        """True if two states can be so at the same time."""
+        if one[0] == other[0]:
+            return one[1] == other[1]
+        end, other_end = self.end(one), self.end(other)
+        if end is not None and self.is_before(end, self.begin(other)):
+            return False
+        return other_end is None or not self.is_before(other_end, self.begin(one))
+
+    def may_all_meet(self, stay: Stay, others: Iterable[Stay]) -> bool:
+        """True if a state can be so together with each of the others."""
+        return all(self.may_meet(stay, other) for other in others)
+
+    def tested(self, guard: Guard) -> List[List[Stay]]:
+        """For each clause of a guard the states in which it holds."""
+        return [
+            [(test.variable, k) for test in clause for k in self.stays(test.variable, test.value)]
+            for clause in guard.integers
+        ]
+
+    def meetings(self, choices: Sequence[Sequence[Stay]], known: Tuple[Stay, ...] = ()) -> Iterator[Tuple[Stay, ...]]:
+        """All ways to take one of each of the choices so that they, and what is known, can be so at the same time."""
+        if not choices:
+            yield known
+            return
+        for stay in choices[0]:
+            if self.may_all_meet(stay, known):
+                yield from self.meetings(choices[1:], (*known, stay))

@@ -1,0 +1,196 @@
+"""From one play, step by step, to a strategy with orders of passage that does the same in every play.
+
+What a robot does next follows from where it is, whose turn it is there and at the place to which it goes, and from what
+else its step needs: rules, states and objectives that the step, or another one of its visit, tests or changes. Nothing
+here has to be right: what it makes is proven (`proof.passages`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import AbstractSet, Dict, Iterable, List, Mapping, Optional, Sequence, Set, Tuple, Union
+
+from pursue_gen.language.network_names import is_going, is_under_way
+from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy
+from pursue_gen.tga.network import Edge, Guard, Network
+from pursue_gen.tga.passages import Passage, with_passages
+
+Value = Union[str, int]
+
+
+@dataclass(frozen=True)
+class Step:
+    """A joint move of a play: the sender's edge, those of all that receive it, and what was so before."""
+
+    sender: str
+    edge: Edge
+    receivers: Tuple[Tuple[str, Edge], ...]
+    before: Mapping[str, Value]
+
+    @property
+    def concerned(self) -> List[str]:
+        """The automata and variables that it tests, and the automata that it changes."""
+        tested = (t.variable for _, edge in self.moves for clause in edge.guard.integers for t in clause)
+        return list(dict.fromkeys((self.sender, *(name for name, _ in self.receivers), *tested)))
+
+    @property
+    def moves(self) -> Tuple[Tuple[str, Edge], ...]:
+        """All automata that take part, with their edges."""
+        return ((self.sender, self.edge), *self.receivers)
+
+
+class Play:
+    """A play in a network, without times: ends of movements and actions come before anything else is commanded."""
+
+    def __init__(self, network: Network) -> None:
+        self.now: Dict[str, Value] = {automaton.name: automaton.initial for automaton in network.automata}
+        self.now.update(network.variables)
+        self.steps: List[Step] = []
+        self._ends: Dict[Tuple[str, str], List[Edge]] = {}
+        self._heard: Dict[str, List[Tuple[str, Edge]]] = {}
+        for automaton in network.automata:
+            for edge in automaton.edges:
+                if edge.sync is not None and not edge.sync.sends:
+                    self._heard.setdefault(edge.sync.channel, []).append((automaton.name, edge))
+                elif is_under_way(edge.source) and edge.source != edge.target:
+                    self._ends.setdefault((automaton.name, edge.source), []).append(edge)
+
+    def holds(self, guard: Guard) -> bool:
+        """True if the guard's tests of variables hold now."""
+        return all(any(self.now[test.variable] == test.value for test in clause) for clause in guard.integers)
+
+    def take(self, sender: str, edge: Edge) -> bool:
+        """The joint move of an edge, and the ends that follow from it; False where it cannot be made, or does not end.
+        """
+        if self.now[sender] != edge.source or not self.holds(edge.guard):
+            return False
+        receivers: Dict[str, Edge] = {}
+        for name, other in self._heard.get(edge.sync.channel, ()) if edge.sync is not None else ():
+            if name != sender and other.source == self.now[name] and self.holds(other.guard):
+                receivers[name] = other
+        step = Step(sender, edge, tuple(receivers.items()), dict(self.now))
+        self.now[sender] = edge.target
+        self.now.update((name, other.target) for name, other in receivers.items())
+        for _, one in step.moves:
+            self.now.update(one.assign)
+        self.steps.append(step)
+        for name in (sender, *receivers):
+            if is_under_way(str(self.now[name])):
+                ends = self._ends.get((name, str(self.now[name])), [])
+                if not any(self.take(name, end) for end in ends) and is_under_way(str(self.now[name])):
+                    return False
+        return True
+
+
+def passages_of(network: Network, steps: Iterable[Step], single: AbstractSet[str]) -> Tuple[Passage, ...]:
+    """The orders in which robots are at places in a play: at those that hold one, and where the visits of a robot have
+    to be told apart."""
+    steps = list(steps)
+    visits: Dict[Tuple[str, str], List[str]] = {}
+
+    def visit(place: str, robot: str) -> None:
+        visits.setdefault((place, "" if place in single else robot), []).append(robot)
+
+    moving = {step.sender for step in steps if is_going(step.edge.target)}
+    for automaton in network.automata:
+        if automaton.name in moving:
+            visit(automaton.initial, automaton.name)
+    for step in steps:
+        if is_going(step.edge.source):
+            visit(step.edge.target, step.sender)
+    entered = {step.edge.target for step in steps if is_going(step.edge.source)}
+    told_apart = (len(robots) > 1 or (place in entered and not robot) for (place, robot), robots in visits.items())
+    return tuple(Passage(place, tuple(robots)) for ((place, _), robots), k in zip(visits.items(), told_apart) if k)
+
+
+def strategy_of(network: Network, play: Sequence[Tuple[str, Edge]], single: AbstractSet[str]) -> Optional[Strategy]:
+    """The strategy that does what a play does, given by its commands; None where that cannot be told apart."""
+    first = Play(network)
+    if not all(first.take(*command) for command in play):
+        return None
+    passages = passages_of(network, first.steps, single)
+    network = with_passages(network, passages)
+    if not {passage.name for passage in passages} <= {automaton.name for automaton in network.automata}:
+        return None
+    second = Play(network)
+    if not all(second.take(*command) for command in play):
+        return None
+    return Strategy(_Blocks(network, second.steps, passages).all(), passages=passages)
+
+
+class _Blocks:
+    def __init__(self, network: Network, steps: Sequence[Step], passages: Sequence[Passage]) -> None:
+        self._steps = steps
+        self._automata = [automaton.name for automaton in network.automata]
+        self._variables = [name for name, _ in network.variables]
+        self._passages = {passage.name: passage for passage in passages}
+        self._at: Dict[str, List[Passage]] = {}
+        for passage in passages:
+            self._at.setdefault(passage.place, []).append(passage)
+
+    def all(self) -> Tuple[Block, ...]:
+        """A block for each command, and one to wait in for each location of those who are commanded."""
+        commanded = [number for number, step in enumerate(self._steps) if step.edge.controllable]
+        senders = list(dict.fromkeys(self._steps[number].sender for number in commanded))
+        blocks: Dict[DiscreteState, Block] = {}
+        for name in senders:
+            moves = (edge for step in self._steps for who, edge in step.moves if who == name)
+            for place in (place for edge in moves for place in (edge.source, edge.target)):
+                state = self._state([name], {name: place})
+                blocks.setdefault(state, Block(state, ((),), ()))
+        for number, named in self._named(commanded).items():
+            state = self._state(named, self._steps[number].before)
+            blocks[state] = _block(state, self._steps[number])
+        return tuple(blocks.values())
+
+    def _named(self, commanded: Sequence[int]) -> Dict[int, Set[str]]:
+        """What the block of each command names: what it tests and changes, for which visit its sender is there, and
+        what tells it from other commands there."""
+        named: Dict[int, Set[str]] = {}
+        alike: Dict[Tuple[str, str], List[int]] = {}
+        for number in commanded:
+            step = self._steps[number]
+            named[number] = {*step.concerned, *self._held(step)}
+            for end in self._steps[number + 1 :]:  # what it is done for may come with its end
+                if not is_under_way(end.edge.source):
+                    break
+                named[number].update(end.concerned if end.sender == step.sender else ())
+            others = alike.setdefault((step.sender, step.edge.source), [])
+            for other in others:
+                earlier = self._steps[other]
+                shared = named[number] & named[other]
+                if step.edge != earlier.edge and all(step.before[name] == earlier.before[name] for name in shared):
+                    apart = self._changed_between(other, number)
+                    named[number] |= apart
+                    named[other] |= apart
+            others.append(number)
+        return named
+
+    def _changed_between(self, one: int, other: int) -> Set[str]:
+        """An automaton or a variable that is otherwise before the second step, by what the sender has done; nothing
+        where there is none."""
+        sender, before, after = self._steps[one].sender, self._steps[one].before, self._steps[other].before
+        own = (step for step in self._steps[one:other] if step.sender == sender)
+        concerned = (name for step in own for name in step.concerned if name not in self._passages)
+        return set(next(([name] for name in concerned if name != sender and before[name] != after[name]), ()))
+
+    def _held(self, step: Step) -> List[str]:
+        """The orders of passage that say for which visit its sender is where it is."""
+        return [each.name for each in self._at.get(step.edge.source, ()) if step.sender in each.robots]
+
+    def _state(self, named: Iterable[str], values: Mapping[str, Value]) -> DiscreteState:
+        names = set(named)
+        return DiscreteState(
+            tuple((name, str(values[name])) for name in self._automata if name in names),
+            tuple((name, int(values[name])) for name in self._variables if name in names),
+        )
+
+
+def _block(state: DiscreteState, step: Step) -> Block:
+    """Waits until the guard's clocks are past their bounds."""
+    bounds = [(bound.clock, Fraction(bound.bound), bound.op == ">") for bound in step.edge.guard.clocks]
+    zone = tuple(Constraint(None, clock, -bound, strict) for clock, bound, strict in bounds)
+    wait = tuple((Constraint(clock, None, bound, not strict),) for clock, bound, strict in bounds)
+    moves = tuple(Move(name, edge) for name, edge in step.moves)
+    return Block(state, wait, (Command((zone,), moves),))

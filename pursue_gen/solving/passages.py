@@ -1,0 +1,205 @@
+"""Robots that must never be at one place, and have to be at several to reach the goal: orders of passage.
+
+In rounds: what has to be done next, and where, comes from a relaxed plan (`synthesis.reference.relaxed`), as if nobody
+was in anybody's way; `routes` brings the robots there. What comes out is one play. The strategy that does the same in
+each play (`passage_steps`) lets robots that do not meet move at the same time. Where it is proven it wins; where
+nothing is found, nothing is known.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+
+from pursue_gen.language.network_names import is_going, is_under_way
+from pursue_gen.proof.checker import verify
+from pursue_gen.proof.live import is_controllers, taken_over
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.passage_steps import Play, strategy_of
+from pursue_gen.solving.routes import Floor, routes
+from pursue_gen.solving.subgoals import commanded_agents
+from pursue_gen.synthesis.compile_game import compile_game
+from pursue_gen.synthesis.game import State
+from pursue_gen.synthesis.reference.relaxed import RelaxedPlanner
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga.network import Automaton, Clause, Edge, Kind, Network, Objective
+from pursue_gen.tga.part import part_of
+
+_ROUNDS = 200
+"""So many rounds at most."""
+
+_UNITS = 10
+"""Times of ways are counted in tenths of time units."""
+
+
+def won_by_passages(
+    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
+) -> Optional[Strategy]:
+    """A proven strategy with orders of passage; None where none is found with little work. Raises LimitHit at a limit.
+
+    Only where there are `passing_robots`."""
+    robots = _robots(network)
+    single = _single(network, objective, robots)
+    names = {automaton.name for automaton in network.automata}.difference(name for name, _ in objective.bad)
+    names.update(name for name, _ in objective.goal)
+    rest = part_of(network, names, dict(network.variables).keys())
+    commands = _Rounds(rest, objective, robots, single, reaction).commands()
+    strategy = None if commands is None else strategy_of(rest, commands, single)
+    if strategy is None:
+        return None
+    report = verify(network, objective, strategy, reaction, limits=options.limits, progress=options.progress)
+    return strategy if report.ok else None
+
+
+def passing_robots(network: Network, objective: Objective) -> int:
+    """How many robots there are, if two of them must never be at one place, on the way to a goal; else 0."""
+    if objective.kind is not Kind.REACH_WHILE_SAFE or network.start:
+        return 0
+    robots = _robots(network)
+    return len(robots) if len(robots) > 1 and _single(network, objective, robots) else 0
+
+
+def _robots(network: Network) -> List[Automaton]:
+    """The agents that are commanded to go somewhere."""
+    commanded = (network.automaton(name) for name in commanded_agents(network))
+    return [automaton for automaton in commanded if any(is_going(place.name) for place in automaton.locations)]
+
+
+def _single(network: Network, objective: Objective, robots: List[Automaton]) -> FrozenSet[str]:
+    """The places at which two of the robots must never be."""
+    spots = dict(_spots(robots))
+    bad = set(objective.bad)
+    found: Set[str] = set()
+    for automaton in network.automata:
+        for edge in automaton.edges:
+            if (automaton.name, edge.target) in bad and edge.sync is None and not edge.controllable:
+                clauses = edge.guard.integers
+                if len(clauses) == 2:
+                    one, other = (_places(clause, spots) for clause in clauses)
+                    found |= one & other
+    return frozenset(found)
+
+
+def _spots(robots: List[Automaton]) -> Iterator[Tuple[str, Dict[int, str]]]:
+    """For each variable that a robot sets where it arrives at a place, the places by its values."""
+    for automaton in robots:
+        for edge in automaton.edges:
+            if is_going(edge.source) and edge.assign:
+                yield edge.assign[0][0], {
+                    e.assign[0][1]: e.target for e in automaton.edges if is_going(e.source) and e.assign
+                }
+                break
+
+
+def _places(clause: Clause, spots: Mapping[str, Mapping[int, str]]) -> Set[str]:
+    """The places at which the tests of a clause hold; nothing where they are of no robot, or of several."""
+    variables = {test.variable for test in clause}
+    if len(variables) != 1 or not variables <= spots.keys():
+        return set()
+    return {spots[t.variable][t.value] for t in clause if t.value in spots[t.variable]}
+
+
+class _Rounds:
+    def __init__(
+        self,
+        network: Network,
+        objective: Objective,
+        robots: List[Automaton],
+        single: FrozenSet[str],
+        reaction: Fraction,
+    ) -> None:
+        self._network, self._robots = network, [robot.name for robot in robots]
+        self._game = compile_game(network, Objective(Kind.REACH, objective.goal))
+        self._planner = RelaxedPlanner(self._game)
+        self._goal = objective.goal
+        self._taken = taken_over(network)
+        self._play = Play(network)
+        self._legs = {robot.name: _legs(robot) for robot in robots}
+        ways: Dict[str, Dict[str, Dict[str, int]]] = {}
+        for robot in robots:
+            own = ways[robot.name] = {place.name: {} for place in robot.locations}
+            longest = {place.name: max((b.bound for b in place.invariant), default=0) for place in robot.locations}
+            for (origin, target), edge in self._legs[robot.name].items():
+                rest = max((bound.bound for bound in edge.guard.clocks), default=0)
+                own[origin][target] = int(_UNITS * (longest[edge.target] + rest + reaction)) + 1
+        self._floor = Floor(ways, single)
+        self._ends: Dict[str, List[Edge]] = {}
+        for robot in robots:
+            for edge in robot.edges:
+                if is_under_way(edge.source):
+                    self._ends.setdefault(edge.source, []).append(edge)
+        self._commands: List[Tuple[str, Edge]] = []
+
+    def commands(self) -> Optional[List[Tuple[str, Edge]]]:
+        """The commands of a play that reaches the goal, in order; None where none is found."""
+        for _ in range(_ROUNDS):
+            if all(self._play.now[name] == place for name, place in self._goal):
+                return self._commands
+            deeds = self._deeds()
+            # All at once, or where that is too much one after the other: who is done may make way.
+            some = [deeds, *({name: edge} for name, edge in deeds.items() if len(deeds) > 1)]
+            if not any(self._do(each) for each in some):
+                return None
+        return None
+
+    def _do(self, deeds: Mapping[str, Edge]) -> bool:
+        """Brings the robots to where they have something to do, and has it done; False where nothing was done."""
+        done = len(self._commands)
+        # Objectives begin to count before anybody does something for them.
+        ours = sorted(deeds.items(), key=lambda deed: deed[0] in self._robots)
+        if not self._go_to(deeds):
+            return False
+        self._commands += [(name, edge) for name, edge in ours if self._play.take(name, edge)]
+        return len(self._commands) > done
+
+    def _deeds(self) -> Dict[str, Edge]:
+        """What to do next, at most one thing for each agent, and no two at a place that holds one."""
+        game, now = self._game, self._play.now
+        state = State(
+            tuple(a.locations.index(str(now[a.name])) for a in game.automata),
+            tuple(int(now[name]) for name in game.variables),
+        )
+        found: Dict[str, Edge] = {}
+        places: Set[str] = set()
+        numbers = sorted(self._planner.plan(state))
+        plan = [(game.automata[game.edges[k].automaton].name, game.origins[k]) for k in numbers]
+        for name, edge in plan:
+            is_way = is_going(edge.target) or is_under_way(edge.source)
+            if name in found or is_way or not is_controllers(edge, self._taken):
+                continue
+            if not self._play.holds(edge.guard) or not self._is_heard(edge, plan):
+                continue
+            is_busy = name not in self._robots or edge.source in places
+            if is_busy and now[name] != edge.source:
+                continue
+            found[name] = edge
+            places.update({edge.source} & self._floor.single)
+        return found
+
+    def _is_heard(self, edge: Edge, plan: Sequence[Tuple[str, Edge]]) -> bool:
+        """False for an event that the plan needs because somebody receives it, or its end, who is not there yet."""
+        ends = [e.sync for e in self._ends.get(edge.target, ()) if e.sync is not None]
+        channels = {sync.channel for sync in (edge.sync, *ends) if sync is not None}
+        receiving = [(n, e) for n, e in plan if e.sync is not None and not e.sync.sends and e.sync.channel in channels]
+        return not receiving or any(self._play.now[name] == e.source for name, e in receiving)
+
+    def _go_to(self, deeds: Mapping[str, Edge]) -> bool:
+        """Brings the robots to where they have something to do; False where that is not found."""
+        at = {name: str(self._play.now[name]) for name in self._robots}
+        wanted = {name: edge.source for name, edge in deeds.items() if name in at}
+        if all(at[name] == place for name, place in wanted.items()):
+            return True
+        moves = routes(self._floor, at, wanted)
+        for move in moves or ():
+            edge = self._legs[move.robot][move.origin, move.target]
+            if not self._play.take(move.robot, edge):
+                return False
+            self._commands.append((move.robot, edge))
+        return moves is not None
+
+
+def _legs(robot: Automaton) -> Dict[Tuple[str, str], Edge]:
+    """The edges by which a robot sets off, by the places from and to which it goes."""
+    ends = {edge.source: edge.target for edge in robot.edges if is_going(edge.source) and edge.target != edge.source}
+    setting_off = (edge for edge in robot.edges if is_going(edge.target) and edge.source != edge.target)
+    return {(edge.source, ends[edge.target]): edge for edge in setting_off if edge.target in ends}

@@ -1,0 +1,116 @@
+"""Automata of a strategy that say whose turn it is at a place: orders of passage.
+
+Where two robots must never be at one place they pass it in an order. Its automaton follows the movements that they are
+commanded: a robot has the place from the moment at which it sets off for it until it sets off from there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Dict, Iterable, List, Optional, Set, Tuple
+
+from pursue_gen.language.network_names import is_going
+from pursue_gen.tga.network import Automaton, Edge, Location, Network, Sync
+
+OF = "_passage"
+"""Stands behind the place in the name of its automaton."""
+
+_AWAITS, _HAS, _NOBODY = "awaits", "has", "awaits_nobody"
+
+
+@dataclass(frozen=True)
+class Passage:
+    """The robots that are at a place, one visit after the other; first of all the one that starts there, if one does.
+
+    At a place where several robots may be at once each has an order of its own visits.
+    """
+
+    place: str
+    robots: Tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """Its automaton's name."""
+        alone = f"_of_{self.robots[0]}" if len(set(self.robots)) == 1 else ""
+        return f"{self.place}{OF}{alone}"
+
+    def awaits(self, visit: int) -> str:
+        """The location in which the robot of this visit (from 0) may set off for the place; behind the last visit:
+        nobody does."""
+        return f"{_AWAITS}_{self.robots[visit]}_{visit + 1}" if visit < len(self.robots) else _NOBODY
+
+    def has(self, visit: int) -> str:
+        """The location in which the robot of this visit is there, or on its way there."""
+        return f"{_HAS}_{self.robots[visit]}_{visit + 1}"
+
+
+def words_of(network: Network) -> Dict[Tuple[str, str], str]:
+    """What the locations of all passages in a network mean, in words, by automaton and location."""
+    words: Dict[Tuple[str, str], str] = {}
+    agents = {automaton.name for automaton in network.automata}
+    for automaton in network.automata:
+        for place in automaton.locations if OF in automaton.name else ():
+            what, _, rest = place.name.partition("_")
+            robot, _, visit = rest.rpartition("_")
+            if place.name == _NOBODY:
+                words[automaton.name, place.name] = "nobody comes any more"
+            elif robot in agents:
+                phrase = "next is" if what == _AWAITS else "taken by"
+                words[automaton.name, place.name] = f"{phrase} {robot}, visit {visit}"
+    return words
+
+
+def with_passages(network: Network, passages: Iterable[Passage]) -> Network:
+    """The network with the automata of these passages behind its own; one that is there already, or that cannot be
+    (see `passage_automaton`), is left out."""
+    for passage in passages:
+        automaton = passage_automaton(network, passage)
+        if automaton is not None:
+            network = replace(network, automata=(*network.automata, automaton))
+    return network
+
+
+def passage_automaton(network: Network, passage: Passage) -> Optional[Automaton]:
+    """The automaton of a passage. None where its name is taken, where a robot in it never moves to and from the place,
+    or where the one that starts there is not the first."""
+    robots = {automaton.name: automaton for automaton in network.automata if automaton.name in passage.robots}
+    taken = {*network.clocks, *network.channels, *(name for name, _ in network.variables)}
+    taken.update(automaton.name for automaton in network.automata)
+    if network.start or passage.name in taken or not passage.robots or robots.keys() != set(passage.robots):
+        return None
+    there = [name for name, automaton in robots.items() if automaton.initial == passage.place]
+    if there and there != [passage.robots[0]]:
+        return None
+    ways = {name: _channels(automaton, passage.place) for name, automaton in robots.items()}
+    locations: List[Location] = []
+    edges: List[Edge] = []
+    for visit, robot in enumerate(passage.robots):
+        entering, leaving = ways[robot]
+        if visit or not there:
+            locations.append(Location(passage.awaits(visit)))
+            edges += _on(entering, passage.awaits(visit), passage.has(visit))
+        locations.append(Location(passage.has(visit)))
+        edges += _on(leaving, passage.has(visit), passage.awaits(visit + 1))
+    locations.append(Location(_NOBODY))
+    return Automaton(passage.name, tuple(locations), locations[0].name, tuple(edges))
+
+
+def _on(channels: Iterable[str], source: str, target: str) -> List[Edge]:
+    return [Edge(source, target, sync=Sync(channel, sends=False)) for channel in channels]
+
+
+def _channels(robot: Automaton, place: str) -> Tuple[List[str], List[str]]:
+    """The channels on which a robot sets off for a place, and those on which it sets off from there."""
+    ends: Dict[str, Set[str]] = {}
+    for edge in robot.edges:
+        if edge.source != edge.target:  # what is done on the way leads nowhere
+            ends.setdefault(edge.source, set()).add(edge.target)
+    entering: Dict[str, None] = {}
+    leaving: Dict[str, None] = {}
+    for edge in robot.edges:
+        if edge.sync is not None and edge.sync.sends and is_going(edge.target) and edge.source != edge.target:
+            if edge.source == place:
+                leaving[edge.sync.channel] = None
+            elif ends.get(edge.target) == {place}:
+                entering[edge.sync.channel] = None
+    return list(entering), list(leaving)

@@ -1,0 +1,182 @@
+"""Orders of passage: what the checker takes as one course of events wins the game as a whole."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import Optional, Tuple
+
+import pytest
+from hypothesis import HealthCheck, event, given, settings
+from hypothesis import strategies as st
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.proof.checker import Report, verify
+from pursue_gen.proof.worst_case import worst_case
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.passages import passing_robots, won_by_passages
+from pursue_gen.solving.rules import DEFAULT, IDEAL, Rules
+from pursue_gen.synthesis.strategy import Constraint, DiscreteState, Strategy
+from pursue_gen.tga.passages import Passage
+from tests.proof.passing_games import Game, damaged, game_of, of_the_whole, passing_texts
+
+DELAY = Fraction(1, 10)
+RANDOM = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+
+CORRIDOR = """
+poi "a"
+poi "b"
+poi "c"
+poi "bay"
+connect a and b distance 2
+connect b and c distance 2
+connect b and bay distance 1
+event "work1" location c duration 2
+event "work2" location a duration 2
+agent "bot1" controllable mobile 1 location a can_do work1
+agent "bot2" controllable mobile 1 location c can_do work2
+objective: bot1 never_with bot2
+reach_objective: do work1
+reach_objective: do work2
+"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def twin() -> None:
+    """The course of events is followed in Python alone."""
+
+
+def strategy_for(game: Game, reaction: Fraction = DELAY) -> Optional[Strategy]:
+    return won_by_passages(*game, reaction, SolveOptions()) if passing_robots(*game) else None
+
+
+def judged(game: Game, strategy: Strategy, reaction: Fraction = DELAY) -> Optional[Report]:
+    try:
+        return verify(*game, strategy, reaction)
+    except PursueError:
+        return None
+
+
+def wins_as_a_whole(game: Game, strategy: Strategy, reaction: Fraction = DELAY) -> None:
+    whole = of_the_whole(game, strategy)
+    if whole is not None:
+        report = verify(whole[0], game[1], whole[1], reaction)
+        assert report.ok, (report.reason, report.play)
+
+
+@RANDOM
+@given(text=passing_texts(), rules=st.sampled_from((DEFAULT, IDEAL)))
+def test_what_is_found_wins_as_a_whole(text: str, rules: Rules) -> None:
+    game = game_of(text, rules)
+    strategy = strategy_for(game, rules.reaction)
+    event("found" if strategy else "not found")
+    if strategy is not None:
+        wins_as_a_whole(game, strategy, rules.reaction)
+
+
+@RANDOM
+@given(data=st.data(), text=passing_texts(), rules=st.sampled_from((DEFAULT, IDEAL)))
+def test_what_is_damaged_and_passes_still_wins_as_a_whole(data: st.DataObject, text: str, rules: Rules) -> None:
+    game = game_of(text, rules)
+    strategy = strategy_for(game, rules.reaction)
+    for _ in range(data.draw(st.integers(1, 2)) if strategy else 0):
+        assert strategy is not None
+        strategy = data.draw(damaged(strategy))
+    report = None if strategy is None else judged(game, strategy, rules.reaction)
+    event("none" if report is None else "passes" if report.ok else report.reason.split(" ")[1])
+    if strategy is not None and report is not None and report.ok:
+        wins_as_a_whole(game, strategy, rules.reaction)
+
+
+def corridor() -> Tuple[Game, Strategy]:
+    game = game_of(CORRIDOR)
+    strategy = strategy_for(game)
+    assert strategy is not None
+    return game, strategy
+
+
+def test_robots_pass_each_other_with_a_bay() -> None:
+    game, strategy = corridor()
+    assert [passage.place for passage in strategy.passages].count("b") == 1
+    assert verify(*game, strategy, DELAY).ok
+    wins_as_a_whole(game, strategy)
+
+
+def test_who_does_not_wait_for_its_turn_is_refused() -> None:
+    game, strategy = corridor()
+    refused = 0
+    for k, block in enumerate(strategy.blocks):
+        for gone in block.state.locations if block.commands else ():
+            if gone[0] != "b_passage" or not gone[1].startswith("awaits") or gone[1].endswith("_1"):
+                continue  # nobody else was there before
+            kept = tuple(place for place in block.state.locations if place != gone)
+            blocks = list(strategy.blocks)
+            blocks[k] = replace(block, state=DiscreteState(kept, block.state.values))
+            assert not verify(*game, replace(strategy, blocks=tuple(blocks)), DELAY).ok
+            refused += 1
+    assert refused == 2
+
+
+def test_another_order_is_refused() -> None:
+    game, strategy = corridor()
+    for k, passage in enumerate(strategy.passages):
+        for other in ((*passage.robots[1:], passage.robots[0]), passage.robots[:-1]):
+            if other == passage.robots or not other:
+                continue
+            passages = (*strategy.passages[:k], Passage(passage.place, other), *strategy.passages[k + 1 :])
+            report = judged(game, replace(strategy, passages=passages))
+            assert report is None or not report.ok
+
+
+def test_a_command_before_its_time_is_refused() -> None:
+    game, strategy = corridor()
+    k = next(k for k, block in enumerate(strategy.blocks) if block.commands)
+    block = strategy.blocks[k]
+    soon = (Constraint(None, "Cbot1", Fraction(-1, 2), True),)
+    late = (*block.commands[0].zones[0], Constraint("Cbot1", None, Fraction(9), False))
+    for zone, reason in ((soon, "too soon"), (late, "lower bounds"), ((), "too soon")):
+        blocks = list(strategy.blocks)
+        blocks[k] = replace(block, wait=((),), commands=(replace(block.commands[0], zones=(zone,)),))
+        report = verify(*game, replace(strategy, blocks=tuple(blocks)), DELAY)
+        assert not report.ok
+        assert reason in report.reason
+
+
+def test_an_agent_without_a_block_for_where_it_is_is_refused() -> None:
+    game, strategy = corridor()
+    for k, block in enumerate(strategy.blocks):
+        if "going" in block.state.locations[0][1]:
+            blocks = (*strategy.blocks[:k], *strategy.blocks[k + 1 :])
+            assert "no block says what" in verify(*game, replace(strategy, blocks=blocks), DELAY).reason
+
+
+def test_the_guaranteed_time_is_that_of_the_whole_game() -> None:
+    game, strategy = corridor()
+    whole = of_the_whole(game, strategy)
+    assert whole is not None
+    assert worst_case(*game, strategy) == worst_case(whole[0], game[1], whole[1])
+    # With a reaction no command grows stale because of others, as it does in blocks that name everybody.
+    took, exact = worst_case(*game, strategy, DELAY), worst_case(whole[0], game[1], whole[1], DELAY)
+    assert took is not None
+    assert exact is not None
+    assert took <= exact
+
+
+@RANDOM
+@given(text=passing_texts())
+def test_guaranteed_times_are_never_too_short(text: str) -> None:
+    game = game_of(text)
+    strategy = strategy_for(game)
+    whole = None if strategy is None else of_the_whole(game, strategy)
+    if strategy is not None and whole is not None:
+        took, exact = worst_case(*game, strategy), worst_case(whole[0], game[1], whole[1], limit=5_000)
+        event("compared" if exact is not None else "not compared")
+        assert took is not None
+        assert exact is None or abs(exact - took) <= Fraction(1, 100)
+
+
+def test_a_deadline_is_not_relied_on() -> None:
+    network, objective = game_of(CORRIDOR.replace("reach_objective: do work2", "reach_objective: do work2 within 100"))
+    report = verify(network, objective, corridor()[1], DELAY)
+    assert not report.ok
+    assert "has a deadline" in report.reason

@@ -1,0 +1,172 @@
+"""Robots that change places: whole scenarios, from the text to what is played."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from benchmarks.ordinary_families import pass_in_a_corridor, pass_in_a_square
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.language import parse
+from pursue_gen.partition.strategy_data import cover_data
+from pursue_gen.proof.checker import verify
+from pursue_gen.replay.game import Source, game_of
+from pursue_gen.report.strategy_data import size, strategy_data_of
+from pursue_gen.simulation.make import make_case
+from pursue_gen.simulation.mission import simulate_mission
+from pursue_gen.simulation.outcome import Settings
+from pursue_gen.simulation.runs import MissionRunner
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.passages import passing_robots, won_by_passages
+from pursue_gen.solving.request import SolveRequest
+from pursue_gen.solving.rules import DEFAULT, IDEAL, Rules, played
+from pursue_gen.solving.solution import Solution
+from pursue_gen.solving.solvers import solved
+from pursue_gen.synthesis.plan import read_plan, write_plan
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.uppaal import read_network, write_network
+from pursue_runtime.state import SystemState
+from pursue_runtime.strategy import read_cover
+
+
+def won(text: str, rules: Rules = DEFAULT) -> Solution:
+    scenario = parse(text, "passing.pur", "passing")
+    return solved(translate(scenario), scenario_objective(scenario), rules)
+
+
+@pytest.mark.parametrize("robots", [4, 5, 8, 12])
+def test_robots_that_pass_each_other_in_a_corridor(robots: int) -> None:
+    found = won(pass_in_a_corridor(robots))
+    assert found.strategy.passages
+    assert verify(found.network, found.objective, found.strategy, found.reaction).ok
+
+
+def test_on_a_square_robots_move_at_the_same_time() -> None:
+    found = won(pass_in_a_square(8))
+    assert found.guarantee is not None
+    # The longest single way: six legs of at most 6, a rest and a reaction each, and the work.
+    assert found.guarantee.worst is not None
+    assert found.guarantee.worst <= Fraction(3, 2) * (6 * Fraction(71, 10) + Fraction(61, 10))
+
+
+def test_the_ideal_game_is_won_as_well() -> None:
+    found = won(pass_in_a_corridor(4), IDEAL)
+    assert found.strategy.passages
+    assert found.guarantee is not None
+    default = won(pass_in_a_corridor(4)).guarantee
+    assert default is not None
+    assert default.worst is not None
+    assert found.guarantee.worst is not None
+    assert found.guarantee.worst < default.worst
+
+
+def test_the_plan_is_read_as_it_was_written() -> None:
+    found = won(pass_in_a_corridor(4))
+    scenario = parse(pass_in_a_corridor(4), "passing.pur", "passing")
+    network = played(translate(scenario), DEFAULT)
+    text = write_plan(found.strategy, network, found.objective)
+    assert " -- Passage: hall1 bot1 " in text
+    again = read_plan(text, network, "plan.txt")
+    assert again == found.strategy
+    assert read_plan(text, found.network, "plan.txt") == found.strategy
+    assert verify(network, found.objective, again, found.reaction).ok
+
+
+def test_the_network_with_the_orders_is_written_and_read() -> None:
+    found = won(pass_in_a_corridor(4))
+    again = read_network(write_network(found.network, found.objective), "TGA.xml")
+    assert again.automata[-1].name.endswith("_passage")
+    plan = write_plan(found.strategy, found.network, found.objective)
+    assert verify(again, found.objective, read_plan(plan, again, "plan.txt"), found.reaction).ok
+
+
+@pytest.mark.parametrize(
+    "line, why",
+    [("hall1", "which the network cannot have"), ("hall1 bot9", "cannot have"), ("room1 bot2 bot1", "cannot have")],
+)
+def test_a_plan_with_another_passage_is_refused(line: str, why: str) -> None:
+    found = won(pass_in_a_corridor(4))
+    network = played(translate(parse(pass_in_a_corridor(4), "p.pur", "p")), DEFAULT)
+    text = write_plan(found.strategy, network, found.objective)
+    broken = text.replace(text[text.index(" -- Passage:") :].split("\n")[0], f" -- Passage: {line}")
+    with pytest.raises(PursueError, match=why):
+        read_plan(broken, network, "plan.txt")
+
+
+def test_missions_reach_the_goal_within_the_guarantee() -> None:
+    scenario = parse(pass_in_a_corridor(4), "passing.pur", "passing")
+    found = won(pass_in_a_corridor(4))
+    runner = MissionRunner(make_case(scenario, found, SolveRequest(), "random", (), None)[0])
+    missions = [simulate_mission(runner.stage, Settings("random"), number) for number in range(1, 11)]
+    assert [mission.end for mission in missions] == ["goal"] * 10, missions
+
+
+def test_a_recorded_mission_is_replayed_with_its_plan() -> None:
+    text = pass_in_a_corridor(4)
+    game = game_of(Source("passing", text, "passing.pur", DEFAULT))
+    assert game.orders is not None
+    assert game.network.automata[-1].name.endswith("_passage")
+
+
+def test_each_agent_has_an_entry_in_every_state() -> None:
+    found = won(pass_in_a_corridor(4))
+    cover = read_cover(cover_data(found.strategy))
+    locations = {automaton.name: automaton.initial for automaton in found.network.automata}
+    state = SystemState(0, 0.0, locations, dict(found.network.variables), dict.fromkeys(found.network.clocks, 0.0))
+    assert cover.zones(state)
+    assert not cover.zones(replace_location(state, "bot1", "nowhere"))
+
+
+def replace_location(state: SystemState, name: str, location: str) -> SystemState:
+    return SystemState(0, 0.0, {**state.locations, name: location}, state.values, state.clocks)
+
+
+def test_the_report_shows_the_steps_of_each_agent() -> None:
+    scenario = parse(pass_in_a_corridor(4), "passing.pur", "passing")
+    found = won(pass_in_a_corridor(4))
+    data = strategy_data_of(scenario, found, "dedicated")
+    assert data.ordered
+    assert sorted(part.who for part in data.parts) == [("bot1",), ("bot2",), ("bot3",), ("bot4",), ("reachObj",)]
+    assert size(data)[1] == sum(len(block.commands) for block in found.strategy.blocks)
+
+
+def test_who_walks_about_in_the_corridor_is_not_passed_so() -> None:
+    text = pass_in_a_corridor(4) + '\nagent "guest" mobile 2 location hall5\nobjective: bot1 never_with guest\n'
+    scenario = parse(text, "passing.pur", "passing")
+    network, objective = played(translate(scenario), DEFAULT), scenario_objective(scenario)
+    assert passing_robots(network, objective) == 4
+    assert won_by_passages(network, objective, Fraction(1, 10), SolveOptions()) is None
+
+
+def test_somebody_who_does_not_matter_may_walk_about() -> None:
+    text = pass_in_a_corridor(4) + '\nagent "guest" mobile 2 location hall5\n'
+    found = won(text)
+    assert found.strategy.passages
+    assert all(name != "guest" for block in found.strategy.blocks for name, _ in block.state.locations)
+
+
+def test_robots_with_rules_that_come_round_again() -> None:
+    text = """
+poi "yard"
+poi "dock"
+poi "rack"
+poi "bay1"
+poi "bay2"
+connect yard and dock distance 2
+connect yard and rack distance 3
+connect yard and bay1 distance 1
+connect yard and bay2 distance 1
+event "fetch" location rack duration 2
+event "hand" location dock duration 2
+rule "order": fetch before hand
+agent "bot1" controllable mobile 1 location rack can_do hand
+agent "bot2" controllable mobile 1 location dock can_do fetch
+objective: bot1 never_with bot2
+reach_objective: do hand
+"""
+    scenario = parse(text, "passing.pur", "passing")
+    network, objective = played(translate(scenario), DEFAULT), scenario_objective(scenario)
+    strategy = won_by_passages(network, objective, DEFAULT.reaction, SolveOptions())
+    assert strategy is not None
+    assert verify(network, objective, strategy, DEFAULT.reaction).ok
