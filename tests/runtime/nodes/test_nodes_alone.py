@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import socket
 import threading
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,14 +20,17 @@ from std_msgs.msg import String
 
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.whereabouts import Position
-from pursue_runtime.nodes import positions, recorder, robot_link
+from pursue_runtime.nodes import mission_test, positions, recorder, robot_link
 from pursue_runtime.nodes.communication_manager import CommunicationManager
+from pursue_runtime.nodes.drive_legs import DriveLegs
 from pursue_runtime.nodes.markers import MarkersNode
-from pursue_runtime.nodes.node import ERROR, OK, WARN
+from pursue_runtime.nodes.node import ERROR, OK, WARN, master_is_gone
+from pursue_runtime.nodes.pursue_reader import Node as ReaderNode
 from pursue_runtime.nodes.recorder import Bag, Recorder
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.nodes.simulator import SimulatorNode
 from pursue_runtime.nodes.state_message import message_of
+from pursue_runtime.nodes.ui_page import UIPage
 from pursue_runtime.nodes.witness import Witnesses
 from pursue_runtime.state import SystemState
 from pursue_runtime.ui.markers import BALL, DISC, TEXT
@@ -231,3 +235,77 @@ def test_a_pose_of_amcl_counts_until_tf_has_shown_the_robot(link: Any) -> None:
     link._seen_by_tf = True
     link._pose(message)
     assert len(link.places) == 1
+
+
+# The ends of nodes, and the test of a workspace -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("status, waiting, complete, ended", [
+    (0, [], True, 0), (0, [], False, 1), (0, ["bot"], True, 1), (1, [], True, 1),
+])  # fmt: skip
+def test_drives_end_well_where_all_is_measured(status: int, waiting: List[str], complete: bool, ended: int) -> None:
+    made: Any = DriveLegs.__new__(DriveLegs)
+    made.path, made._lock, made._bag, made._waiting = "drives.bag", threading.RLock(), None, waiting
+    made._done, made._stop, made._next_robot = [SimpleNamespace(is_complete=complete)], lambda: None, lambda: None
+    made.ending = SimpleNamespace(wait=lambda linger: status)
+    assert made.run() == ended
+
+
+def test_a_robot_publishes_its_status_after_each_order_and_state_that_changes_it() -> None:
+    made: Any = ReaderNode.__new__(ReaderNode)
+    made.lock, made.published, made.status, sent, alarms = threading.RLock(), "", 0, [], []
+
+    def change(*_: object) -> bool:
+        made.status += 1
+        return True
+
+    made.reader = SimpleNamespace(
+        on_message=change, on_state=change, on_time=change, status=lambda: made.status, next_check=lambda _: 2.0
+    )
+    made.statuses, made.alarm = SimpleNamespace(publish=sent.append), SimpleNamespace(set=lambda *g: alarms.append(g))
+    made.on_order(String("order"))
+    made.on_state(STATE, "/observer")
+    made.on_alarm()
+    made.publish()
+    assert sent == ["1", "2", "3"] and alarms == [(None, 2.0)] * 4
+
+
+def test_the_page_knows_when_the_last_state_came(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: Any = UIPage.__new__(UIPage)
+    made._received, made._board = (0.0, 0.0), None
+    made._presses = SimpleNamespace(on_state=lambda _: None)
+    monkeypatch.setattr(rospy, "get_time", lambda: 100.0)
+    made.on_state(STATE, 1.0)
+    assert made._received[1] == 100.0 and made._received[0] > 1e9
+
+
+@pytest.mark.parametrize("values, holds", [("10", True), ("12", False), ("20", False), ("30", True)])
+def test_an_edge_is_enabled_where_a_test_of_each_clause_holds(values: str, holds: bool) -> None:
+    edge = {"if": [[["r", 1], ["r", 3]], [["s", 0]]]}
+    assert mission_test.enabled(edge, {"r": values[0], "s": values[1]}) is holds
+
+
+@pytest.mark.parametrize("over_at, passed", [(102.0, 2.0), (1e9, 3.0)])
+def test_a_mission_that_has_only_to_stay_safe_is_ended_after_its_time_or_when_it_is_over(
+    monkeypatch: pytest.MonkeyPatch, over_at: float, passed: float
+) -> None:
+    now, said = [100.0], []  # type: ignore[var-annotated]
+    monkeypatch.setattr(rospy, "get_time", lambda: now[0])
+    monkeypatch.setattr(rospy, "sleep", lambda seconds: now.__setitem__(0, now[0] + seconds))
+    monkeypatch.setattr(mission_test.MissionTest, "events", SimpleNamespace(publish=said.append), raising=False)
+    record = SimpleNamespace(ended=lambda: now[0] >= over_at, wait=lambda *_: True)
+    monkeypatch.setattr(mission_test.MissionTest, "record", record, raising=False)
+    mission_test.MissionTest.play_on(3.0)
+    assert (now[0] - 100.0, said) == (passed, ["Finish!"])
+
+
+def test_only_a_master_that_refuses_connections_is_gone(monkeypatch: pytest.MonkeyPatch) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as there, socket.socket() as held:
+        held.bind(("127.0.0.1", 0))  # but it does not listen
+        ports = there.getsockname()[1], held.getsockname()[1]
+        addresses = [*(f"http://127.0.0.1:{port}" for port in ports), "http://no.such.machine.invalid:1", "nonsense"]
+        found = []
+        for address in addresses:
+            monkeypatch.setenv("ROS_MASTER_URI", address)
+            found.append(master_is_gone())
+    assert found == [False, True, False, False]
