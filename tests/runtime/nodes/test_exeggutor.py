@@ -14,7 +14,8 @@ pytest.importorskip("rospy", reason="ROS is not installed")
 import rospy
 
 from pursue_runtime.controller.whereabouts import Place
-from pursue_runtime.nodes.exeggutor import Exeggutor
+from pursue_runtime.nodes import exeggutor
+from pursue_runtime.nodes.exeggutor import LOOKS, Exeggutor
 from pursue_runtime.state import HOLDING, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 from pursue_runtime.strategy import Command
 
@@ -66,6 +67,16 @@ def test_a_robot_has_a_place_in_a_mission_that_is_under_way_and_goes_on_where_it
     view = made._view("bot", SystemState(3, 100.0, {"bot": "a"}, {}, {}, status=status, held=("bot",)))
     assert (view.location, view.running, view.held) == (here, status == RUNNING, True)
     assert (view.post is not None) == bool(here)
+
+
+def test_it_looks_where_robots_are_and_looks_again_after_a_while(monkeypatch: pytest.MonkeyPatch) -> None:
+    made, looks = executor(), []  # type: ignore[var-annotated]
+    monkeypatch.setattr(exeggutor.time, "monotonic", lambda: 50.0)
+    made._place, made._act = lambda *_: looks.append("placed"), lambda: looks.append("acted")
+    look = lambda: looks.append("looked")
+    made._links = {"bot": SimpleNamespace(watch=lambda: None, look=look, has_lost_position=False)}
+    made._on_alarm()
+    assert looks == ["looked", "acted"] and made._next_look == 50.0 + LOOKS
 
 
 def test_an_observer_that_connects_hears_every_report_again_and_then_that_these_are_all() -> None:
