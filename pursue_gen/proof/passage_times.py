@@ -35,6 +35,8 @@ def latest(played: Played, strategy: Strategy, reaction: Fraction) -> Fraction:
         moments = [_time(times, course.begin(stay)) for stay in event.needs.items()]
         (zone,) = strategy.blocks[event.block].commands[_which(strategy, event)].zones
         for clock, bound, strict in _enabled(event, zone):
+            if clock not in played.part.clocks:
+                raise Fault(f"{event.sender} waits for {clock}, of which nothing is known")
             for reset in resets.get(clock, ()):
                 if not course.is_before(reset, number) and not course.is_before(number, reset):
                     raise Fault(f"{clock} may be reset when {event.sender} leaves {event.edge.source}")

@@ -122,6 +122,9 @@ class _Search:
             sender = command.moves[0].automaton if command.moves else ""
             if sender not in dict(block.state.locations):
                 raise Fault("a block commands an agent that it does not name")
+            for clause in command.moves[0].edge.guard.integers:
+                if not any(named.get(test.variable) == test.value for test in clause):
+                    raise Fault(f"a block that commands {sender} does not name what that needs")
             self._said.setdefault((sender, str(named[sender])), []).append((number, command))
             for name in (*named, *variables_of(command.moves[0].edge)):
                 self._interested.setdefault(name, {})[sender] = None
@@ -268,10 +271,9 @@ class _Search:
                 raise Fault(f"{name} may be otherwise when {event.sender} leaves {event.edge.source}")
         if event.edge.sync is None:
             return
-        received = {name for name, _ in event.receivers}
         for name, edge in self._heard.get(event.edge.sync.channel, ()):
-            if name == event.sender or name in received:
-                continue  # a receiver is in one state alone, and takes one edge there
+            if name == event.sender or (name, edge) in event.receivers:
+                continue
             for k in course.stays(name, edge.source):
                 if course.may_all_meet((name, k), needs):
                     known = (*needs, *(() if name in event.needs else ((name, k),)))

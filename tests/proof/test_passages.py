@@ -12,11 +12,27 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.checker import Report, verify
+from pursue_gen.proof.passage_times import latest
+from pursue_gen.proof.passages import Fault
+from pursue_gen.proof.passages import played as played_course
 from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.passages import passing_robots, won_by_passages
 from pursue_gen.solving.rules import DEFAULT, IDEAL, Rules
-from pursue_gen.synthesis.strategy import Constraint, DiscreteState, Strategy
+from pursue_gen.synthesis.limits import LimitMonitor
+from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy
+from pursue_gen.tga.network import (
+    Automaton,
+    ClockBound,
+    Edge,
+    Guard,
+    Kind,
+    Location,
+    Network,
+    Objective,
+    Sync,
+    Test,
+)
 from pursue_gen.tga.passages import Passage
 from tests.proof.passing_games import Game, damaged, game_of, of_the_whole, passing_texts
 
@@ -180,3 +196,64 @@ def test_a_deadline_is_not_relied_on() -> None:
     report = verify(network, objective, corridor()[1], DELAY)
     assert not report.ok
     assert "has a deadline" in report.reason
+
+
+def test_a_clock_that_somebody_else_resets_is_not_waited_for() -> None:
+    text = CORRIDOR + 'event "call"\nagent "guest" location bay can_do call\n'
+    game = game_of(text)
+    strategy = strategy_for(game)
+    assert strategy is not None
+    assert verify(*game, strategy, DELAY).ok
+    k = next(k for k, block in enumerate(strategy.blocks) if block.commands)
+    block = strategy.blocks[k]
+    zone = (*block.commands[0].zones[0], Constraint(None, "Cguest", Fraction(-5), True))
+    blocks = list(strategy.blocks)
+    blocks[k] = replace(block, wait=((),), commands=(replace(block.commands[0], zones=(zone,)),))
+    report = verify(*game, replace(strategy, blocks=tuple(blocks)), DELAY)
+    assert not report.ok
+    assert "Cguest" in report.reason
+
+
+def test_who_may_receive_in_another_way_in_another_play_is_seen() -> None:
+    """The first play sends before the other one sets the variable."""
+    go, first = Sync("go", sends=True), Guard((ClockBound("C", ">=", 0),))
+    heard = Sync("go", sends=False)
+    sender = Automaton("one", (Location("a"), Location("b")), "a", (Edge("a", "b", first, go, resets=("C",)),))
+    setter = Automaton("two", (Location("c"), Location("d")), "c", (Edge("c", "d", Guard(), None, (("v", 1),)),))
+    rival = Edge("r0", "r2", Guard(integers=((Test("v", 1),),)), heard)
+    locations = (Location("r0"), Location("r1"), Location("r2"))
+    for rivals in ((), (rival,)):
+        watcher = Automaton("three", locations, "r0", (Edge("r0", "r1", Guard(), heard), *rivals))
+        network = Network(("C",), (("v", 0),), ("go",), (sender, setter, watcher))
+        objective = Objective(Kind.REACH, (("two", "d"), ("three", "r1")))
+        sent = (Move("one", sender.edges[0]), Move("three", watcher.edges[0]))
+        zone = (Constraint(None, "C", Fraction(0), False),)
+        before = (Constraint("C", None, Fraction(0), True),)
+        blocks = (
+            Block(DiscreteState((("one", "a"), ("three", "r0")), ()), (before,), (Command((zone,), sent),)),
+            Block(DiscreteState((("one", "b"),), ()), ((),), ()),
+            Block(DiscreteState((("two", "c"),), (("v", 0),)), (), (Command(((),), (Move("two", setter.edges[0]),)),)),
+            Block(DiscreteState((("two", "d"),), ()), ((),), ()),
+        )
+        if rivals:
+            with pytest.raises(Fault, match="three may receive go"):
+                played_course(network, objective, Strategy(blocks), LimitMonitor())
+        else:
+            found = played_course(network, objective, Strategy(blocks), LimitMonitor())
+            assert latest(found, Strategy(blocks), Fraction(0)) == 0
+
+
+def test_what_a_guard_tests_has_to_be_named() -> None:
+    """Else a command might not be enabled where its block holds."""
+    text = CORRIDOR.replace("reach_objective", 'event "ready"\nrule "turn": ready before work1\nreach_objective', 1)
+    game = game_of(text.replace("can_do work2", "can_do work2, ready"))
+    strategy = strategy_for(game)
+    assert strategy is not None
+    k = next(k for k, block in enumerate(strategy.blocks) if "doing_work1" in str(block.commands))
+    state = strategy.blocks[k].state
+    assert [name for name, _ in state.values] == ["Pturn"]
+    blocks = list(strategy.blocks)
+    blocks[k] = replace(blocks[k], state=replace(state, values=()))
+    report = verify(*game, replace(strategy, blocks=tuple(blocks)), DELAY)
+    assert not report.ok
+    assert "does not name" in report.reason
