@@ -9,7 +9,7 @@ nothing is found, nothing is known.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
 from pursue_gen.language.network_names import is_going, is_under_way
 from pursue_gen.proof.checker import verify
@@ -21,7 +21,7 @@ from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import State
 from pursue_gen.synthesis.reference.relaxed import RelaxedPlanner
-from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga.network import Automaton, Clause, Edge, Kind, Network, Objective
 from pursue_gen.tga.part import part_of
 
@@ -32,31 +32,37 @@ _UNITS = 10
 """Times of ways are counted in tenths of time units."""
 
 
-def won_by_passages(
-    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
-) -> Optional[Strategy]:
-    """A proven strategy with orders of passage; None where none is found with little work. Raises LimitHit at a limit.
+class Crowd(NamedTuple):
+    """Robots, and the places at which two of them must never be."""
 
-    Only where there are `passing_robots`."""
-    robots = _robots(network)
-    single = _single(network, objective, robots)
+    robots: Tuple[Automaton, ...]
+    single: FrozenSet[str]
+
+
+def won_by_passages(
+    network: Network, objective: Objective, crowd: Crowd, reaction: Fraction, options: SolveOptions
+) -> Optional[Tuple[Network, Strategy]]:
+    """A proven strategy with orders of passage, and the network with its automata; None where none is found with little
+    work. Raises LimitHit at a limit."""
     names = {automaton.name for automaton in network.automata}.difference(name for name, _ in objective.bad)
     names.update(name for name, _ in objective.goal)
     rest = part_of(network, names, dict(network.variables).keys())
-    commands = _Rounds(rest, objective, robots, single, reaction).commands()
-    strategy = None if commands is None else strategy_of(rest, commands, single)
+    commands = _Rounds(rest, objective, crowd, reaction).commands()
+    strategy = None if commands is None else strategy_of(rest, commands, crowd.single)
     if strategy is None:
         return None
-    report = verify(network, objective, strategy, reaction, limits=options.limits, progress=options.progress)
-    return strategy if report.ok else None
+    whole = with_automata_of(network, strategy)
+    report = verify(whole, objective, strategy, reaction, limits=options.limits, progress=options.progress)
+    return (whole, strategy) if report.ok else None
 
 
-def passing_robots(network: Network, objective: Objective) -> int:
-    """How many robots there are, if two of them must never be at one place, on the way to a goal; else 0."""
+def crowd_of(network: Network, objective: Objective) -> Optional[Crowd]:
+    """The robots, if two of them must never be at one place, on the way to a goal; else None."""
     if objective.kind is not Kind.REACH_WHILE_SAFE or network.start:
-        return 0
-    robots = _robots(network)
-    return len(robots) if len(robots) > 1 and _single(network, objective, robots) else 0
+        return None
+    robots = tuple(_robots(network))
+    single = _single(network, objective, robots) if len(robots) > 1 else frozenset()
+    return Crowd(robots, single) if single else None
 
 
 def _robots(network: Network) -> List[Automaton]:
@@ -65,7 +71,7 @@ def _robots(network: Network) -> List[Automaton]:
     return [automaton for automaton in commanded if any(is_going(place.name) for place in automaton.locations)]
 
 
-def _single(network: Network, objective: Objective, robots: List[Automaton]) -> FrozenSet[str]:
+def _single(network: Network, objective: Objective, robots: Sequence[Automaton]) -> FrozenSet[str]:
     """The places at which two of the robots must never be."""
     spots = dict(_spots(robots))
     bad = set(objective.bad)
@@ -80,7 +86,7 @@ def _single(network: Network, objective: Objective, robots: List[Automaton]) -> 
     return frozenset(found)
 
 
-def _spots(robots: List[Automaton]) -> Iterator[Tuple[str, Dict[int, str]]]:
+def _spots(robots: Sequence[Automaton]) -> Iterator[Tuple[str, Dict[int, str]]]:
     """For each variable that a robot sets where it arrives at a place, the places by its values."""
     for automaton in robots:
         for edge in automaton.edges:
@@ -100,15 +106,9 @@ def _places(clause: Clause, spots: Mapping[str, Mapping[int, str]]) -> Set[str]:
 
 
 class _Rounds:
-    def __init__(
-        self,
-        network: Network,
-        objective: Objective,
-        robots: List[Automaton],
-        single: FrozenSet[str],
-        reaction: Fraction,
-    ) -> None:
-        self._network, self._robots = network, [robot.name for robot in robots]
+    def __init__(self, network: Network, objective: Objective, crowd: Crowd, reaction: Fraction) -> None:
+        robots, single = crowd
+        self._robots = [robot.name for robot in robots]
         self._game = compile_game(network, Objective(Kind.REACH, objective.goal))
         self._planner = RelaxedPlanner(self._game)
         self._goal = objective.goal

@@ -24,7 +24,7 @@ from pursue_gen.solving.lost_promises import (
 )
 from pursue_gen.solving.one_robot import lost_for_one
 from pursue_gen.solving.options import DEFAULT, SolveOptions
-from pursue_gen.solving.passages import passing_robots, won_by_passages
+from pursue_gen.solving.passages import crowd_of, won_by_passages
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL, Rules, played
@@ -38,6 +38,7 @@ from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.part import part_of
 from pursue_gen.tga.pauses import pauses
 
 _CANNOT_BE_MET = "SYN021"
@@ -125,8 +126,8 @@ def _first(
         if isinstance(known, Found):
             watched = with_automata_of(game, known.strategy)
             return Solution(watched, objective, known.strategy, rules.reaction, known.stats, rules=rules)
-        if isinstance(known, Strategy):
-            return Solution(with_automata_of(game, known), objective, known, rules.reaction, rules=rules)
+        if isinstance(known, Solution):
+            return replace(known, rules=rules)
         if isinstance(known, tuple):
             return known
         verdict = known
@@ -182,21 +183,22 @@ def _smaller(won: Solution, options: SolveOptions) -> Optional[Solution]:
 
 def _with_little_work(
     game: Network, objective: Objective, reaction: Fraction, options: SolveOptions
-) -> Union[Verdict, Strategy, Found, Tuple[Objective, ...], None]:
+) -> Union[Verdict, Solution, Found, Tuple[Objective, ...], None]:
     """The verdict in one piece, or a proven strategy with orders of passage, or one that leaves out agents, or pauses
     of the environment, or parts of the objective that are lost; None where little work finds neither (see `passages`,
     `shares`, `lost_promises`, `crowds` and `without_pauses`)."""
     start, work, rests = options.limits.now(), little_work(game), bool(pauses(game))
     several, shared = len(promises(objective)) > 1, can_be_shared(game, objective)
-    passing = passing_robots(game, objective)
-    strategy = won_by_passages(game, objective, reaction, options) if passing >= _CROWD else None
-    if strategy is not None:
-        return strategy
+    crowd = crowd_of(game, objective)
+    large = crowd is not None and len(crowd.robots) >= _CROWD
+    passed = won_by_passages(game, objective, crowd, reaction, options) if crowd is not None and large else None
+    if passed is not None:
+        return Solution(passed[0], objective, passed[1], reaction)
     verdict = verdict_with(game, objective, reaction, min(work, _EASY) if rests or several else work, options)
-    if verdict is None and 0 < passing < _CROWD:
-        strategy = won_by_passages(game, objective, reaction, options.since(start))
-        if strategy is not None:
-            return strategy
+    if verdict is None and crowd is not None and not large:
+        passed = won_by_passages(game, objective, crowd, reaction, options.since(start))
+        if passed is not None:
+            return Solution(passed[0], objective, passed[1], reaction)
     if verdict is None and several:
         lost = lost_alone(game, objective, reaction, options.since(start))
         if lost:
@@ -261,7 +263,13 @@ def check_goal(objective: Objective, option: str) -> None:
 def guaranteed(won: Solution, states: int = 500, limits: Limits = NO_LIMITS) -> Guarantee:
     """The worst-case time of a reach game's strategy, where at most so many symbolic states of the checker tell it."""
     worst = worst_case(won.network, won.objective, won.strategy, won.reaction, states, limits)
-    return bounds(won.part, won.objective, won.reaction, worst)
+    if not won.strategy.passages:
+        return bounds(won.part, won.objective, won.reaction, worst)
+    # The automata of what is to be avoided are many where many must not meet, and say nothing of the least time.
+    names = {automaton.name for automaton in won.network.automata}.difference(name for name, _ in won.objective.bad)
+    names.update(name for name, _ in won.objective.goal)
+    rest = part_of(won.network, names, dict(won.network.variables).keys())
+    return bounds(rest, Objective(Kind.REACH, won.objective.goal), won.reaction, worst)
 
 
 def with_clocks_of(counted: Network, network: Network) -> Network:

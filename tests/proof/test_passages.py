@@ -17,7 +17,7 @@ from pursue_gen.proof.passages import Fault
 from pursue_gen.proof.passages import played as played_course
 from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.solving.options import SolveOptions
-from pursue_gen.solving.passages import passing_robots, won_by_passages
+from pursue_gen.solving.passages import crowd_of, won_by_passages
 from pursue_gen.solving.rules import DEFAULT, IDEAL, Rules
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy
@@ -63,7 +63,9 @@ def twin() -> None:
 
 
 def strategy_for(game: Game, reaction: Fraction = DELAY) -> Optional[Strategy]:
-    return won_by_passages(*game, reaction, SolveOptions()) if passing_robots(*game) else None
+    crowd = crowd_of(*game)
+    found = None if crowd is None else won_by_passages(*game, crowd, reaction, SolveOptions())
+    return None if found is None else found[1]
 
 
 def judged(game: Game, strategy: Strategy, reaction: Fraction = DELAY) -> Optional[Report]:

@@ -18,7 +18,7 @@ from pursue_gen.simulation.mission import simulate_mission
 from pursue_gen.simulation.outcome import Settings
 from pursue_gen.simulation.runs import MissionRunner
 from pursue_gen.solving.options import SolveOptions
-from pursue_gen.solving.passages import passing_robots, won_by_passages
+from pursue_gen.solving.passages import crowd_of, won_by_passages
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import DEFAULT, IDEAL, Rules, played
 from pursue_gen.solving.solution import Solution
@@ -135,8 +135,10 @@ def test_who_walks_about_in_the_corridor_is_not_passed_so() -> None:
     text = pass_in_a_corridor(4) + '\nagent "guest" mobile 2 location hall5\nobjective: bot1 never_with guest\n'
     scenario = parse(text, "passing.pur", "passing")
     network, objective = played(translate(scenario), DEFAULT), scenario_objective(scenario)
-    assert passing_robots(network, objective) == 4
-    assert won_by_passages(network, objective, Fraction(1, 10), SolveOptions()) is None
+    crowd = crowd_of(network, objective)
+    assert crowd is not None
+    assert len(crowd.robots) == 4
+    assert won_by_passages(network, objective, crowd, DEFAULT.reaction, SolveOptions()) is None
 
 
 def test_somebody_who_does_not_matter_may_walk_about() -> None:
@@ -167,6 +169,8 @@ reach_objective: do hand
 """
     scenario = parse(text, "passing.pur", "passing")
     network, objective = played(translate(scenario), DEFAULT), scenario_objective(scenario)
-    strategy = won_by_passages(network, objective, DEFAULT.reaction, SolveOptions())
-    assert strategy is not None
-    assert verify(network, objective, strategy, DEFAULT.reaction).ok
+    crowd = crowd_of(network, objective)
+    assert crowd is not None
+    found = won_by_passages(network, objective, crowd, DEFAULT.reaction, SolveOptions())
+    assert found is not None
+    assert verify(network, objective, found[1], DEFAULT.reaction).ok
