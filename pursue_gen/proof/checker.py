@@ -67,6 +67,7 @@ def verify(
     limits: Limits = NO_LIMITS,
     progress: Optional[Listener] = None,
     arenas: Optional[Callable[[int], Arena]] = None,
+    closed: bool = False,
 ) -> Report:
     """Check that the strategy wins when each command takes effect up to `reaction` time units after its decision.
 
@@ -81,7 +82,8 @@ def verify(
     one automaton at its bound that can move by itself; in a safety game all that are at their bounds must be able to.
     A strategy that names a part of the network is checked for that part, once nothing else can matter there
     (`left_out`). Raises PursueError for a network or strategy that it cannot read; with exit status 5 at a limit on
-    time or memory. `progress` is called a few times a second; `arenas` as for `ClosedLoop`.
+    time or memory. `progress` is called a few times a second; `arenas` as for `ClosedLoop`. `closed`: no play may leave
+    what the strategy covers (safety): that is looked at first.
     """
     if strategy.counter:
         return Report(False, "counter-strategy: it shows why the controller loses", (), frozenset(), 0)
@@ -109,8 +111,10 @@ def verify(
     monitor = LimitMonitor(limits, progress, PROVING)
     try:
         with monitor:
-            walked = _played if loop.rules.must_end else _safe
-            report = walked(searches, False, False, limit, monitor)
+            if loop.rules.must_end:
+                report = _played(searches, False, False, limit, monitor)
+            else:
+                report = _safe(searches, closed, limit, monitor)
             if prompt and not report.ok:
                 report = _played(searches, True, False, limit, monitor)
             if report.ok or ranks is not None:
@@ -229,18 +233,18 @@ def _played(searches: Searches, prompt: bool, exact: bool, limit: int, monitor: 
     return _report(searches.loop.arena, searches.everything(depth, monitor))
 
 
-def _safe(searches: Searches, prompt: bool, exact: bool, limit: int, monitor: LimitMonitor) -> Report:
+def _safe(searches: Searches, closed: bool, limit: int, monitor: LimitMonitor) -> Report:
     """The same for a safety game, where it may be quicker to see that no play leaves what a strategy covers."""
     size = _size(searches.loop.strategy)
-    if size <= _LARGE:
-        report = _played(searches, prompt, exact, min(limit, _SOON), monitor)
+    if not closed and size <= _LARGE:
+        report = _played(searches, False, False, min(limit, _SOON), monitor)
         if limit <= _SOON or not report.reason.startswith("limit"):
             return report
     if size <= limit:
         found = searches.covered(monitor)
         if found is not None:
             return _report(searches.loop.arena, found)
-    return _played(searches, prompt, exact, limit, monitor)
+    return _played(searches, False, False, limit, monitor)
 
 
 def _size(strategy: Strategy) -> int:

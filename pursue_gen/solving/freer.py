@@ -6,12 +6,15 @@ game without the rule is no harder for the controller, and often much smaller: w
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import replace
-from typing import AbstractSet, Collection, Iterator, Set, Tuple
+from typing import AbstractSet, Collection, Dict, Iterator, List, Set, Tuple
 
+from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.network import Automaton, Edge, Network, is_end
+from pursue_gen.tga.network import Automaton, Edge, Network, Test, is_end
 from pursue_gen.tga.part import part_of
+from pursue_runtime.locations import is_movement
 
 
 def without_turns(game: Network, watching: Collection[str]) -> Network:
@@ -26,6 +29,72 @@ def without_turns(game: Network, watching: Collection[str]) -> Network:
     automata = tuple(replace(a, edges=tuple(_free_of(edge, variables) for edge in a.edges)) for a in game.automata)
     kept = {name for name, _ in game.variables} - variables
     return part_of(replace(game, automata=automata), {a.name for a in automata} - {rule.name for rule in gone}, kept)
+
+
+def without_others(game: Network, bad: Collection[Place], others: AbstractSet[str]) -> Network:
+    """The network in which other agents bring nothing to what is to be avoided: where each of several may bring it on
+    ("any robot at room6") these do not, and where it takes one of them it never comes."""
+    variables = {name for each in game.automata if each.name in others for name in _assigned(each)}
+
+    def freed(edge: Edge) -> Iterator[Edge]:
+        clauses = tuple(tuple(t for t in clause if t.variable not in variables) for clause in edge.guard.integers)
+        if all(clauses):
+            yield replace(edge, guard=replace(edge.guard, integers=clauses))
+
+    def watching(automaton: Automaton) -> Automaton:
+        edges: List[Edge] = []
+        for edge in automaton.edges:
+            comes = (automaton.name, edge.target) in bad and edge.sync is None and not edge.controllable
+            edges += freed(edge) if comes else [edge]
+        return replace(automaton, edges=tuple(edges))
+
+    return replace(game, automata=tuple(map(watching, game.automata)))
+
+
+def with_one_walk(game: Network, watching: Collection[str]) -> Iterator[Network]:
+    """Networks in which one agent whom nobody controls goes to a place that these automata ask about, by the fewest
+    ways, and stays there; all the others stay where they are unless they have to leave in time.
+
+    The environment need not begin any movement, so what it wins so it wins.
+    """
+    asked = {t for name in watching for e in game.automaton(name).edges for clause in e.guard.integers for t in clause}
+    for automaton in game.automata:
+        if is_agent(automaton) and not any(edge.controllable for edge in automaton.edges):
+            ways = (_way(automaton, test) for test in sorted(asked, key=lambda t: (t.variable, t.value)))
+            yield from (_standing(game, way) for way in dict.fromkeys(ways) if way)
+
+
+def standing(game: Network) -> Network:
+    """The network in which agents whom nobody controls go nowhere unless they have to leave in time."""
+    return _standing(game, ())
+
+
+def _standing(game: Network, kept: Collection[Edge]) -> Network:
+    def still(automaton: Automaton) -> Automaton:
+        bounded = {place.name for place in automaton.locations if place.invariant}
+        edges = (
+            e
+            for e in automaton.edges
+            if e.controllable or not is_movement(e.target) or e.source in bounded or e in kept
+        )
+        return replace(automaton, edges=tuple(edges))
+
+    return replace(game, automata=tuple(map(still, game.automata)))
+
+
+def _way(automaton: Automaton, to: Test) -> Tuple[Edge, ...]:
+    """The fewest edges from where the automaton starts to one that makes the test hold; () where there is no way."""
+    known: Dict[str, Tuple[Edge, ...]] = {automaton.initial: ()}
+    waiting = deque(known)
+    while waiting:
+        here = waiting.popleft()
+        for edge in automaton.edges:
+            if edge.source == here and edge.target not in known:
+                known[edge.target] = (*known[here], edge)
+                if (to.variable, to.value) in edge.assign:
+                    return known[edge.target]
+                waiting.append(edge.target)
+    return ()
 
 
 def _is_rule(automaton: Automaton) -> bool:

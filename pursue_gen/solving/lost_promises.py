@@ -15,7 +15,7 @@ from typing import Iterable, List, Optional, Sequence, Tuple
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.language.wording import listed, objective_text
 from pursue_gen.outcomes import LimitHit, Lost
-from pursue_gen.solving.freer import without_turns
+from pursue_gen.solving.freer import standing, with_one_walk, without_turns
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.tga.ends import is_agent
@@ -23,7 +23,6 @@ from pursue_gen.tga.network import Automaton, Kind, Network, Objective
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.part import part_of
 from pursue_gen.tga.pauses import acting_at_most
-from pursue_runtime.locations import is_movement
 
 WORK = 60_000_000
 """The work that is spent on all games of one or two promises."""
@@ -103,20 +102,10 @@ def _games(game: Network, wanted: Objective) -> Sequence[Network]:
     freer = without_turns(game, watched(wanted))
     found = []
     for some in (freer, game):
-        found += [acting_at_most(standing(some), wanted, 1), acting_at_most(some, wanted, 1), some]
+        found += [acting_at_most(standing(some), wanted, 1)]
+        found += [acting_at_most(walk, wanted, 1) for walk in with_one_walk(some, watched(wanted))]
+        found += [acting_at_most(some, wanted, 1), some]
     return tuple(dict.fromkeys(found))
-
-
-def standing(network: Network) -> Network:
-    """The network in which agents whom nobody controls go nowhere unless they have to leave in time: the environment
-    need not begin another movement."""
-
-    def standing_still(automaton: Automaton) -> Automaton:
-        bounded = {place.name for place in automaton.locations if place.invariant}
-        kept = (e for e in automaton.edges if e.controllable or not is_movement(e.target) or e.source in bounded)
-        return replace(automaton, edges=tuple(kept))
-
-    return replace(network, automata=tuple(map(standing_still, network.automata)))
 
 
 def only_promises(network: Network, objective: Objective, wanted: Objective) -> Network:

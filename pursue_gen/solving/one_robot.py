@@ -1,15 +1,17 @@
 """Promises that only one robot can keep, and that it cannot keep together: their game is small, as no other robot is in
-it. With fewer promises the controller has less to do, so a loss of these is a loss of all."""
+it. With fewer promises the controller has less to do, so a loss of these is a loss of all. What several robots are to
+avoid, each of them has to avoid for its part."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
-from typing import Dict, List, Tuple
+from typing import Tuple
 
 from pursue_gen.outcomes import LimitHit
-from pursue_gen.solving.lost_promises import only_promises
+from pursue_gen.solving.freer import with_one_walk, without_others
+from pursue_gen.solving.lost_promises import only_promises, watched
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.synthesis.budget import Budget
@@ -31,22 +33,32 @@ def lost_for_one(
     """Promises that only one robot can keep and that it cannot keep together, as few as are found; () where so much
     work finds none."""
     budget = Budget(replace(options.limits, work=_WORK, states=_STATES), options.progress, options.engine)
-    owned: Dict[str, List[Place]] = {}
-    for place in objective.bad:
-        wanted = Objective(Kind.SAFETY, bad=(place,))
-        able = commanded_agents(cone_of_influence(only_promises(network, objective, wanted), wanted))
-        if len(able) == 1:
-            owned.setdefault(able[0], []).append(place)
-    for places in owned.values():
-        for size in dict.fromkeys((2, len(places))):
-            for some in combinations(places, size):
+    robots = commanded_agents(network)
+    for robot in robots:
+        others = frozenset(robots) - {robot}
+        alone = without_others(network, objective.bad, others)
+        owned = [place for place in objective.bad if _able(alone, objective, place) == (robot,)]
+        for size in dict.fromkeys((2, len(owned))) if owned else ():
+            for some in combinations(owned, size):
                 wanted = Objective(Kind.SAFETY, bad=some)
-                game = cone_of_influence(only_promises(network, objective, wanted), wanted)
-                try:
-                    # The environment need not call more than once.
-                    if not budget.verdict(acting_at_most(game, wanted, 1), wanted, reaction, _SHARE).won:
-                        return (wanted,)
-                except LimitHit:
-                    if budget.used_up:
-                        return ()
+                game = cone_of_influence(only_promises(alone, objective, wanted), wanted)
+                parts = (*with_one_walk(game, watched(wanted)), game)
+                if any(_is_lost(part, wanted, reaction, budget) for part in parts):
+                    return (wanted,)
+                if budget.used_up:
+                    return ()
     return ()
+
+
+def _is_lost(game: Network, wanted: Objective, reaction: Fraction, budget: Budget) -> bool:
+    """True if it is known to be lost: the environment need not call more than once."""
+    try:
+        return not budget.verdict(acting_at_most(game, wanted, 1), wanted, reaction, _SHARE).won
+    except LimitHit:
+        return False
+
+
+def _able(network: Network, objective: Objective, place: Place) -> Tuple[str, ...]:
+    """The robots that can do something about what is to be avoided there."""
+    wanted = Objective(Kind.SAFETY, bad=(place,))
+    return tuple(commanded_agents(cone_of_influence(only_promises(network, objective, wanted), wanted)))

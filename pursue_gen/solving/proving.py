@@ -29,16 +29,20 @@ def prove(
     states: int = LIMIT,
     otherwise: Callable[[], Optional[Strategy]] = lambda: None,
     unranked: bool = True,
+    closed: bool = False,
 ) -> Strategy:
     """The part of the strategy that plays can reach, once the checker has found it winning (with `ranks`: sooner).
 
     `simpler`: in fewer zones and bounds, proven once more, where that costs little. `states`: the most symbolic states
     that each look of the checker may take. `otherwise` makes a strategy to try where this one does not win; `unranked`:
-    it is looked at without ranks, too, where it is not proven with them. Raises NotProven with the play that
-    breaks it; LimitHit at a limit, the checker's own one on symbolic states included.
+    it is looked at without ranks, too, where it is not proven with them. `closed`: as for `verify`; it is in few zones
+    already. Raises NotProven with the play that breaks it; LimitHit at a limit, the checker's own one on symbolic
+    states included.
     """
     start, limits, progress = options.limits.now(), options.limits, options.progress
-    report = verify(network, objective, strategy, reaction, states, ranks=ranks, limits=limits, progress=progress)
+    report = verify(
+        network, objective, strategy, reaction, states, ranks=ranks, limits=limits, progress=progress, closed=closed
+    )
     if not report.ok and ranks is not None and unranked:
         ranks = None
         report = verify(network, objective, strategy, reaction, states, limits=limits.since(start), progress=progress)
@@ -53,7 +57,7 @@ def prove(
         hint = "this is a fault of the strategy, not of the scenario" + play_that_shows(report)
         raise NotProven([error("SYN020", f"the strategy does not win: {report.reason}", hint=hint)])
     kept = pruned(strategy, report)
-    if not simpler or report.states > _LITTLE or kept.in_parts:
+    if not simpler or closed or report.states > _LITTLE or kept.in_parts:
         return kept
     left = None if ranks is None else pruned_ranks(strategy, report, ranks)
     try:

@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
-from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT, verify
@@ -217,19 +217,30 @@ class _Search:
                 theirs = commanded(blocks)
                 strategy = self._strategy(group, theirs)
                 if strategy is None:
-                    named = {automaton.name for automaton in self._game(group, theirs).automata}
-                    met = [other for other in before if other == group or other.team & named]
-                    joined = self._joined(met)
-                    together = self._strategy(joined, frozenset()) if len(met) > 1 else None
-                    if together is None:
+                    joined = self._joined_with_some(group, before, theirs)
+                    if joined is None:
                         return None
+                    met, group, strategy = joined
                     won = {other: some for other, some in before.items() if other not in met}
-                    strategy, group = together, joined
                 won[group] = strategy
                 if group not in before:
                     break
             if all(before.get(group) is strategy for group, strategy in won.items()):
                 return self._proven(won)
+        return None
+
+    def _joined_with_some(
+        self, group: _Group, groups: Iterable[_Group], theirs: Commanded
+    ) -> Optional[Tuple[Sequence[_Group], _Group, Strategy]]:
+        """The group with one of those whose commands come into its game, else with all of them, if that is won: who is
+        joined, the new group, its strategy."""
+        named = {automaton.name for automaton in self._game(group, theirs).automata}
+        met = [other for other in groups if other != group and other.team & named]
+        for some in ([*((other,) for other in met), met] if len(met) > 1 else [met]):
+            joined = self._joined([group, *some])
+            strategy = self._strategy(joined, frozenset()) if some else None
+            if strategy is not None:
+                return [group, *some], joined, strategy
         return None
 
     def _proven(self, won: Mapping[_Group, Strategy]) -> Optional[Strategy]:
@@ -276,9 +287,10 @@ class _Search:
         return self._watched[group]
 
     def _solved(self, game: Network, wanted: Objective, free: bool) -> Optional[Strategy]:
-        if len(game.clocks) > self._effort.clocks:
-            return None
         share = min(1.0, self._effort.game / max(1, self.budget.work))
+        guessed = self._guessed(game, wanted, share / 4, free) if len(wanted.bad) > 1 else None
+        if guessed is not None or len(game.clocks) > self._effort.clocks:
+            return guessed
         try:
             verdict = self.budget.verdict(game, wanted, self._reaction, share, without_pauses=free)
             self.stats.append(verdict.stats)
@@ -290,6 +302,17 @@ class _Search:
             if self.budget.used_up:
                 raise
             return None
+
+    def _guessed(self, game: Network, wanted: Objective, share: float, free: bool) -> Optional[Strategy]:
+        found = self.budget.guess(game, wanted, self._reaction, share, without_pauses=free)
+        if found is None:
+            return None
+        strategy, stats = found
+        self.stats.append(stats)
+        with suppress(NotProven, LimitHit):
+            proven = prove(game, wanted, strategy, self._reaction, options=self._options, closed=True)
+            return without_hidden(proven)
+        return None
 
     def _game(
         self, group: _Group, theirs: Commanded, shown: int = _ALL, watchers: Tuple[Watcher, ...] = ()

@@ -29,7 +29,7 @@ from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.shares import EFFORTS, can_be_shared, won_in_shares
-from pursue_gen.solving.without_pauses import lost_to_few_calls, verdict_with, won_without_pauses
+from pursue_gen.solving.without_pauses import lost_to_few_calls, verdict_with, won_by_guess, won_without_pauses
 from pursue_gen.synthesis.cone import out_of_reach
 from pursue_gen.synthesis.enforced import enforced
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
@@ -52,6 +52,9 @@ them take long to prove, too."""
 
 _CROWD = 4
 """So many robots that must not be at one place are no easy game: an order of passage is looked for first."""
+
+_FOR_GUESS = 5_000_000
+"""The work that may be spent on simple policies for all robots."""
 
 _SLOWER = Fraction(11, 10)
 """So much longer a smaller strategy may take."""
@@ -204,6 +207,7 @@ def _with_little_work(
         if lost:
             return lost
         found = won_in_shares(game, objective, reaction, options.since(start), EFFORTS[:1]) if shared else None
+        found = found or won_by_guess(game, objective, reaction, _FOR_GUESS, options.since(start))
         if found is not None:
             return found
         lost = lost_for_one(game, objective, reaction, options.since(start)) if shared else ()

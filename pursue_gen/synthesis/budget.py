@@ -6,11 +6,12 @@ import copy
 import math
 from dataclasses import replace
 from fractions import Fraction
-from typing import Optional
+from typing import Optional, Tuple
 
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.synthesis.limits import NOTHING_YET, SOLVING, Limits, Listener, limit_reached
-from pursue_gen.synthesis.solve import Verdict, solve
+from pursue_gen.synthesis.solve import Stats, Verdict, guess, solve
+from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
 
 _PER_EDGE = 200
@@ -76,6 +77,20 @@ class Budget:
             raise
         self.spend(verdict.stats.work)
         return verdict
+
+    def guess(
+        self, network: Network, objective: Objective, reaction: Fraction, share: float, without_pauses: bool = False
+    ) -> Optional[Tuple[Strategy, Stats]]:
+        """What `solve.guess` finds with that share of what is left, and what it took."""
+        limits = self.part(share)
+        how = self._engine, limits, self._progress, self._games_whole, without_pauses
+        try:
+            strategy, stats = guess(network, objective, reaction, *how)
+        except LimitHit:
+            self.spend(limits.work)
+            return None
+        self.spend(stats.work)
+        return None if strategy is None else (strategy, stats)
 
     def split(self, share: float, states: int = 0) -> Budget:
         """A budget of that share of what is left; what it spends is spent of this one too. `states`: the most discrete

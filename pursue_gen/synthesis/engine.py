@@ -44,6 +44,10 @@ class Outcome:
     seconds: float
 
 
+NOT_GUESSED = Outcome(False, (), None, Counts(0, 0, 0), 0.0)
+"""No policy was tried."""
+
+
 class Engine(ABC):
     """A solver of compiled games. All engines give the same verdicts; their strategies may differ.
 
@@ -65,6 +69,14 @@ class Engine(ABC):
     def giving_first(self, work: int) -> Engine:
         """The engine that gives a game at least so much work as it is, before anything else is tried in turn."""
         return self
+
+    def guess(self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Outcome:
+        """Try simple policies in a safety game that it `holds`: each robot does one duty after the other, by itself.
+
+        `won` if one keeps from all that is to be avoided; else nothing is known of the game. `progress` and what it
+        raises: as `solve`. An engine need not know any.
+        """
+        return NOT_GUESSED
 
     @abstractmethod
     def solve(

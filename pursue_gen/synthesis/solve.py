@@ -11,7 +11,7 @@ from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.outcomes import Unavailable
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.cone import cone_of_influence
-from pursue_gen.synthesis.engine import Engine
+from pursue_gen.synthesis.engine import Engine, Outcome
 from pursue_gen.synthesis.game import Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.native.engine import NativeEngine
@@ -101,6 +101,51 @@ def solve(
     networks that the game does not support, with exit status 5 at a limit, with 6 where the engine is not available,
     and with 2 where it does not hold the game.
     """
+    chosen, game, gone = _compiled(network, objective, reaction, engine, whole, without_pauses)
+    outcome = chosen.giving_first(first).solve(game, limits, progress, soonest)
+    stats = _stats(chosen, outcome)
+    if not outcome.won:
+        return Verdict(False, None, stats, None)
+    blocks, ranks = outcome.blocks, outcome.ranks
+    cautious: Callable[[], Optional[Strategy]] = _none
+    if game.delta and game.kind is not Kind.SAFETY:
+        # Without ranks that hold across states: within one state, what was won later stands later.
+        order = tuple(tuple(range(len(pieces))) for _, _, pieces in blocks) if ranks is None else ranks
+        blocks, order = without_overtaking(game, blocks, order)
+        cautious = partial(_cautious, game, blocks, order, gone)
+        ranks = None if ranks is None else order
+    known = None if ranks is None else to_ranks(blocks, ranks)
+    return Verdict(True, to_strategy(game, blocks, gone), stats, known, cautious)
+
+
+def guess(
+    network: Network,
+    objective: Objective,
+    reaction: Fraction = Fraction(0),
+    engine: Optional[str] = None,
+    limits: Limits = NO_LIMITS,
+    progress: Optional[Listener] = None,
+    whole: bool = False,
+    without_pauses: bool = False,
+) -> Tuple[Optional[Strategy], Stats]:
+    """A strategy for a safety game by a simple policy (see `Engine.guess`), None: none of those that are known wins.
+
+    Arguments, and what it raises, as for `solve`. An engine that does not guess finds none.
+    """
+    chosen, game, gone = _compiled(network, objective, reaction, engine, whole, without_pauses)
+    outcome = chosen.guess(game, limits, progress)
+    return to_strategy(game, outcome.blocks, gone) if outcome.won else None, _stats(chosen, outcome)
+
+
+def _compiled(
+    network: Network,
+    objective: Objective,
+    reaction: Fraction,
+    engine: Optional[str],
+    whole: bool,
+    without_pauses: bool,
+) -> Tuple[Engine, Game, Tuple[str, ...]]:
+    """An engine that holds the game, the game, and the clocks that it leaves out."""
     chosen = choose(engine)
     game = compile_game(network, objective, reaction)
     part = cone_of_influence(network, objective)
@@ -114,22 +159,13 @@ def solve(
             message = f"the {engine} engine cannot hold the game: its times are too large, or it has too many clocks"
             raise PursueError([error("SYN012", message, hint=hint)])
         chosen = next(other for other in ENGINES if other.available() and other.holds(game))
-    outcome = chosen.giving_first(first).solve(game, limits, progress, soonest)
+    return chosen, game, gone
+
+
+def _stats(engine: Engine, outcome: Outcome) -> Stats:
     counts = outcome.counts
     took = outcome.seconds, counts.symbolic_states, counts.work
-    stats = Stats(chosen.name, counts.discrete_states, counts.zones, *took)
-    if not outcome.won:
-        return Verdict(False, None, stats, None)
-    blocks, ranks = outcome.blocks, outcome.ranks
-    cautious: Callable[[], Optional[Strategy]] = _none
-    if game.delta and game.kind is not Kind.SAFETY:
-        # Without ranks that hold across states: within one state, what was won later stands later.
-        order = tuple(tuple(range(len(pieces))) for _, _, pieces in blocks) if ranks is None else ranks
-        blocks, order = without_overtaking(game, blocks, order)
-        cautious = partial(_cautious, game, blocks, order, gone)
-        ranks = None if ranks is None else order
-    known = None if ranks is None else to_ranks(blocks, ranks)
-    return Verdict(True, to_strategy(game, blocks, gone), stats, known, cautious)
+    return Stats(engine.name, counts.discrete_states, counts.zones, *took)
 
 
 def _cautious(

@@ -10,8 +10,8 @@ import pytest
 from benchmarks.lab_scenarios import Size, lab_scenario
 from pursue_gen.language import parse
 from pursue_gen.outcomes import Lost
-from pursue_gen.solving.freer import without_turns
-from pursue_gen.solving.lost_promises import lost_alone, lost_promises, only_promises, promises, standing, watched
+from pursue_gen.solving.freer import standing, with_one_walk, without_turns
+from pursue_gen.solving.lost_promises import lost_alone, lost_promises, only_promises, promises, watched
 from pursue_gen.solving.optional import promised_of
 from pursue_gen.solving.options import DEFAULT
 from pursue_gen.solving.request import SolveRequest
@@ -132,6 +132,31 @@ def test_who_has_to_leave_in_time_does_not_stand_still() -> None:
     still = standing(network).automaton("guest")
     sources = {edge.source for edge in still.edges if is_movement(edge.target)}
     assert "hall" in sources and "yard" not in sources
+
+
+STAYS = """
+poi "gate"
+poi "yard"
+poi "hall"
+poi "shed"
+connect gate and yard distance 2
+connect yard and hall distance 2
+connect yard and shed distance 2
+agent "bot1" controllable mobile 1 location hall
+agent "guest" mobile 1 location gate
+agent "other" mobile 1 location gate
+objective: avoid bot1 at shed and guest at shed
+objective: patrol shed every 60 by bot1
+"""
+
+
+def test_a_guest_walks_to_where_he_is_in_the_way_and_stays_there() -> None:
+    network, objective = game(STAYS)
+    walks = list(with_one_walk(network, watched(objective)))
+    moves = [[(e.source, e.target) for e in walk.automaton("guest").edges if is_movement(e.target)] for walk in walks]
+    assert moves == [[("gate", "going_gate_to_yard"), ("yard", "going_yard_to_shed")]]
+    assert not any(is_movement(e.target) for walk in walks for e in walk.automaton("other").edges)
+    assert not solve(walks[0], objective, Rules().reaction).won and not solve(network, objective, Rules().reaction).won
 
 
 def test_a_milestone_that_cannot_be_reached_is_named_among_others() -> None:

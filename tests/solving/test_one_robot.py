@@ -29,14 +29,25 @@ objective: patrol room2 every 60 by bot1
 """The guest may stay in room1 for ever, and bot1 with him."""
 
 
+AVOIDS = FLOOR[: FLOOR.index("objective")] + """
+objective: patrol room1 every 40 by bot1
+objective: avoid any robot at room1 and guest at room1
+objective: bot1 never_with bot2 at hall
+"""
+"""The guest may stay in room1 for ever, and bot1 has to come there."""
+
+
 @pytest.mark.parametrize(
     "text, lost",
     [
+        (AVOIDS, ("obj", "obj2")),
+        (AVOIDS.replace("by bot1", "by any robot"), ()),
+        (AVOIDS.replace("any robot at room1 and", "bot2 at room1 and"), ()),
         (FLOOR, ("obj", "obj3")),
         (FLOOR.replace("or bot1 at room1", "or any robot at room1"), ()),
         (FLOOR.replace("patrol room2 every 60 by bot1", "patrol room2 every 60 by any robot"), ()),
     ],
-    ids=["one has to do both", "another one may stay", "another one may visit"],
+    ids=["all avoid", "another may patrol", "another avoids", "one does both", "another may stay", "another may visit"],
 )
 def test_two_promises_of_one_robot_that_exclude_each_other(text: str, lost: Tuple[str, ...]) -> None:
     scenario = parse(text, "floor.pur", "floor")

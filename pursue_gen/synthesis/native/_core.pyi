@@ -9,9 +9,18 @@ def solve(
     seconds: float = 0.0,
     states: int = 0,
     memory_mib: int = 0,
+    work: int = 0,
+    wall: bool = False,
     progress: Optional[Callable[[int, int, float, int], None]] = None,
     small_budget: float = 5e5,
-    work: int = 0,
     soonest: bool = False,
+) -> Dict[str, Any]: ...
+def guess(
+    game: Dict[str, Any],
+    seconds: float = 0.0,
+    states: int = 0,
+    memory_mib: int = 0,
+    work: int = 0,
     wall: bool = False,
+    progress: Optional[Callable[[int, int, float, int], None]] = None,
 ) -> Dict[str, Any]: ...

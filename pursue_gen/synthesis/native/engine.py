@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from array import array
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Dict, List, Optional, Tuple
+from functools import partial
+from typing import Any, Callable, ClassVar, Dict, List, Optional, Tuple
 
-from pursue_gen.synthesis.engine import Counts, Engine, Outcome
+from pursue_gen.synthesis.engine import NOT_GUESSED, Counts, Engine, Outcome
 from pursue_gen.synthesis.game import Action, Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, NOTHING_YET, Limits, Listener, Progress, limit_reached
+from pursue_gen.tga.network import Kind
 from pursue_gen.zones.dbm import INF
 
 try:
@@ -59,6 +61,12 @@ class NativeEngine(Engine):
         """With a larger `small_budget`."""
         return replace(self, small_budget=max(self.small_budget, work))
 
+    def guess(self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Outcome:
+        """Try simple policies, see `Engine`."""
+        if game.kind is not Kind.SAFETY:
+            return NOT_GUESSED
+        return self._run(game, limits, progress, _core.guess)
+
     def solve(
         self,
         game: Game,
@@ -67,6 +75,14 @@ class NativeEngine(Engine):
         soonest: bool = False,
     ) -> Outcome:
         """Decide the game, see `Engine`."""
+        # With a limit on work many games are lost: searches in turn would use up more than half of it in vain.
+        small = max(self.small_budget, limits.work)
+        return self._run(game, limits, progress, partial(_core.solve, small_budget=small, soonest=soonest))
+
+    @staticmethod
+    def _run(
+        game: Game, limits: Limits, progress: Optional[Listener], search: Callable[..., Dict[str, Any]]
+    ) -> Outcome:
         reached = NOTHING_YET
 
         def report(states: int, waiting: int, seconds: float, memory: int) -> None:
@@ -76,16 +92,12 @@ class NativeEngine(Engine):
                 progress(reached)
 
         try:
-            tables, most = _tables(game), (limits.left, limits.states, limits.memory)
-            # With a limit on work many games are lost: searches in turn would use up more than half of it in vain.
-            small = max(self.small_budget, limits.work)
-            how = {"wall": True} if limits.wall and limits.seconds else {}
-            result = _core.solve(tables, *most, report, small, limits.work, soonest, **how)
+            most = limits.left, limits.states, limits.memory, limits.work, limits.wall and bool(limits.seconds)
+            return _outcome(game, search(_tables(game), *most, report))
         except _core.LimitReached as limit:
             raise limit_reached(str(limit), limits, reached) from None
         except MemoryError:
             raise limit_reached("memory", limits, reached) from None
-        return _outcome(game, result)
 
 
 def _outcome(game: Game, result: Dict[str, Any]) -> Outcome:

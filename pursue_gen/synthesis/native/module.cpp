@@ -2,6 +2,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include "forward.hpp"
 #include "reach.hpp"
 #include "safety.hpp"
 
@@ -77,6 +78,17 @@ py::bytes matrix(const Z& z, int dim) {
     return py::bytes(reinterpret_cast<const char*>(out.data()), out.size() * sizeof(std::int32_t));
 }
 
+// The plan of a discrete state: zones, each with the edges of a command, or None: wait.
+template <class Z, class Search>
+py::tuple block(const Discrete& d, const std::vector<Piece<Z>>& pieces, const Search& search, int dim) {
+    py::list actions;
+    for (const auto& [zone, joint, rank] : pieces) {
+        const py::object edges = joint < 0 ? py::object(py::none()) : py::cast(search.joint(joint).edges);
+        actions.append(py::make_tuple(matrix(zone, dim), edges, rank));
+    }
+    return py::make_tuple(d, actions);
+}
+
 // What was found, without Python's objects.
 template <class Z>
 struct Found {
@@ -85,36 +97,6 @@ struct Found {
     double seconds;
     std::map<int, std::vector<Piece<Z>>> plan;  // of the states that a play can come to
 };
-
-template <class Z>
-py::dict outcome(const Found<Z>& found, int dim, LimitMonitor& monitor) {
-    py::dict out;
-    py::list states;
-    std::size_t reached = 0, zones = 0;
-    for (const Node<Z>& node : found.solver->nodes()) {
-        reached += node.reached;
-        if (!found.won) zones += node.rest.size();
-    }
-    for (const auto& [k, pieces] : found.plan) {
-        monitor.look();
-        py::list actions;
-        zones += pieces.size();
-        for (const auto& [zone, joint, rank] : pieces) {
-            const py::object edges = joint < 0 ? py::object(py::none()) : py::cast(found.solver->joint(joint).edges);
-            actions.append(py::make_tuple(matrix(zone, dim), edges, rank));
-        }
-        states.append(py::make_tuple(found.solver->state(k), actions));
-    }
-    out["won"] = found.won;
-    out["seconds"] = found.seconds;
-    out["states"] = states;
-    out["discrete_states"] = reached;
-    out["symbolic_states"] = found.solver->symbolic_states();
-    out["zones"] = zones;
-    out["evaluations"] = found.solver->evaluations();
-    out["work"] = effort.zones;
-    return out;
-}
 
 // Without the GIL: other threads go on.
 template <class Z>
@@ -128,10 +110,59 @@ Found<Z> decide(const Game& game, LimitMonitor& monitor, double small_budget, bo
     return found;
 }
 
-template <int N, class R>
+py::dict outcome(bool won, double seconds, const py::list& states, std::size_t reached, std::size_t zones,
+                 std::size_t evaluations, std::size_t symbolic_states) {
+    py::dict out;
+    out["won"] = won;
+    out["seconds"] = seconds;
+    out["states"] = states;
+    out["discrete_states"] = reached;
+    out["symbolic_states"] = symbolic_states;
+    out["zones"] = zones;
+    out["evaluations"] = evaluations;
+    out["work"] = effort.zones;
+    return out;
+}
+
+template <class Z>
 py::dict solve_with(const Game& game, const Limits& limits, double small_budget, bool soonest) {
     LimitMonitor monitor(limits);
-    return outcome(decide<Dbm<N, R>>(game, monitor, small_budget, soonest), game.clocks + 1, monitor);
+    const Found<Z> found = decide<Z>(game, monitor, small_budget, soonest);
+    py::list states;
+    std::size_t reached = 0, zones = 0;
+    for (const Node<Z>& node : found.solver->nodes()) {
+        reached += node.reached;
+        if (!found.won) zones += node.rest.size();
+    }
+    for (const auto& [k, pieces] : found.plan) {
+        monitor.look();
+        zones += pieces.size();
+        states.append(block(found.solver->state(k), pieces, *found.solver, game.clocks + 1));
+    }
+    const Fixpoint<Z>& solver = *found.solver;
+    return outcome(found.won, found.seconds, states, reached, zones, solver.evaluations(), solver.symbolic_states());
+}
+
+template <class Z>
+py::dict guess_with(const Game& game, const Limits& limits) {
+    LimitMonitor monitor(limits);
+    std::map<Discrete, std::vector<Piece<Z>>> plan;
+    std::unique_ptr<Forward<Z>> winning;
+    double seconds = 0;
+    {
+        const py::gil_scoped_release released;
+        winning = winning_guess<Z>(game, monitor);
+        seconds = monitor.spent();
+        if (winning) plan = winning->plan();
+    }
+    py::list states;
+    std::size_t zones = 0;
+    for (const auto& [d, pieces] : plan) {
+        monitor.look();
+        zones += pieces.size();
+        states.append(block(d, pieces, *winning, game.clocks + 1));
+    }
+    return outcome(winning != nullptr, seconds, states, plan.size(), zones, 0, winning ? winning->followed() : 0);
 }
 
 // Whether every finite bound that can come up fits: sums along a path through all clocks.
@@ -149,10 +180,31 @@ bool fits(const Game& game) {
     return (game.clocks + 2L) * (2L * largest + 2 * game.delta + 2) < INF<R>;
 }
 
-py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size_t memory, const py::object& progress,
-               double small_budget, std::uint64_t work, bool soonest, bool wall) {
-    const GivesBack memory_of_game;
-    const Game game = read_game(in);
+// Calls `run` with a zone of the size that the game needs.
+template <class F>
+py::dict sized(const Game& game, const F& run) {
+    const int dim = game.clocks + 1;
+#ifndef PURSUE_ONE_SIZE  // one size of matrices for all games: slower, and built in half the time
+    if (fits<std::int16_t>(game)) {
+        if (dim <= 4) return run(Dbm<4, std::int16_t>{});
+        if (dim <= 5) return run(Dbm<5, std::int16_t>{});
+        if (dim <= 6) return run(Dbm<6, std::int16_t>{});
+        if (dim <= 8) return run(Dbm<8, std::int16_t>{});
+        if (dim <= 16) return run(Dbm<16, std::int16_t>{});
+    }
+#endif
+    if (!fits<wide_t>(game)) throw std::invalid_argument("constants too large");
+#ifndef PURSUE_ONE_SIZE
+    if (dim <= 8) return run(Dbm<8, wide_t>{});
+    if (dim <= 16) return run(Dbm<16, wide_t>{});
+    if (dim <= 40) return run(Dbm<40, wide_t>{});
+#endif
+    if (dim <= 128) return run(Dbm<128, wide_t>{});
+    throw std::invalid_argument("more than 127 clocks");
+}
+
+Limits limits_of(double seconds, std::size_t states, std::size_t memory, std::uint64_t work, bool wall,
+                 const py::object& progress) {
     Limits limits;
     limits.seconds = seconds;
     limits.wall = wall;
@@ -168,24 +220,23 @@ py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size
         const py::gil_scoped_acquire held;
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     };
-    const int dim = game.clocks + 1;
-#ifndef PURSUE_ONE_SIZE  // one size of matrices for all games: slower, and built in half the time
-    if (fits<std::int16_t>(game)) {
-        if (dim <= 4) return solve_with<4, std::int16_t>(game, limits, small_budget, soonest);
-        if (dim <= 5) return solve_with<5, std::int16_t>(game, limits, small_budget, soonest);
-        if (dim <= 6) return solve_with<6, std::int16_t>(game, limits, small_budget, soonest);
-        if (dim <= 8) return solve_with<8, std::int16_t>(game, limits, small_budget, soonest);
-        if (dim <= 16) return solve_with<16, std::int16_t>(game, limits, small_budget, soonest);
-    }
-#endif
-    if (!fits<wide_t>(game)) throw std::invalid_argument("constants too large");
-#ifndef PURSUE_ONE_SIZE
-    if (dim <= 8) return solve_with<8, wide_t>(game, limits, small_budget, soonest);
-    if (dim <= 16) return solve_with<16, wide_t>(game, limits, small_budget, soonest);
-    if (dim <= 40) return solve_with<40, wide_t>(game, limits, small_budget, soonest);
-#endif
-    if (dim <= 128) return solve_with<128, wide_t>(game, limits, small_budget, soonest);
-    throw std::invalid_argument("more than 127 clocks");
+    return limits;
+}
+
+py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size_t memory, std::uint64_t work, bool wall,
+               const py::object& progress, double small_budget, bool soonest) {
+    const GivesBack memory_of_game;
+    const Game game = read_game(in);
+    const Limits limits = limits_of(seconds, states, memory, work, wall, progress);
+    return sized(game, [&](auto zone) { return solve_with<decltype(zone)>(game, limits, small_budget, soonest); });
+}
+
+py::dict guess(const py::dict& in, double seconds, std::size_t states, std::size_t memory, std::uint64_t work, bool wall,
+               const py::object& progress) {
+    const GivesBack memory_of_game;
+    const Game game = read_game(in);
+    const Limits limits = limits_of(seconds, states, memory, work, wall, progress);
+    return sized(game, [&](auto zone) { return guess_with<decltype(zone)>(game, limits); });
 }
 
 }  // namespace
@@ -194,9 +245,12 @@ PYBIND11_MODULE(_core, module) {
     module.doc() = "Native engine of the timed game solver.";
     py::register_exception<Limit>(module, "LimitReached");
     module.def("solve", &solve, py::arg("game"), py::arg("seconds") = 0.0, py::arg("states") = 0,
-               py::arg("memory_mib") = 0, py::arg("progress") = py::none(), py::arg("small_budget") = 5e5,
-               py::arg("work") = 0, py::arg("soonest") = false, py::arg("wall") = false,
+               py::arg("memory_mib") = 0, py::arg("work") = 0, py::arg("wall") = false, py::arg("progress") = py::none(),
+               py::arg("small_budget") = 5e5, py::arg("soonest") = false,
                "Decides a compiled game. Raises LimitReached('seconds', 'states', 'memory' or 'work'). The seconds are of\n"
                "processor time, or (`wall`) of the clock. `small_budget` is the work, in zones, that the game gets as it\n"
                "is, before searches take turns. `soonest`: see Engine.solve.");
+    module.def("guess", &guess, py::arg("game"), py::arg("seconds") = 0.0, py::arg("states") = 0,
+               py::arg("memory_mib") = 0, py::arg("work") = 0, py::arg("wall") = false, py::arg("progress") = py::none(),
+               "Tries simple policies in a compiled safety game, see Engine.guess. Limits as for `solve`.");
 }

@@ -1,0 +1,205 @@
+// A policy for several duties: who does which one next, and which commands come of it.
+#pragma once
+
+#include "duties.hpp"
+
+namespace pursue {
+
+// Which duty is next for a robot, and what it does where it has none.
+enum class Next { in_turn, soonest_due, nearest };
+
+struct Guess {
+    Next next = Next::in_turn;
+    bool shared_out = true;  // each duty is one robot's: who has least to do
+    bool home = false;       // where nothing is owed it goes back to where it began
+    std::size_t zones = 1;   // more zones of one state become one, which only adds plays
+    bool apart = true;       // but only those that the same agent's moves lead to: then its pause has just begun
+};
+
+class Dispatch {
+  public:
+    // `joints`: of the game; what is decided are their numbers.
+    Dispatch(const Game& game, Joints& joints, const Guess& guess) : game_(game), joints_(joints), guess_(guess), duties_(game) {
+        if (guess.shared_out && robots() > 1) share_out();
+    }
+
+    std::size_t robots() const { return duties_.robots().size(); }
+
+    // Whether a move from d does the duty of an automaton, or begins it anew.
+    bool touches(const Discrete& d, const Joint& joint, int duty) const { return duties_.touches(d, joint, duty); }
+
+    // How many duties are open in d.
+    int open(const Discrete& d) const {
+        const auto is_open = [&](int a) { return duties_.is_open(d, a); };
+        return static_cast<int>(std::count_if(duties_.watching().begin(), duties_.watching().end(), is_open));
+    }
+
+    // Which duty each robot is at after a move to d; before, it was at those of `last`. Those just done are -1 in `memory`.
+    void remember(const Discrete& d, std::vector<int>& memory, const std::vector<int>& last = {}) {
+        for (int& duty : memory)
+            if (duty >= 0 && (guess_.next == Next::soonest_due || !duties_.is_open(d, duty))) duty = -1;
+        for (;;) {
+            std::tuple<std::int64_t, std::size_t, int> best{Duties::NEVER, 0, -1};
+            for (std::size_t r = 0; r < memory.size(); ++r)
+                if (memory[r] < 0) best = std::min(best, next_duty(d, r, memory, last.empty() ? -1 : last[r]));
+            const auto [place, robot, duty] = best;
+            if (duty < 0) return;
+            memory[robot] = duty;
+        }
+    }
+
+    // The commands in d, at most one for each robot.
+    std::vector<int> decided(const Discrete& d, const std::vector<int>& enabled, const std::vector<int>& memory) {
+        const std::vector<int>& robots = duties_.robots();
+        std::vector<int> wanted;
+        std::vector<std::set<int>> ways;
+        for (std::size_t r = 0; r < robots.size(); ++r)
+            wanted.push_back(wants(d, enabled, robots[r], memory[r], ways.emplace_back()));
+        std::vector<int> commands = wanted;
+        for (std::size_t q = 0; q < robots.size(); ++q)
+            for (std::size_t r = 0; r < robots.size() && wanted[q] >= 0; ++r) {
+                if (r == q || !ways[q].count(d[robots[r]]) || !keep_apart(d, robots[q], robots[r])) continue;
+                if (wanted[r] >= 0 && (r < q || !ways[r].count(d[robots[q]]))) continue;  // it goes on by itself, or first
+                std::set<int> out;
+                commands[r] = makes_way(d, enabled, robots[r], d[robots[q]], ways[q], out);
+                if (commands[r] >= 0 && out.count(ended(joints_[wanted[q]].target(d), robots[q])[robots[q]])) commands[q] = -1;
+            }
+        const auto fails = [&](int j) { return j < 0 || leads_to_loss(joints_[j].target(d)); };
+        commands.erase(std::remove_if(commands.begin(), commands.end(), fails), commands.end());
+        return commands;
+    }
+
+  private:
+    // Gives each duty to one of the robots that can do it, those that few can do first.
+    void share_out() {
+        const std::size_t robots = duties_.robots().size();
+        std::vector<std::pair<std::vector<std::size_t>, int>> able;
+        for (const int a : duties_.watching()) {
+            std::vector<std::size_t> who;
+            for (std::size_t r = 0; r < robots; ++r)
+                if (duties_.can(duties_.robots()[r], a)) who.push_back(r);
+            if (!who.empty()) able.emplace_back(std::move(who), a);
+        }
+        std::stable_sort(able.begin(), able.end(), [](const auto& x, const auto& y) { return x.first.size() < y.first.size(); });
+        std::vector<int> load(robots, 0);
+        for (const auto& [who, a] : able) {
+            const std::size_t least = *std::min_element(who.begin(), who.end(), [&](auto x, auto y) { return load[x] < load[y]; });
+            ++load[least];
+            of_[a] = least;
+        }
+    }
+
+    // The next duty for a robot after its last one that no robot is at, behind a number: less is better.
+    std::tuple<std::int64_t, std::size_t, int> next_duty(const Discrete& d, std::size_t robot, const std::vector<int>& memory,
+                                                         int last) {
+        std::tuple<std::int64_t, std::size_t, int> best{Duties::NEVER, robot, -1};
+        bool looked = false;
+        for (const int a : duties_.watching()) {
+            if (!duties_.is_open(d, a) || std::find(memory.begin(), memory.end(), a) != memory.end()) continue;
+            if (!looked) duties_.look(d, duties_.robots()[robot]);
+            looked = true;
+            const std::int64_t cost = duties_.cost(duties_.done(a));
+            const auto whose = of_.find(a);
+            if (cost == Duties::NEVER || (whose != of_.end() && whose->second != robot)) continue;
+            std::int64_t place = a > last ? a : a + static_cast<int>(game_.automata.size());
+            if (guess_.next == Next::soonest_due) place = duties_.deadline(d, a);
+            if (guess_.next == Next::nearest) place = cost;
+            best = std::min(best, {place, robot, a});
+        }
+        return best;
+    }
+
+    // Whether two robots must not be together where the second one is.
+    bool keep_apart(Discrete d, int robot, int other) {
+        d[robot] = d[other];
+        for (std::size_t v = game_.automata.size(); v < d.size(); ++v)
+            for (const Edge& edge : game_.automata[robot].edges)
+                if (edge.target == d[other])
+                    for (const auto& set : edge.assign)
+                        if (game_.automata.size() + set.variable == v) d[v] = set.value;
+        return leads_to_loss(d);
+    }
+
+    // What a robot does next for a duty, -1: nothing; `way`: the locations that it passes then.
+    int wants(const Discrete& d, const std::vector<int>& enabled, int robot, int duty, std::set<int>& way) {
+        const int fact = duty >= 0      ? duties_.done(duty)
+                         : guess_.home ? duties_.at_location(robot, game_.automata[robot].initial)
+                                       : -1;
+        if (fact < 0) return -1;
+        duties_.look(d, robot);
+        if (duties_.cost(fact) == Duties::NEVER || duties_.cost(fact) == 0) return -1;
+        way = duties_.way(fact, robot);
+        const int edge = duties_.first(fact);
+        for (const int j : enabled)
+            if (joints_[j].edges[0] == edge && is_command(d, j, robot)) return j;
+        return -1;
+    }
+
+    bool is_command(const Discrete& d, int j, int robot) const {
+        return joints_[j].controllable && joints_[j].owner == robot && !joints_[j].changes_nothing(d, game_);
+    }
+
+    // A command for a robot that stands in the way of another: to the nearest place out of it that it comes to without
+    // passing the other, -1: there is none. `out`: the locations that it passes.
+    int makes_way(const Discrete& d, const std::vector<int>& enabled, int robot, int other, const std::set<int>& way,
+                  std::set<int>& out) {
+        duties_.look(d, robot, other);
+        std::int64_t least = Duties::NEVER;
+        int nearest = -1;
+        for (int place = 0; place < static_cast<int>(game_.automata[robot].invariants.size()); ++place) {
+            const int fact = duties_.at_location(robot, place);
+            if (way.count(place) || !game_.automata[robot].invariants[place].empty() || duties_.cost(fact) >= least) continue;
+            least = duties_.cost(fact);
+            nearest = fact;
+        }
+        if (nearest < 0) return -1;
+        out = duties_.way(nearest, robot);
+        const int edge = duties_.first(nearest);
+        for (const int j : enabled)
+            if (joints_[j].edges[0] == edge && is_command(d, j, robot)) return j;
+        return -1;
+    }
+
+    // The state after the end of what a robot does.
+    Discrete ended(Discrete d, int robot) {
+        std::vector<int> enabled;
+        for (int n = 0; n < 3 && !game_.automata[robot].invariants[d[robot]].empty(); ++n) {
+            joints_.enabled(d, enabled);
+            for (const int j : enabled)
+                if (joints_[j].owner == robot && !joints_[j].controllable) {
+                    d = joints_[j].target(d);
+                    break;
+                }
+        }
+        return d;
+    }
+
+    // Whether the ends of what is under way, in some order, come to what is to be avoided.
+    bool leads_to_loss(const Discrete& from) {
+        std::set<Discrete> met{from};
+        std::vector<Discrete> open{from};
+        std::vector<int> enabled;
+        while (!open.empty() && met.size() < 256) {
+            const Discrete d = open.back();
+            open.pop_back();
+            if (at_bad(game_, d)) return true;
+            joints_.enabled(d, enabled);
+            for (const int j : enabled) {
+                const Joint& joint = joints_[j];
+                if (joint.controllable) continue;
+                if (!watches(game_, joint.owner) && game_.automata[joint.owner].invariants[d[joint.owner]].empty()) continue;
+                Discrete next = joint.target(d);
+                if (met.insert(next).second) open.push_back(std::move(next));
+            }
+        }
+        return false;
+    }
+
+    const Game& game_;
+    Joints& joints_;
+    const Guess guess_;
+    Duties duties_;
+    std::map<int, std::size_t> of_;  // whose duty it is, by automaton
+};
+
+}  // namespace pursue

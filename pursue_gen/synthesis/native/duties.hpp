@@ -1,0 +1,224 @@
+// What is owed where something has a deadline, and what to do about it first: a plan by time in the relaxed problem
+// (delete relaxation, costs added up as in h_add: Bonet and Geffner 2001).
+#pragma once
+
+#include <limits>
+#include <map>
+#include <queue>
+#include <set>
+
+#include "moves.hpp"
+
+namespace pursue {
+
+class Duties {
+  public:
+    static constexpr std::int64_t NEVER = std::numeric_limits<std::int64_t>::max();
+
+    explicit Duties(const Game& game) : game_(game) {
+        const int count = static_cast<int>(game.automata.size());
+        for (int a = 0; a < count; ++a) {
+            const auto& edges = game.automata[a].edges;
+            const bool acts = std::any_of(edges.begin(), edges.end(), [](const Edge& e) {
+                return e.controllable && (e.channel < 0 || e.sends);
+            });
+            if (watches(game, a)) watching_.push_back(a);
+            else if (acts) robots_.push_back(a);
+        }
+        for (int a = 0; a < count; ++a) {
+            for (const Edge& edge : game.automata[a].edges) {
+                if (edge.channel >= 0 && !edge.sends) continue;
+                if (is_loss(a, edge) || (!edge.controllable && game.automata[a].invariants[edge.source].empty())) continue;
+                add_operator(a, edge, -1, nullptr);
+                for (int b = 0; edge.channel >= 0 && b < count; ++b)
+                    for (const Edge& other : game.automata[b].edges)
+                        if (b != a && other.channel == edge.channel && !other.sends && !is_loss(b, other))
+                            add_operator(a, edge, b, &other);
+            }
+        }
+    }
+
+    const std::vector<int>& robots() const { return robots_; }      // automata that commands move
+    const std::vector<int>& watching() const { return watching_; }  // automata that watch what is to be avoided
+
+    // Whether a deadline of automaton a is running in d.
+    bool is_open(const Discrete& d, int a) const { return !game_.automata[a].invariants[d[a]].empty(); }
+
+    // The deadline itself, raw.
+    wide_t deadline(const Discrete& d, int a) const { return game_.automata[a].invariants[d[a]].front().raw; }
+
+    // The fact that the duty of automaton a has been done; that it is at a location.
+    int done(int a) const { return known(-1 - a, 0); }
+    int at_location(int a, int location) const { return known(a, location); }
+
+    // Whether something that a robot does, or its end, does the duty of automaton a.
+    bool can(int robot, int a) const {
+        const int fact = done(a);
+        return std::any_of(operators_.begin(), operators_.end(), [&](const Operator& op) {
+            return op.owner == robot && std::find(op.effects.begin(), op.effects.end(), fact) != op.effects.end();
+        });
+    }
+
+    // What every fact costs in time from d on, where of the robots only this one acts, and not by way of the location
+    // `closed`. For `cost`, `first` and `way`.
+    void look(const Discrete& d, int robot, int closed = -1) {
+        costs_.assign(facts_, NEVER);
+        achiever_.assign(facts_, -1);
+        support_.assign(preconditions_.size(), -1);
+        met_.assign(operators_.size(), 0);
+        sums_.assign(operators_.size(), 0);
+        std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+        for (std::size_t k = 0; k < d.size(); ++k)
+            if (const int fact = known(static_cast<int>(k), d[k]); fact >= 0) queue.emplace(0, -1, fact);
+        while (!queue.empty()) {
+            const auto [cost, by, fact] = queue.top();
+            queue.pop();
+            if (costs_[fact] != NEVER || (about_[fact] == robot && values_[fact] == closed)) continue;
+            costs_[fact] = cost;
+            achiever_[fact] = by;
+            for (const int need : met_by_[fact]) {
+                if (support_[need] >= 0) continue;
+                support_[need] = fact;
+                const int number = preconditions_[need];
+                const Operator& op = operators_[number];
+                sums_[number] += cost;
+                if (++met_[number] < static_cast<int>(op.needs.size())) continue;
+                if (op.controllable && op.owner != robot && is_robot(op.owner)) continue;
+                for (const int effect : op.effects) queue.emplace(sums_[number] + op.time, number, effect);
+            }
+        }
+    }
+
+    std::int64_t cost(int fact) const { return fact < 0 ? NEVER : costs_[fact]; }
+
+    // The sender edge that begins the plan to a fact which costs something, -1: it begins with the end of something. Of what
+    // an action needs, a robot sees first to what is not its own place: else it would go to and fro.
+    int first(int fact) const {
+        for (;;) {
+            const Operator& op = operators_[achiever_[fact]];
+            int worst = -1, own = -1;
+            for (const int need : op.needs) {
+                const int given = support_[need];
+                if (costs_[given] == 0) continue;
+                if (about_[given] == op.owner) own = given;
+                else if (worst < 0 || costs_[given] > costs_[worst]) worst = given;
+            }
+            if (worst < 0) worst = own;
+            if (worst < 0) return op.controllable ? op.edge : -1;
+            fact = worst;
+        }
+    }
+
+    // The locations of a robot on the plan to a fact.
+    std::set<int> way(int fact, int robot) const {
+        std::set<int> met, locations;
+        std::vector<int> open{fact};
+        while (!open.empty()) {
+            const int next = open.back();
+            open.pop_back();
+            if (!met.insert(next).second) continue;
+            if (about_[next] == robot) locations.insert(values_[next]);
+            if (achiever_[next] < 0) continue;
+            for (const int need : operators_[achiever_[next]].needs) open.push_back(support_[need]);
+        }
+        return locations;
+    }
+
+    // Whether a joint move from d does the duty of automaton a, or begins it anew.
+    bool touches(const Discrete& d, const Joint& joint, int a) const {
+        for (const auto& [index, value] : joint.writes)
+            if (index == a && value != d[a]) return true;
+        const auto& bounds = game_.automata[a].invariants[d[a]];
+        return std::any_of(bounds.begin(), bounds.end(), [&](const Bound& b) {
+            return std::find(joint.resets.begin(), joint.resets.end(), b.i) != joint.resets.end();
+        });
+    }
+
+  private:
+    using Entry = std::tuple<std::int64_t, int, int>;  // cost, operator, fact
+
+    struct Operator {
+        int edge, owner;
+        bool controllable;
+        std::int64_t time;
+        std::vector<int> needs;  // its preconditions
+        std::vector<int> effects;
+    };
+
+    bool is_robot(int a) const { return std::find(robots_.begin(), robots_.end(), a) != robots_.end(); }
+
+    bool is_loss(int a, const Edge& edge) const {
+        return std::any_of(game_.bad.begin(), game_.bad.end(), [&](const Place& p) {
+            return p.automaton == a && p.location == edge.target;
+        });
+    }
+
+    int known(int what, int value) const {
+        const auto found = numbers_.find({what, value});
+        return found == numbers_.end() ? -1 : found->second;
+    }
+
+    int fact(int what, int value) {
+        const auto [found, fresh] = numbers_.try_emplace({what, value}, facts_);
+        if (fresh) {
+            ++facts_;
+            about_.push_back(what);
+            values_.push_back(value);
+            met_by_.emplace_back();
+        }
+        return found->second;
+    }
+
+    void add_need(Operator& op, const std::vector<int>& any) {
+        const int need = static_cast<int>(preconditions_.size());
+        op.needs.push_back(need);
+        preconditions_.push_back(static_cast<int>(operators_.size()));
+        for (const int fact : any) met_by_[fact].push_back(need);
+    }
+
+    void add_part(Operator& op, int automaton, const Edge& edge) {
+        const int base = static_cast<int>(game_.automata.size());
+        add_need(op, {fact(automaton, edge.source)});
+        for (const auto& clause : edge.clauses) {
+            std::vector<int> any;
+            for (const auto& test : clause) any.push_back(fact(base + test.variable, test.value));
+            add_need(op, any);
+        }
+        op.effects.push_back(fact(automaton, edge.target));
+        for (const auto& set : edge.assign) op.effects.push_back(fact(base + set.variable, set.value));
+        for (const Bound& b : edge.guard)
+            if (b.i == 0) op.time = std::max<std::int64_t>(op.time, -(b.raw >> 1));
+        const auto& deadline = game_.automata[automaton].invariants[edge.source];
+        if (watches(game_, automaton)) {
+            const auto restarts = [&](const Bound& b) {
+                return std::find(edge.resets.begin(), edge.resets.end(), b.i) != edge.resets.end();
+            };
+            if (!deadline.empty() && (edge.source != edge.target || std::any_of(deadline.begin(), deadline.end(), restarts)))
+                op.effects.push_back(fact(-1 - automaton, 0));
+        } else if (!edge.controllable) {
+            for (const Bound& b : deadline) op.time = std::max<std::int64_t>(op.time, b.raw >> 1);
+        }
+    }
+
+    void add_operator(int a, const Edge& sender, int b, const Edge* receiver) {
+        Operator op{sender.id, a, sender.controllable && (!receiver || receiver->controllable), 1, {}, {}};
+        add_part(op, a, sender);
+        if (receiver) add_part(op, b, *receiver);
+        operators_.push_back(std::move(op));
+    }
+
+    const Game& game_;
+    std::vector<int> robots_, watching_;
+
+    int facts_ = 0;
+    std::map<std::pair<int, int>, int> numbers_;  // of facts: an automaton or (behind them) a variable, and its value
+    std::vector<int> about_, values_;             // per fact what it is about, and the value
+    std::vector<std::vector<int>> met_by_;        // per fact the preconditions that it meets
+    std::vector<int> preconditions_;              // per precondition the operator that has it
+    std::vector<Operator> operators_;
+
+    std::vector<std::int64_t> costs_, sums_;
+    std::vector<int> achiever_, support_, met_;
+};
+
+}  // namespace pursue

@@ -1,0 +1,122 @@
+"""Simple policies: what they win is won, and they win what people ask of robots with several duties."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import islice
+from typing import Optional, Tuple
+
+import pytest
+from hypothesis import HealthCheck, event, given, settings
+from hypothesis import strategies as st
+
+from benchmarks.lab_scenarios import Size, lab_scenario
+from pursue_gen.language import parse
+from pursue_gen.outcomes import LimitHit
+from pursue_gen.proof.checker import verify
+from pursue_gen.solving.rules import DEFAULT, Rules, played
+from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.synthesis.compile_game import compile_game
+from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.native.engine import NativeEngine
+from pursue_gen.synthesis.solve import guess, solve
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.synthesis.strategy_from import to_strategy
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Kind, Network, Objective
+from tests.synthesis.random_games import started
+
+NATIVE = NativeEngine()
+pytestmark = pytest.mark.skipif(not NATIVE.available(), reason="the native engine is not built here (no compiler)")
+SMALL = Limits(work=300_000, states=20_000)
+
+
+def callers(count: int, deadline: int) -> str:
+    """Rooms along a corridor, a caller in each, and one robot."""
+    rooms = range(1, count + 1)
+    lines = ['poi "base"', *(f'poi "p{k}"' for k in rooms)]
+    lines += [f'connect {"base" if k == 1 else f"p{k - 1}"} and p{k} distance 3' for k in rooms]
+    lines += [f'event "call{k}"\nevent "serve{k}" location p{k} duration 2' for k in rooms]
+    lines += [f'rule "c{k}": call{k} before serve{k}' for k in rooms]
+    lines.append(f'agent "r1" controllable mobile 1 location base can_do {", ".join(f"serve{k}" for k in rooms)}')
+    lines.append(f'agent "people" location base can_do {", ".join(f"call{k}" for k in rooms)}')
+    lines += [f"objective: if call{k} then serve{k} within {deadline}" for k in rooms]
+    return "\n".join(lines) + "\n"
+
+
+def game_of(text: str, rules: Rules = DEFAULT) -> Tuple[Network, Objective]:
+    scenario = parse(text, "story.pur", "story")
+    return played(translate(scenario), rules), scenario_objective(scenario)
+
+
+def guessed(text: str) -> Tuple[Network, Objective, Optional[Strategy]]:
+    network, objective = game_of(text)
+    return (network, objective, guess(network, objective, DEFAULT.reaction)[0])
+
+
+@pytest.mark.parametrize(("count", "deadline"), [(1, 30), (2, 40), (4, 62), (5, 110)])
+def test_a_robot_serves_several_callers_in_turn(count: int, deadline: int) -> None:
+    network, objective, strategy = guessed(callers(count, deadline))
+    assert strategy is not None
+    assert verify(network, objective, strategy, DEFAULT.reaction, closed=True).ok
+    assert verify(network, objective, strategy, DEFAULT.reaction).ok
+
+
+def test_callers_who_cannot_all_be_served_in_time_are_not_won() -> None:
+    assert guessed(callers(4, 50))[2] is None
+    assert guessed(callers(1, 5))[2] is None
+
+
+def test_five_callers_and_one_robot_are_decided() -> None:
+    won = solve_scenario(parse(callers(5, 110), "five.pur", "five"), DEFAULT)
+    assert verify(won.network, won.objective, won.strategy, won.reaction).ok
+
+
+def test_nothing_moves_without_a_duty() -> None:
+    _, _, strategy = guessed(callers(3, 80))
+    assert strategy is not None
+    idle = [b for b in strategy.blocks if not any(where == "atRisk" for _, where in b.state.locations)]
+    assert idle and not any(block.commands for block in idle)
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@given(started((Kind.SAFETY,)), st.sampled_from((Fraction(0), Fraction(1))))
+def test_what_a_policy_wins_in_a_random_game_wins_it(drawn: Tuple[Network, Objective], reaction: Fraction) -> None:
+    network, objective = drawn
+    strategy, _ = guess(network, objective, reaction)
+    event(f"won: {strategy is not None}")
+    if strategy is not None:
+        assert verify(network, objective, strategy, reaction, prompt=False).ok
+        assert solve(network, objective, reaction).won
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+@given(st.integers(0, 10**6), st.integers(1, 2), st.booleans())
+def test_what_a_policy_wins_is_not_lost_exactly(seed: int, robots: int, free: bool) -> None:
+    network, objective = game_of(lab_scenario(seed, Size(places=4, robots=robots, people=1, promises=2)))
+    try:
+        strategy, _ = guess(network, objective, DEFAULT.reaction, limits=SMALL, without_pauses=free)
+    except LimitHit:
+        return
+    event(f"won: {strategy is not None}")
+    if strategy is None:
+        return
+    assert verify(network, objective, strategy, DEFAULT.reaction).ok
+    try:
+        verdict = solve(network, objective, DEFAULT.reaction, limits=SMALL)
+    except LimitHit:
+        return
+    assert verdict.won
+
+
+def test_it_ends_at_a_limit_on_work() -> None:
+    network, objective = game_of(callers(5, 110))
+    with pytest.raises(LimitHit):
+        guess(network, objective, DEFAULT.reaction, limits=Limits(work=1000))
+
+
+def test_the_same_game_gives_the_same_strategy() -> None:
+    network, objective = game_of(callers(3, 80))
+    game = compile_game(network, objective, DEFAULT.reaction)
+    first, second = (to_strategy(game, NATIVE.guess(game).blocks) for _ in range(2))
+    assert first == second and len(list(islice(first.blocks, 10))) > 5
