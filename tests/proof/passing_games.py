@@ -97,8 +97,8 @@ def _block(tables: Tables, strategy: Strategy, state: State) -> Block:
 
 @st.composite
 def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
-    """The strategy with one thing changed: an order of passage, what a block names, or a block less."""
-    what = draw(st.sampled_from(("swap", "drop visit", "rename", "unname", "unsay", "hurry")))
+    """The strategy with one thing changed: an order of passage, what a block names or commands, or a block less."""
+    what = draw(st.sampled_from(("swap", "drop visit", "rename", "unname", "elsewhere", "reroute", "unsay", "hurry")))
     blocks = list(strategy.blocks)
     if what in ("swap", "drop visit", "rename") and strategy.passages:
         k = draw(st.integers(0, len(strategy.passages) - 1))
@@ -121,6 +121,16 @@ def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     elif what == "hurry":
         commands = tuple(replace(command, zones=((),)) for command in blocks[k].commands)
         blocks[k] = replace(blocks[k], wait=draw(st.sampled_from(((), ((),)))), commands=commands)
+    elif what == "elsewhere":
+        name, place = draw(st.sampled_from(state.locations))
+        others = [p for block in blocks for n, p in block.state.locations if n == name and p != place]
+        where = draw(st.sampled_from(others or [place]))
+        places = tuple((n, where if n == name else p) for n, p in state.locations)
+        blocks[k] = replace(blocks[k], state=DiscreteState(places, state.values))
+    elif what == "reroute":
+        sender = blocks[k].commands[0].moves[0].automaton
+        theirs = [blocks[n].commands for n in commanding if blocks[n].commands[0].moves[0].automaton == sender]
+        blocks[k] = replace(blocks[k], commands=draw(st.sampled_from(theirs)))
     else:
         gone = draw(st.sampled_from(state.locations))
         kept = tuple(place for place in state.locations if place != gone)
