@@ -169,6 +169,7 @@ def _in_parts(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyData
         moved = _Moved(free, at, which, len(zones), len(situations), is_last)
         situations += [moved.situation(some) for some in builder.situations()]
         zones += builder.zones
+    named.update(name for name, _ in won.objective.bad if won.strategy.passages)
     left_out = tuple(automaton.name for automaton in won.network.automata if automaton.name not in named)
     owners = _owners(scenario, won, reach_obj)
     found = tuple(zones), tuple(situations), left_out, scenario.labels, tuple(parts)

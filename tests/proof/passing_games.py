@@ -100,8 +100,9 @@ def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     """The strategy with one thing changed: an order of passage, what a block names or commands, or a block less."""
     what = draw(st.sampled_from(("swap", "drop visit", "rename", "unname", "elsewhere", "reroute", "unsay", "hurry")))
     blocks = list(strategy.blocks)
-    if what in ("swap", "drop visit", "rename") and strategy.passages:
-        k = draw(st.integers(0, len(strategy.passages) - 1))
+    orders = [k for k, passage in enumerate(strategy.passages) if passage.robots]
+    if what in ("swap", "drop visit", "rename") and orders:
+        k = draw(st.sampled_from(orders))
         robots = list(strategy.passages[k].robots)
         a, b = (draw(st.integers(0, len(robots) - 1)) for _ in range(2))
         if what == "swap":
@@ -116,6 +117,8 @@ def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     commanding = [k for k, block in enumerate(blocks) if block.commands]
     k = draw(st.sampled_from(commanding))
     state = blocks[k].state
+    if not state.locations:
+        return strategy
     if what == "unsay":
         del blocks[k]
     elif what == "hurry":

@@ -23,6 +23,7 @@ from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import DEFAULT, IDEAL, Rules, played
 from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.solvers import solved
+from pursue_gen.solving.verdict import verdict_json
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import read_network, write_network
@@ -174,3 +175,10 @@ reach_objective: do hand
     found = won_by_passages(network, objective, crowd, DEFAULT.reaction, SolveOptions())
     assert found is not None
     assert verify(network, objective, found[1], DEFAULT.reaction).ok
+
+
+def test_objectives_that_orders_of_passage_keep_do_matter() -> None:
+    text = pass_in_a_corridor(4) + '\nagent "guest" mobile 2 location hall5\n'
+    found = won(text)
+    assert verdict_json(DEFAULT, found)["left_out"] == ["guest"]
+    assert strategy_data_of(parse(text, "passing.pur", "passing"), found, "dedicated").left_out == ("guest",)
