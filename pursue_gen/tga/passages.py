@@ -63,8 +63,9 @@ def words_of(network: Network) -> Dict[Tuple[str, str], str]:
 def with_passages(network: Network, passages: Iterable[Passage]) -> Network:
     """The network with the automata of these passages behind its own; one that is there already, or that cannot be
     (see `passage_automaton`), is left out."""
+    known = {automaton.name for automaton in network.automata}
     for passage in passages:
-        automaton = passage_automaton(network, passage)
+        automaton = None if passage.name in known else passage_automaton(network, passage)
         if automaton is not None:
             network = replace(network, automata=(*network.automata, automaton))
     return network
