@@ -54,13 +54,13 @@ _CROWD = 4
 """So many robots that must not be at one place are no easy game: an order of passage is looked for first."""
 
 _FOR_GUESS = 5_000_000
-"""The work that may be spent on simple policies for all robots."""
+"""The work that may be spent on simple policies; a tenth of it for several robots together."""
 
 _SLOWER = Fraction(11, 10)
 """So much longer a smaller strategy may take."""
 
-_FOR_IDEAL = 50_000_000
-"""The work that may be spent on whether a lost game is won ideally: some ten seconds."""
+_FOR_IDEAL, _IDEAL_STATES = 10_000_000, 2_000
+"""The work that may be spent on whether a lost game is won ideally, and its discrete states: some two seconds."""
 
 
 @dataclass(frozen=True)
@@ -207,7 +207,8 @@ def _with_little_work(
         if lost:
             return lost
         found = won_in_shares(game, objective, reaction, options.since(start), EFFORTS[:1]) if shared else None
-        found = found or won_by_guess(game, objective, reaction, _FOR_GUESS, options.since(start))
+        guess = _FOR_GUESS // 10 if shared else _FOR_GUESS
+        found = found or won_by_guess(game, objective, reaction, guess, options.since(start))
         if found is not None:
             return found
         lost = lost_for_one(game, objective, reaction, options.since(start)) if shared else ()
@@ -322,7 +323,7 @@ def _cannot_be_met(
 
 def _won_ideally(network: Network, objective: Objective, options: SolveOptions) -> bool:
     """True if the ideal game is known to be won; that it is not decided with so much work changes no verdict."""
-    limits = replace(options.limits.chosen, work=_FOR_IDEAL)
+    limits = replace(options.limits.chosen, work=_FOR_IDEAL, states=_IDEAL_STATES)
     try:
         return solve(network, objective, engine=options.engine, limits=limits, progress=options.progress).won
     except PursueError:
