@@ -79,6 +79,39 @@ def test_nothing_moves_without_a_duty() -> None:
     assert idle and not any(block.commands for block in idle)
 
 
+FLOOR = """
+poi "hall1"
+poi "hall2"
+poi "room1"
+poi "room2"
+connect hall1 and hall2 distance 3
+connect hall1 and room1 distance 2
+connect hall2 and room2 distance 2
+event "order"
+event "drop" location room2 duration 1
+agent "bot1" controllable mobile 1 location room1 can_do drop
+agent "bot2" controllable mobile 1 location room2
+agent "people" location room1 can_do order
+"""
+MAKES_WAY = FLOOR + """poi "bay"
+connect hall2 and bay distance 1
+objective: if order then drop within 60
+objective: bot1 never_with bot2
+"""
+RELIEVES = FLOOR + """objective: if order then drop within 60
+objective: always any robot at room1
+"""
+"""bot1 may leave room1 only when bot2 is there."""
+
+
+@pytest.mark.parametrize("text", [MAKES_WAY, RELIEVES], ids=["who stands in the way", "who has nothing to do"])
+def test_a_robot_moves_for_another_one(text: str) -> None:
+    network, objective, strategy = guessed(text)
+    assert strategy is not None
+    assert verify(network, objective, strategy, DEFAULT.reaction).ok
+    assert "bot2" in {command.moves[0].automaton for block in strategy.blocks for command in block.commands}
+
+
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 @given(started((Kind.SAFETY,)), st.sampled_from((Fraction(0), Fraction(1))))
 def test_what_a_policy_wins_in_a_random_game_wins_it(drawn: Tuple[Network, Objective], reaction: Fraction) -> None:

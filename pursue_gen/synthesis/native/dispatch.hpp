@@ -58,11 +58,18 @@ class Dispatch {
         std::vector<int> commands = wanted;
         for (std::size_t q = 0; q < robots.size(); ++q)
             for (std::size_t r = 0; r < robots.size() && wanted[q] >= 0; ++r) {
-                if (r == q || !ways[q].count(d[robots[r]]) || !keep_apart(d, robots[q], robots[r])) continue;
+                if (r == q || !ways[q].count(d[robots[r]]) || !leads_to_loss(together(d, robots[q], robots[r]))) continue;
                 if (wanted[r] >= 0 && (r < q || !ways[r].count(d[robots[q]]))) continue;  // it goes on by itself, or first
                 std::set<int> out;
                 commands[r] = makes_way(d, enabled, robots[r], d[robots[q]], ways[q], out);
                 if (commands[r] >= 0 && out.count(ended(joints_[wanted[q]].target(d), robots[q])[robots[q]])) commands[q] = -1;
+            }
+        // Who can leave only when somebody else is there is relieved by one who has nothing to do.
+        for (std::size_t q = 0; q < robots.size(); ++q)
+            for (std::size_t r = 0; r < robots.size() && commands[q] >= 0; ++r) {
+                if (wanted[r] >= 0 || commands[r] >= 0 || !leads_to_loss(joints_[commands[q]].target(d))) continue;
+                if (leads_to_loss(joints_[commands[q]].target(together(d, robots[r], robots[q])))) continue;
+                commands[r] = towards(d, enabled, robots[r], d[robots[q]]);
             }
         const auto fails = [&](int j) { return j < 0 || leads_to_loss(joints_[j].target(d)); };
         commands.erase(std::remove_if(commands.begin(), commands.end(), fails), commands.end());
@@ -109,15 +116,29 @@ class Dispatch {
         return best;
     }
 
-    // Whether two robots must not be together where the second one is.
-    bool keep_apart(Discrete d, int robot, int other) {
+    // The state with one robot where another one is.
+    Discrete together(Discrete d, int robot, int other) const {
         d[robot] = d[other];
-        for (std::size_t v = game_.automata.size(); v < d.size(); ++v)
-            for (const Edge& edge : game_.automata[robot].edges)
-                if (edge.target == d[other])
-                    for (const auto& set : edge.assign)
-                        if (game_.automata.size() + set.variable == v) d[v] = set.value;
-        return leads_to_loss(d);
+        for (const Edge& edge : game_.automata[robot].edges)
+            if (edge.target == d[other])
+                for (const auto& set : edge.assign) d[game_.automata.size() + set.variable] = set.value;
+        return d;
+    }
+
+    // The first command on a robot's way to a location, -1: none.
+    int towards(const Discrete& d, const std::vector<int>& enabled, int robot, int location) {
+        duties_.look(d, robot);
+        const int fact = duties_.at_location(robot, location);
+        if (duties_.cost(fact) == Duties::NEVER || duties_.cost(fact) == 0) return -1;
+        return command(d, enabled, robot, duties_.first(fact));
+    }
+
+    int command(const Discrete& d, const std::vector<int>& enabled, int robot, int edge) const {
+        for (const int j : enabled)
+            if (joints_[j].edges[0] == edge && joints_[j].controllable && joints_[j].owner == robot &&
+                !joints_[j].changes_nothing(d, game_))
+                return j;
+        return -1;
     }
 
     // What a robot does next for a duty, -1: nothing; `way`: the locations that it passes then.
@@ -129,14 +150,7 @@ class Dispatch {
         duties_.look(d, robot);
         if (duties_.cost(fact) == Duties::NEVER || duties_.cost(fact) == 0) return -1;
         way = duties_.way(fact, robot);
-        const int edge = duties_.first(fact);
-        for (const int j : enabled)
-            if (joints_[j].edges[0] == edge && is_command(d, j, robot)) return j;
-        return -1;
-    }
-
-    bool is_command(const Discrete& d, int j, int robot) const {
-        return joints_[j].controllable && joints_[j].owner == robot && !joints_[j].changes_nothing(d, game_);
+        return command(d, enabled, robot, duties_.first(fact));
     }
 
     // A command for a robot that stands in the way of another: to the nearest place out of it that it comes to without
@@ -154,10 +168,7 @@ class Dispatch {
         }
         if (nearest < 0) return -1;
         out = duties_.way(nearest, robot);
-        const int edge = duties_.first(nearest);
-        for (const int j : enabled)
-            if (joints_[j].edges[0] == edge && is_command(d, j, robot)) return j;
-        return -1;
+        return command(d, enabled, robot, duties_.first(nearest));
     }
 
     // The state after the end of what a robot does.
