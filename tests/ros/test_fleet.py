@@ -142,7 +142,13 @@ class Fleet:
     def start(self, scenario: str) -> None:
         """Says _start_ once every node is ready for the mission of this scenario."""
         runs = self.said("the mission runs")
-        until(lambda: ready(self.made.log("base"), scenario), self.made.logs)
+        switched = f"has its part in mission {self.current()['base'][:12]}"
+
+        def is_ready() -> bool:
+            _, found, since = self.made.log("base").rpartition(switched)  # what was said before is of another mission
+            return bool(found) and ready(since, scenario)
+
+        until(is_ready, self.made.logs)
         self.made.start("start", f"exec python3 {PUBLISH_EVENT} _start_", "desk")
         until(lambda: self.said("the mission runs") > runs, self.made.logs)
 

@@ -83,7 +83,7 @@ class Forward {
                     }
                     for (const Z& wait : passed.waited) absorb(waits, wait);
                 }
-            for (const Z& wait : disjoint(minus(waits, acts))) pieces.push_back({wait, -1, 0});
+            for (const Z& wait : reduced(minus(waits, acts))) pieces.push_back({wait, -1, 0});
         }
         return out;
     }
