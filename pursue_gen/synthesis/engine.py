@@ -73,8 +73,9 @@ class Engine(ABC):
     def guess(self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Outcome:
         """Try simple policies in a safety game that it `holds`: each robot does one duty after the other, by itself.
 
-        `won` if one keeps from all that is to be avoided; else nothing is known of the game. `progress` and what it
-        raises: as `solve`. An engine need not know any.
+        `won` if one keeps from all that is to be avoided; else nothing is known of the game. Zones in which to wait may
+        overlap, and those of commands, too. `progress` and what it raises: as `solve`. An engine need not know any
+        policy.
         """
         return NOT_GUESSED
 
