@@ -111,18 +111,22 @@ def verify(
     monitor = LimitMonitor(limits, progress, PROVING)
     try:
         with monitor:
-            if loop.rules.must_end:
-                report = _played(searches, False, False, limit, monitor)
-            else:
-                report = _safe(searches, closed, limit, monitor)
-            if prompt and not report.ok:
-                report = _played(searches, True, False, limit, monitor)
-            if report.ok or ranks is not None:
-                return report
-            # It may fail only because zones are extrapolated: search again without that, and show a play that is real.
-            exact = _played(searches, prompt, True, min(limit, 4 * report.states + _EXACT), monitor)
+            return _walked(searches, prompt, closed, limit, monitor)
     except MemoryError:
         raise monitor.stopped("memory") from None
+
+
+def _walked(searches: Searches, prompt: bool, closed: bool, limit: int, monitor: LimitMonitor) -> Report:
+    """What becomes of all plays; where the strategy fails only because zones are extrapolated, a play that is real."""
+    if searches.loop.rules.must_end:
+        report = _played(searches, False, False, limit, monitor)
+    else:
+        report = _safe(searches, closed, limit, monitor)
+    if prompt and not report.ok:
+        report = _played(searches, True, False, limit, monitor)
+    if report.ok or searches.loop.ranks is not None:
+        return report
+    exact = _played(searches, prompt, True, min(limit, 4 * report.states + _EXACT), monitor)
     return report if exact.reason.startswith("limit") else exact
 
 

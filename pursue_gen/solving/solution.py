@@ -25,11 +25,12 @@ from pursue_gen.solving.lost_promises import (
 from pursue_gen.solving.one_robot import lost_for_one
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.passages import crowd_of, won_by_passages
+from pursue_gen.solving.policies import won_by_policy
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.shares import EFFORTS, can_be_shared, won_in_shares
-from pursue_gen.solving.without_pauses import lost_to_few_calls, verdict_with, won_by_guess, won_without_pauses
+from pursue_gen.solving.without_pauses import lost_to_few_calls, verdict_with, won_without_pauses
 from pursue_gen.synthesis.cone import out_of_reach
 from pursue_gen.synthesis.enforced import enforced
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
@@ -53,7 +54,7 @@ them take long to prove, too."""
 _CROWD = 4
 """So many robots that must not be at one place are no easy game: an order of passage is looked for first."""
 
-_FOR_GUESS = 5_000_000
+_FOR_POLICY = 5_000_000
 """The work that may be spent on simple policies; a tenth of it for several robots together."""
 
 _SLOWER = Fraction(11, 10)
@@ -207,8 +208,8 @@ def _with_little_work(
         if lost:
             return lost
         found = won_in_shares(game, objective, reaction, options.since(start), EFFORTS[:1]) if shared else None
-        guess = _FOR_GUESS // 10 if shared else _FOR_GUESS
-        found = found or won_by_guess(game, objective, reaction, guess, options.since(start))
+        most = _FOR_POLICY // 10 if shared else _FOR_POLICY
+        found = found or won_by_policy(game, objective, reaction, most, options.since(start))
         if found is not None:
             return found
         lost = lost_for_one(game, objective, reaction, options.since(start)) if shared else ()

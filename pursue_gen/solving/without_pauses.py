@@ -8,7 +8,6 @@ round, what the environment wins with a single call of each agent is lost.
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from typing import Optional
@@ -19,7 +18,7 @@ from pursue_gen.solving.found import Found
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.synthesis.budget import Budget
-from pursue_gen.synthesis.solve import Verdict, guess, solve
+from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.pauses import acting_at_most, pauses
 
@@ -66,22 +65,6 @@ def won_without_pauses(
     except (NotProven, LimitHit):
         return None
     return Found(proven, verdict.stats)
-
-
-def won_by_guess(
-    game: Network, objective: Objective, reaction: Fraction, work: int, options: SolveOptions
-) -> Optional[Found]:
-    """A proven strategy by a simple policy (see `Engine.guess`), without the clocks of pauses where they do not matter;
-    None where so much work for each finds none."""
-    start = options.limits.now()
-    for free in (True, False) if pauses(game) else (False,):
-        how = options.engine, replace(options.limits.since(start), work=work), options.progress
-        with suppress(NotProven, LimitHit):
-            strategy, stats = guess(game, objective, reaction, *how, without_pauses=free)
-            if strategy is not None:
-                proven = prove(game, objective, strategy, reaction, options=options.since(start), closed=True)
-                return Found(proven, stats)
-    return None
 
 
 def lost_to_few_calls(game: Network, objective: Objective, reaction: Fraction, options: SolveOptions) -> bool:

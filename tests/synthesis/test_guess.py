@@ -17,7 +17,7 @@ from pursue_gen.proof.checker import verify
 from pursue_gen.solving.rules import DEFAULT, Rules, played
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.compile_game import compile_game
-from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.limits import Limits, Progress
 from pursue_gen.synthesis.native.engine import NativeEngine
 from pursue_gen.synthesis.solve import guess, solve
 from pursue_gen.synthesis.strategy import Strategy
@@ -146,6 +146,16 @@ def test_it_ends_at_a_limit_on_work() -> None:
     network, objective = game_of(callers(5, 110))
     with pytest.raises(LimitHit):
         guess(network, objective, DEFAULT.reaction, limits=Limits(work=1000))
+
+
+def test_what_the_listener_raises_ends_it() -> None:
+    network, objective = game_of(callers(8, 170))
+
+    def interrupted(progress: Progress) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        guess(network, objective, DEFAULT.reaction, progress=interrupted)
 
 
 def test_the_same_game_gives_the_same_strategy() -> None:

@@ -77,6 +77,8 @@ class Dispatch {
     }
 
   private:
+    static constexpr std::size_t BOUNDS_OF_A_STATE = 1024;  // a look at one takes about as long as at so many bounds
+
     // Gives each duty to one of the robots that can do it, those that few can do first.
     void share_out() {
         const std::size_t robots = duties_.robots().size();
@@ -193,6 +195,7 @@ class Dispatch {
         while (!open.empty() && met.size() < 256) {
             const Discrete d = open.back();
             open.pop_back();
+            attend(BOUNDS_OF_A_STATE);
             if (at_bad(game_, d)) return true;
             joints_.enabled(d, enabled);
             for (const int j : enabled) {
