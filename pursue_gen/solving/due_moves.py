@@ -9,7 +9,6 @@ puts it.
 
 from __future__ import annotations
 
-import heapq
 import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -17,6 +16,7 @@ from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Option
 
 from pursue_gen.language.network_names import AT_RISK, IDLE
 from pursue_gen.language.numbers import Number
+from pursue_gen.solving.distances import distances_to
 from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Network, Objective, Test
 from pursue_runtime.locations import is_movement
@@ -164,12 +164,4 @@ def _distances(automaton: Automaton, places: Sequence[str]) -> Dict[str, Number]
             for other in automaton.edges:
                 if other.source == edge.target != other.target:
                     ways.setdefault(other.target, []).append((edge.source, rest + bounds[edge.target][0].bound))
-    found: Dict[str, Number] = {}
-    waiting: List[Tuple[Number, str]] = [(0, place) for place in places]
-    while waiting:
-        far, place = heapq.heappop(waiting)
-        if place not in found:
-            found[place] = far
-            for origin, takes in ways.get(place, ()):
-                heapq.heappush(waiting, (far + takes, origin))
-    return found
+    return distances_to(places, ways)

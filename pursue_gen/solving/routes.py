@@ -15,6 +15,9 @@ from dataclasses import dataclass
 from itertools import count
 from typing import AbstractSet, Deque, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
+from pursue_gen.language.numbers import Number
+from pursue_gen.solving.distances import distances_to
+
 Ways = Mapping[str, Mapping[str, int]]
 """From each place the places to which a way leads, and how long that takes at most."""
 
@@ -130,7 +133,7 @@ class _InTime:
             return None
         # Of a place and an interval the earliest arrival counts.
         ticket = count()
-        queue: List[Tuple[int, int, int, str, int]] = [(far.get(start, 0), next(ticket), 0, start, 0)]
+        queue: List[Tuple[Number, int, int, str, int]] = [(far.get(start, 0), next(ticket), 0, start, 0)]
         came: Dict[Tuple[str, int], Optional[Tuple[Tuple[str, int], _Timed]]] = {(start, 0): None}
         closed: Set[Tuple[str, int]] = set()
         while queue:
@@ -180,21 +183,13 @@ def _back(
     return way[::-1]
 
 
-def _distances(ways: Ways, to: str) -> Dict[str, int]:
+def _distances(ways: Ways, to: str) -> Dict[str, Number]:
     """How long it takes at most to a place, from each place from which a way leads there."""
-    back: Dict[str, List[Tuple[str, int]]] = {}
+    back: Dict[str, List[Tuple[str, Number]]] = {}
     for place, targets in ways.items():
         for target, takes in targets.items():
             back.setdefault(target, []).append((place, takes))
-    far: Dict[str, int] = {}
-    queue = [(0, to)]
-    while queue:
-        time, place = heapq.heappop(queue)
-        if place not in far:
-            far[place] = time
-            for other, takes in back.get(place, ()):
-                heapq.heappush(queue, (time + takes, other))
-    return far
+    return distances_to([to], back)
 
 
 # One by one -----------------------------------------------------------------------------------------------------------
