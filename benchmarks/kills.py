@@ -1,7 +1,8 @@
 """Missions on a real ROS master whose nodes are killed at random moments: `python -m benchmarks.kills`.
 
 Each mission is recorded twice (see second_recorder), and judged afterwards by `pursue_gen.replay` from what either
-recorder has, what the observer has heard beside that, and the workspace's strategy alone.
+recorder has, what the observer has heard beside that, and the workspace's strategy alone. Where there are promises
+alone, the mission is ended after a time.
 `--out docs` writes what was found to docs/benchmarks/kills.json and docs/kills.md; with `--first 240` it adds the
 missions from 240 on to the 240 that are there. Each mission is written as soon as it and all before it have ended, so
 an interruption loses none. The kills of a mission follow from its number and the seed; the moments at which they hit
@@ -11,7 +12,6 @@ the nodes do not.
 from __future__ import annotations
 
 import argparse
-import collections
 import contextlib
 import datetime
 import json
@@ -25,10 +25,13 @@ import tempfile
 import time
 import xmlrpc.client
 from concurrent.futures import ThreadPoolExecutor
-from fractions import Fraction
 from pathlib import Path
 from typing import Any, Dict, Iterable, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple
 
+from benchmarks.families import FAMILIES
+from benchmarks.kills_page import BAD, OTHERS, RULES, UNTIL, WORD, Mission, mismatch, page, results, together
+from benchmarks.lab_scenarios import lab_scenario
+from benchmarks.ordinary_families import ORDINARY
 from benchmarks.ros_world import NO_ANSWER, ROOT, Hasty, World, generated, world
 from benchmarks.second_recorder import NAME, bag_of, command, heard_in, merged, topics_of, with_heard
 from benchmarks.synthesis import machine, version
@@ -37,13 +40,10 @@ from pursue_gen.replay import Findings, check, game_of, read_recording
 from pursue_gen.replay.finding import FAULT, UNRECORDED, WORLD
 from pursue_gen.replay.game import Game, from_workspace
 from pursue_gen.replay.journal import Journal
-from pursue_gen.solving.rules import Rules
 from pursue_runtime.observer.mark import MARK
+from pursue_runtime.words import EVENTS, FINISH
 
 SCENARIOS = ("thesis/scenario_1", "thesis/scenario_4", "thesis/catch_the_thief", "patterns/strict_ordered_visit")
-RULES = Rules(reaction=Fraction(1, 2))
-"""Commands may come half a time unit late: what a message and a busy machine need, at half a second per time unit."""
-
 LONGEST = 240.0
 """Seconds of real time after which a mission is ended from outside."""
 
@@ -55,37 +55,20 @@ class Kill(NamedTuple):
     node: str
 
 
-class Mission(NamedTuple):
-    """What became of one mission: a word of OUTCOMES, the reason or the first fault, and who was killed; `missed`: the
-    messages that both recorders have missed, and that were published for certain."""
-
-    number: int
-    scenario: str
-    outcome: str
-    why: str
-    kills: Tuple[str, ...]
-    missed: Tuple[str, ...] = ()
-
-
-HEAD = ("seed", "unit", "machine")
-"""What missions have in common that are counted together."""
-
 READY = 60.0
 """Seconds within which the second recorder has to be there."""
 
-WORD = "the word"
-"""How what was missed begins where it is no order."""
-
-BAD = ("wrong", "no end")
-"""The words of OUTCOMES that must not be."""
-
-OUTCOMES = {
-    "goal": "the goal was reached, and each step was the strategy's or the world's",
-    "stopped": "stopped safely, with a reason",
-    "lost": "a deadline has passed, and before that a robot was late by its model (its simulator was dead)",
-    "wrong": "a step, a command or an order that the strategy does not hold, or a verdict that is not true",
-    "no end": "no verdict in time",
-}
+def text_of(name: str) -> str:
+    """Return the text of a scenario: a file of scenarios/, a lab scenario (lab/17), a member of a family (corridor/4).
+    Raises SystemExit where there is none."""
+    kind, _, size = name.rpartition("/")
+    made = {**{family.name: family.text for family in (*FAMILIES, *ORDINARY)}, "lab": lab_scenario}
+    file = ROOT / "scenarios" / f"{name}.pur"
+    if kind in made and size.isdecimal():
+        return made[kind](int(size))
+    if not file.is_file():
+        raise SystemExit(f"there is no scenario {name}: name a file of scenarios/, lab/SEED or FAMILY/SIZE")
+    return file.read_text(encoding="utf-8")
 
 
 def draw(seed: int, number: int, nodes: Sequence[str], length: float) -> List[Kill]:
@@ -129,8 +112,9 @@ def start_second(there: World, file: Path, game: Game) -> None:
         time.sleep(0.05)
 
 
-def play(there: World, workspace: Path, kills: Sequence[Kill], bag: Path, unit: float, seed: int) -> None:
-    """Play one mission to its end, with these kills; it is recorded in `bag`."""
+def play(there: World, workspace: Path, kills: Sequence[Kill], bag: Path, unit: float, seed: int, ends: bool) -> None:
+    """Play one mission to its end, with these kills; it is recorded in `bag`. One that does not end by itself is ended
+    after UNTIL time units."""
     bringup = next((workspace / "src").glob("*_bringup")).name
     given = f"record:={bag} time_unit:={unit} seed:={seed}"
     command = f"source {workspace}/devel/setup.bash; exec roslaunch --skip-log-check {bringup} mission.launch {given}"
@@ -148,8 +132,13 @@ def play(there: World, workspace: Path, kills: Sequence[Kill], bag: Path, unit: 
             if process:
                 os.kill(process, signal.SIGKILL)
     with contextlib.suppress(subprocess.TimeoutExpired):
+        if not ends:
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                launch.wait(max(0.0, begin + UNTIL * unit - time.monotonic()))
+            # again and again: the observer may be away
+            there.start("finish", ["rostopic", "pub", "-r", "1", f"/{EVENTS}", "std_msgs/String", FINISH])
         launch.wait(max(0.0, deadline - time.monotonic()))
-    there.stop("roslaunch")
+    there.stop(*(name for name in ("roslaunch", "finish") if name in there.running))
 
 
 def judge(bag: Path, second: Path, journals: Iterable[Path], game: Game) -> Tuple[str, str, Tuple[str, ...]]:
@@ -189,11 +178,12 @@ def mission(
     """Play and judge one mission on a master of its own; one without goal leaves its files in `keep`."""
     scenario, workspace, game = workspaces[number % len(workspaces)]
     nodes = ["observer", "UI", "simulator", *(folder.name for folder in (workspace / "src").glob("controller*"))]
-    kills = draw(seed, number, sorted(nodes), 20.0 * unit)
+    ends = bool(game.objective.goal)
+    kills = draw(seed, number, sorted(nodes), (40.0 if scenario in OTHERS else 20.0) * unit)
     with tempfile.TemporaryDirectory(prefix="kills_") as home, world(Path(home)) as there:
         bag, second = Path(home) / "mission.bag", Path(home) / "second.bag"
         start_second(there, second, game)
-        play(there, workspace, kills, bag, unit, number)
+        play(there, workspace, kills, bag, unit, number, ends)
         there.stop("second")
         journals = sorted(path for path in Path(home).glob("pursue/*/journal-*") if path.suffix != MARK)
         found, why, missed = judge(bag, second, journals, game)
@@ -212,8 +202,8 @@ def measure(
     with tempfile.TemporaryDirectory(prefix="kills_ws_") as home, ThreadPoolExecutor(jobs) as pool:
         workspaces = []
         for name in names:
-            text = (ROOT / "scenarios" / f"{name}.pur").read_text(encoding="utf-8")
-            workspace = generated(text, Path(name).name, Path(home) / Path(name).name, RULES)
+            short = name.replace("/", "_")
+            workspace = generated(text_of(name), short, Path(home) / short, RULES)
             workspaces.append((name, workspace, game_of(from_workspace(workspace))))
         for each in pool.map(lambda number: mission(number, seed, workspaces, unit, keep), numbers):
             kills = ", ".join(each.kills)
@@ -221,104 +211,6 @@ def measure(
             for what in each.missed:
                 print(f"     both recorders have missed: {what}", flush=True)
             yield each
-
-
-def results(done: Sequence[Mission]) -> Dict[str, Any]:
-    """Return what is kept of these missions in kills.json."""
-    table: Dict[str, Dict[str, int]] = {}
-    for each in done:
-        row = table.setdefault(each.scenario, dict.fromkeys(OUTCOMES, 0))
-        row[each.outcome] += 1
-    reasons = collections.Counter(each.why for each in done if each.outcome in ("stopped", "lost"))
-    kills = sum(len(each.kills) for each in done)
-    bad = [each._asdict() for each in done if each.outcome in BAD]
-    missed = [{"number": each.number, "missed": each.missed} for each in done if each.missed]
-    return {
-        "missions": len(done),
-        "kills": kills,
-        "table": table,
-        "reasons": dict(reasons.most_common()),
-        "bad": bad,
-        "missed": missed,
-    }
-
-
-def mismatch(before: Dict[str, Any], head: Dict[str, Any]) -> str:
-    """Return why missions of this seed, unit, machine and first number cannot be added to what was found before; ""
-    if they can."""
-    if head["parts"][0]["first"] == before["missions"] and all(head[key] == before[key] for key in HEAD):
-        return ""
-    there = f"{before['missions']} missions, " + ", ".join(f"{key} {before[key]}" for key in HEAD)
-    return f"missions from {head['parts'][0]['first']} on cannot be added to what is there: {there}"
-
-
-def together(before: Dict[str, Any], found: Dict[str, Any]) -> Dict[str, Any]:
-    """Return the results of missions that were played before, and of the missions that follow them."""
-    names = {**before["table"], **found["table"]}
-    none = dict.fromkeys(OUTCOMES, 0)
-    rows = {name: (before["table"].get(name, none), found["table"].get(name, none)) for name in names}
-    reasons = collections.Counter(before["reasons"]) + collections.Counter(found["reasons"])
-    return {
-        **before,
-        **{key: before[key] + found[key] for key in ("missions", "kills", "bad", "missed", "parts")},
-        "table": {name: {head: old[head] + new[head] for head in OUTCOMES} for name, (old, new) in rows.items()},
-        "reasons": dict(reasons.most_common()),
-    }
-
-
-RECORDERS = (
-    "Two recorders that share nothing record each mission: the workspace's own, and `rosbag record`, which is there",
-    "before all nodes. What either has was published. A word that both have missed was published if the observer's",
-    "journal has it as heard; the judge then does not know who published it. An order that both have missed was given",
-    "if the robot's side has acknowledged its number. Any other order or word that is missing is wrong, and so",
-    "is an order without acknowledgement in a mission that was won, where one was needed. Where both have missed how a",
-    "mission ended, it was won if they have the state of its goal and the observer's `Finish!` behind it.",
-)
-"""What the page says of the recorders."""
-
-
-def _part_line(part: Dict[str, Any]) -> str:
-    commit = f" with commit {part['commit']}" if part["commit"] else ""
-    return f"- missions {part['first']} to {part['first'] + part['missions'] - 1}: played {part['date']}{commit}"
-
-
-def _missed_line(missed: Sequence[Dict[str, Any]]) -> str:
-    found = [what for each in missed for what in each["missed"]]
-    words = sum(what.startswith(WORD) for what in found)
-    counts = f"words {words}, orders {len(found) - words}"
-    return f"both recorders have missed what was published in {len(missed)} of them: {counts}."
-
-
-def page(found: Dict[str, Any]) -> str:
-    """Return the page docs/kills.md."""
-    heads = list(OUTCOMES)
-    lines = [
-        "# Missions whose nodes are killed",
-        "",
-        "Written by `python -m benchmarks.kills --out docs`. Each mission runs on a ROS master of its own. One to five",
-        "times a random node (observer, controllers, simulator, UI) is killed with SIGKILL; roslaunch starts it again",
-        "after a second. The mission is recorded, and judged from the recording and the workspace's strategy alone, by",
-        "what `pursue-gen replay` does.",
-        "",
-        *RECORDERS,
-        "",
-        f"{found['missions']} missions with {found['kills']} kills, seed {found['seed']}, {found['unit']} s per time",
-        f"unit, reaction {float(RULES.reaction)}; {found['machine']};",
-        _missed_line(found["missed"]),
-        "",
-        *(_part_line(part) for part in found["parts"]),
-        "",
-        *([found["remark"], ""] if found.get("remark") else []),
-        "| scenario | " + " | ".join(heads) + " |",
-        "| --- |" + " --- |" * len(heads),
-        *(f"| {name} | " + " | ".join(str(row[head]) for head in heads) + " |" for name, row in found["table"].items()),
-        "",
-        *(f"- **{head}**: {meaning}." for head, meaning in OUTCOMES.items()),
-    ]
-    if found["reasons"]:
-        lines += ["", "| reason of a stop or a loss | missions |", "| --- | --- |"]
-        lines += [f"| {why.replace('|', '/')} | {count} |" for why, count in found["reasons"].items()]
-    return "\n".join(lines) + "\n"
 
 
 def options() -> argparse.ArgumentParser:
@@ -333,7 +225,8 @@ def options() -> argparse.ArgumentParser:
     parser.add_argument("--keep", type=Path, metavar="DIR", help="copy bags and logs of missions without goal there")
     parser.add_argument("--machine", default=machine(), help="how the results name the machine")
     parser.add_argument("--date", default=datetime.date.today().isoformat(), help="how they give the date (today)")
-    parser.add_argument("scenarios", nargs="*", default=SCENARIOS, metavar="SCENARIO", help="as thesis/scenario_1")
+    what = "as thesis/scenario_1, lab/17, corridor/4"
+    parser.add_argument("scenarios", nargs="*", default=SCENARIOS, metavar="SCENARIO", help=what)
     return parser
 
 

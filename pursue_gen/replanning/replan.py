@@ -21,6 +21,7 @@ from pursue_gen.replanning.start import around, network_from, passed_bounds, sta
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import played
+from pursue_gen.solving.shares import can_be_shared, won_in_shares
 from pursue_gen.solving.without_pauses import verdict_of, won_without_pauses
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits, careful_memory
@@ -67,6 +68,9 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
     start = limits.now()
     options = SolveOptions(limits)
     try:
+        shared = _won_in_shares(network, objective, request.rules.reaction, options)
+        if shared is not None:
+            return _won(shared, network, request, None)
         free = won_without_pauses(network, objective, request.rules.reaction, _LITTLE, options, states or LIMIT)
         if free is not None:
             return _won(free.strategy, network, request, None if states else objective)
@@ -84,6 +88,17 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
         why = _at_limit(limits.since(start)) or f": {problem.diagnostics[0].message}"
         return _lost(f"no plan was found{quoted(why)}")
     return _won(strategy, network, request, None if states else objective)
+
+
+def _won_in_shares(
+    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
+) -> Optional[Strategy]:
+    """A proven strategy in shares that little work finds; None where it finds none."""
+    if not can_be_shared(network, objective):
+        return None
+    little = replace(options, limits=replace(options.limits, work=_LITTLE))
+    found = won_in_shares(network, objective, reaction, little)
+    return None if found is None else found.strategy
 
 
 def _verdict(network: Network, objective: Objective, reaction: Fraction, limits: Limits) -> Verdict:
@@ -166,5 +181,5 @@ def _cannot_be_met(game: Network, request: Request) -> str:
 def _objectives(scenario: Scenario, some: Optional[Sequence[StatedObjective]] = None) -> str:
     """What is to be met, or these of it, in the author's words."""
     lines = scenario.text.split("\n")
-    found = [part.span.line for part in some or (*scenario.reach, *scenario.safety)]
+    found = dict.fromkeys(part.span.line for part in some or (*scenario.reach, *scenario.safety))
     return " and ".join(f"'{quoted(lines[line - 1].split('//')[0].strip())}'" for line in found)

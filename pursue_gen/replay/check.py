@@ -280,6 +280,8 @@ class _Checker:
 
     def _end(self, last: SystemState) -> None:
         goal, bad = self._game.objective.goal, self._game.objective.bad
+        overdue = self.moves.overdue(place_of(last), self._clocks_at(last))
+        late = {name: by for name, by in overdue.items() if by > self._tolerance}
         if last.status == WON:
             for name, location in goal:
                 if last.locations[name] != location:
@@ -287,12 +289,13 @@ class _Checker:
             for name, location in bad:
                 if last.locations[name] == location:
                     self._report(FAULT, "end", last, f"its status is won, but {name} is {location}")
-        if last.status not in (*ENDED, WAITING):
-            overdue = self.moves.overdue(place_of(last), self._clocks_at(last))
-            for agent, late in overdue.items():
-                if late > self._tolerance:
-                    text = f"{agent} was {late:.2f} time units late in {last.locations[agent]} when the recording ended"
-                    self._report(WORLD, "late", last, text)
+                elif name in late:
+                    text = f"its status is won, but {name} was at its deadline {late[name]:.2f} time units before"
+                    self._report(FAULT, "end", last, text)
+        elif last.status not in (*ENDED, WAITING):
+            for agent, by in late.items():
+                text = f"{agent} was {by:.2f} time units late in {last.locations[agent]} when the recording ended"
+                self._report(WORLD, "late", last, text)
 
     def _is_at_goal(self, state: SystemState) -> bool:
         """True where the goal is reached: nothing is left but acknowledgements of orders."""

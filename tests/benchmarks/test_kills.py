@@ -11,9 +11,14 @@ from typing import Any, Dict, List, Sequence, Tuple
 import pytest
 
 from benchmarks import kills
-from benchmarks.kills import OUTCOMES, Mission, draw, judge, mismatch, outcome, page, results, together
+from benchmarks.kills import draw, judge, outcome, text_of
+from benchmarks.kills_page import OTHERS, OUTCOMES, RULES, Mission, mismatch, page, results, together
+from benchmarks.lab_scenarios import lab_scenario
+from benchmarks.ros_world import ROOT
+from pursue_gen.language import parse
 from pursue_gen.replay import Findings
 from pursue_gen.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
+from pursue_gen.solving.solution import solve_scenario
 from tests.replay.recordings import PLAY, game, mission, write_bag, write_journal
 
 NODES = ("UI", "controller_bot1", "observer", "simulator")
@@ -184,3 +189,21 @@ def test_the_page_counts_each_outcome_and_names_the_reasons_of_stops() -> None:
     assert "| a/b | 1 |" in text
     assert all(f"**{head}**" in text for head in OUTCOMES)
     assert max(map(len, text.splitlines())) <= 120
+
+
+@pytest.mark.parametrize("name", sorted(set(OTHERS) - {"lab/16"}))
+def test_the_strategies_of_the_others_are_what_the_page_says(name: str) -> None:
+    scenario = parse(text_of(name), "story.pur", "story")
+    strategy = solve_scenario(scenario, RULES).strategy
+    for word, parts in (("shares", strategy.shares), ("order of passage", strategy.passages)):
+        assert (word in OTHERS[name]) == bool(parts)
+    assert f"- {name}: {OTHERS[name]}." in page(made(0, [Mission(0, name, "goal", "", ())]))
+
+
+def test_a_scenario_is_named_by_its_file_its_seed_or_its_size() -> None:
+    assert text_of("lab/17") == lab_scenario(17)
+    file = ROOT / "scenarios" / "thesis" / "scenario_1.pur"
+    assert text_of("thesis/scenario_1") == file.read_text(encoding="utf-8")
+    for unknown in ("lab/first", "thesis/scenario_9", "corridor"):
+        with pytest.raises(SystemExit, match=f"there is no scenario {unknown}: name a file of scenarios/, lab/SEED or"):
+            text_of(unknown)

@@ -229,3 +229,26 @@ def test_the_journal_knows_who_has_stayed_too_long() -> None:
     assert isinstance(journal, Journal)
     record = reconstruct(journal, Moves(mission.game.network), mission.game.objective)
     assert by_number(record.states) == by_number(mission.states)
+
+
+BELL = """\
+poi "hall"
+poi "room"
+connect hall and room distance 3
+event "ring"
+event "answer" location room duration 1
+agent "bot" controllable mobile 1 location hall can_do answer
+agent "guest" location room can_do ring
+objective: if ring then answer within 20
+"""
+
+
+@pytest.mark.parametrize(("later", "expected"), [(19.0, []), (22.0, ["end"])])
+def test_a_mission_that_somebody_ends_is_not_won_where_a_deadline_has_passed(later: float, expected: List[str]) -> None:
+    mission = Recorded(BELL, 1, [(3.0, "ring")])
+    mission.run()
+    rung = next(number for number, state in enumerate(mission.states) if state.event == "ring")
+    last = mission.states[rung]
+    ended = {clock: value + later for clock, value in last.clocks.items()}
+    mission.states[rung + 1 :] = [last._replace(stamp=last.stamp + later * last.unit, clocks=ended, status="won")]
+    assert [each for each in kinds(mission.found(), FAULT) if each == "end"] == expected
