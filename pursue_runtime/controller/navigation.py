@@ -273,8 +273,17 @@ class Navigation:
 
     def _may_go(self, trip: Trip) -> bool:
         """Return True if the robot may get a goal for this trip."""
-        wanted = self._view.returning if trip.is_return else self._view.running
+        if trip.is_return:
+            wanted = self._view.returning
+        else:
+            wanted = self._view.running or (self._may_begin and not trip.is_sent)
         return wanted and not (self._view.held or trip.waits or trip.has_arrived)
+
+    @property
+    def _may_begin(self) -> bool:
+        """Return True if the robot may begin what was decided; also while the mission holds, as the others take it that
+        the robot has begun, but for one that is in trouble."""
+        return self._view.running or not (self._view.lost or self._view.displaced)
 
     def _goal_due_at(self, trip: Trip) -> float:
         """Return when the goal is due: a robot that is being moved is sent back when it stands."""
@@ -290,16 +299,16 @@ class Navigation:
             return self._goal.send_again(now, real)
         if now < self._goal_due_at(trip):
             return None
-        trip.attempts, trip.goal_at = trip.attempts + 1, None
+        trip.attempts, trip.goal_at, trip.is_sent = trip.attempts + 1, None, True
         goal = Goal(f"{self.name}-{trip.movement.location}-{trip.attempts}-{now:.6f}", trip.movement)
         self._goal.send(goal, now, real)
         return goal
 
     def _may_act(self, order: Order, now: float) -> bool:
-        """Return True if the action may be sent: what is done at once has been decided, also if the mission holds."""
-        if not self._is_there(order, self._view):
+        """Return True if the action may be sent: it has been decided, also if the mission holds."""
+        if not (self._is_there(order, self._view) and self._is_known(now)):
             return False
-        return self._is_known(now) and (order.at_once or (self._view.running and not self._view.held))
+        return order.at_once or (self._may_begin and not self._view.held)
 
     @staticmethod
     def _is_there(order: Order, view: View) -> bool:

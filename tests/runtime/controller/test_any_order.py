@@ -59,6 +59,7 @@ class Anything:
         self.doing: Optional[str] = None
         self.lists = {"running": True, "held": False, "displaced": False, "returning": False}
         self.acts = 0
+        self.is_new = False
         self.at: Optional[tuple] = None  # type: ignore[type-arg]
         self.show()
 
@@ -75,7 +76,7 @@ class Anything:
         """It happens."""
         kind, value, world = step.kind, step.value, self.world
         if kind == "way" and value != self.way:
-            self.way, self.doing = value, None
+            self.way, self.doing, self.is_new = value, None, True
             self.show()
             world.robot.start(value, world.now)
         elif kind == "stay" and (self.way, self.doing) != (None, value):
@@ -109,7 +110,8 @@ class Anything:
         for goal in goals:
             assert not self.lists["held"]
             if self.way is not None:
-                assert goal.movement == self.way and self.lists["running"]
+                assert goal.movement == self.way and (self.lists["running"] or self.is_new)
+                self.is_new = False
             else:
                 assert self.doing is not None and self.lists["returning"] and goal.movement.place == B
 

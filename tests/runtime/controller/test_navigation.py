@@ -221,14 +221,32 @@ def test_an_end_counts_while_the_mission_holds(results: World) -> None:
     assert results.words == [END]
 
 
-def test_a_goal_waits_while_the_mission_holds() -> None:
+def test_what_was_decided_is_begun_though_the_mission_holds() -> None:
+    """The command of one robot was taken at the moment at which nobody knew what another should do."""
     world = World()
     world.state(running=False)
     world.robot.start(WAY, world.now)
     world.wait(5.0)
-    assert world.goals == []
-    world.state(running=True)
     assert [goal.movement for goal in world.goals] == [WAY]
+    world.state(running=True)
+    world.wait(5.0)
+    assert len(world.goals) == 1
+    world.stay(doing="e", running=False)
+    world.order("e", "doing_e_in_b")
+    world.wait(0.1)
+    assert "e" in world.actions
+
+
+def test_a_robot_that_is_lost_begins_nothing_while_the_mission_holds() -> None:
+    world = World()
+    world.state(running=False, lost=True)
+    world.robot.start(WAY, world.now)
+    world.wait(5.0)
+    assert world.goals == []
+    world.stay(doing="e", running=False, lost=True)
+    world.order("e", "doing_e_in_b")
+    world.wait(5.0)
+    assert world.actions == []
 
 
 def test_who_left_for_elsewhere_is_not_sent_on_the_old_way(results: World) -> None:
