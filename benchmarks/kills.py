@@ -55,6 +55,9 @@ class Kill(NamedTuple):
     node: str
 
 
+HELD = "the mission holds"
+"""How what replay says of a hold begins."""
+
 READY = 60.0
 """Seconds within which the second recorder has to be there."""
 
@@ -169,7 +172,9 @@ def outcome(findings: Findings) -> Tuple[str, str]:
     if findings.status != "lost":
         return "no end", findings.status
     late = [each for each in findings.findings if (each.level, each.kind) == (WORLD, "late")]
-    return ("lost", f"{late[0].text}; {findings.reason}") if late else ("wrong", "the mission was lost")
+    held = [each for each in findings.findings if each.kind == "hold"]  # it holds, or goes on
+    why = late[:1] or [each for each in held[-1:] if each.text.startswith(HELD)]
+    return ("lost", f"{why[0].text}; {findings.reason}") if why else ("wrong", "the mission was lost")
 
 
 def mission(

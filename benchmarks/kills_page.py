@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import collections
+import textwrap
 from fractions import Fraction
-from typing import Any, Dict, NamedTuple, Sequence, Tuple
+from typing import Any, Dict, List, NamedTuple, Sequence, Tuple
 
 from pursue_gen.solving.rules import Rules
 
@@ -49,7 +50,8 @@ BAD = ("wrong", "no end")
 OUTCOMES = {
     "goal": "the goal was reached, or all was kept until the end, and each step was the strategy's or the world's",
     "stopped": "stopped safely, with a reason",
-    "lost": "a deadline has passed, and before that a robot was late by its model (its simulator was dead)",
+    "lost": "a deadline has passed; before that a robot was late by its model (its simulator was dead), or the mission "
+    "held, as there was no plan yet (its controller had been dead)",
     "wrong": "a step, a command or an order that the strategy does not hold, or a verdict that is not true",
     "no end": "no verdict in time",
 }
@@ -117,6 +119,10 @@ _OTHERS = (
 """What the page says of them."""
 
 
+def _wrapped(item: str) -> List[str]:
+    return textwrap.wrap(item, 120, subsequent_indent="  ")
+
+
 def _part_line(part: Dict[str, Any]) -> str:
     commit = f" with commit {part['commit']}" if part["commit"] else ""
     return f"- missions {part['first']} to {part['first'] + part['missions'] - 1}: played {part['date']}{commit}"
@@ -153,7 +159,7 @@ def page(found: Dict[str, Any]) -> str:
         "| --- |" + " --- |" * len(heads),
         *(f"| {name} | " + " | ".join(str(row[head]) for head in heads) + " |" for name, row in found["table"].items()),
         "",
-        *(f"- **{head}**: {meaning}." for head, meaning in OUTCOMES.items()),
+        *(line for head, meaning in OUTCOMES.items() for line in _wrapped(f"- **{head}**: {meaning}.")),
     ]
     others = [f"- {name}: {has}." for name, has in OTHERS.items() if name in found["table"]]
     if others:

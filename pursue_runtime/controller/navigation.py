@@ -273,10 +273,8 @@ class Navigation:
 
     def _may_go(self, trip: Trip) -> bool:
         """Return True if the robot may get a goal for this trip."""
-        if trip.is_return:
-            wanted = self._view.returning
-        else:
-            wanted = self._view.running or (self._may_begin and not trip.is_sent)
+        may_go = self._view.running or (self._may_begin and not trip.is_sent)
+        wanted = self._view.returning if trip.is_return else may_go
         return wanted and not (self._view.held or trip.waits or trip.has_arrived)
 
     @property

@@ -14,8 +14,8 @@ STATUS_WAIT = 2.0
 
 @dataclass
 class Trip:
-    """A movement, or the way back to where the state has the robot; `attempts` is how many goals it took, `is_sent` says
-    that this node has sent one.
+    """A movement, or the way back to where the state has the robot; `attempts` is how many goals it took, `is_sent`:
+    this node has sent one.
 
     Its goal may be cancelled by another node. `cancelled` is that answer until it is known whether a goal of the other
     node has replaced ours (`replaced` counts how often), which is at `decided_at` at the latest.

@@ -52,6 +52,7 @@ class Planning:
 
     `excused`: the agents on which the plan in force does not rely; `avoided`: the ways along which it sends nobody;
     `not_assumed`: the variables of the assumptions on which it does not rely;
+    `lead_time`: seconds from a request to the begin of its plan, more once a plan came too late, until one is in force;
     `no_plan_reason`: why there is no plan from here; `searched`: the seconds of real time that the planner has needed
     so far, 0 while they are within ~planning_limit.
     """
@@ -96,8 +97,9 @@ class Planning:
         """Request a plan from this position, unless there is a request, a proposal or a failure for this `place`."""
         place = place, excused, ways.revision()
         if place != self._place:
+            known = self.lead_time
             self.reset()
-            self._place = place
+            self._place, self.lead_time = place, known
         elif self.request or self.proposal or self.no_plan_reason:
             return
         if self._attempts == ATTEMPTS:

@@ -67,6 +67,15 @@ def test_a_mission_is_lost_by_right_where_a_robot_was_late_by_its_model_before()
     assert outcome(replace(lost, findings=(late, replace(late, level=FAULT))))[0] == "wrong"
 
 
+def test_a_mission_is_lost_by_right_while_it_holds_for_a_plan() -> None:
+    holds = Finding(NOTE, "hold", 7, "the mission holds: the moment at which the strategy goes on has passed")
+    lost = replace(findings("lost", reason="a deadline has passed"), findings=(holds,))
+    assert outcome(lost) == ("lost", f"{holds.text}; a deadline has passed")
+    goes_on = replace(holds, seq=9, text="the mission goes on")
+    assert outcome(replace(lost, findings=(holds, goes_on))) == ("wrong", "the mission was lost")
+    assert outcome(replace(lost, findings=(holds, replace(holds, level=FAULT, kind="untold"))))[0] == "wrong"
+
+
 @pytest.mark.parametrize("level", [FAULT, UNRECORDED])
 @pytest.mark.parametrize("kind", ["unsaid", "untold", "command", "gap", "unacknowledged"])
 def test_no_kind_of_fault_is_passed_over(kind: str, level: str) -> None:

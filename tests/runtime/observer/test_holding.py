@@ -148,6 +148,17 @@ def test_a_plan_that_comes_too_late_is_made_again_with_more_time_ahead() -> None
     assert states[-1].status == "stopped" and "too late" in states[-1].reason
 
 
+def test_an_event_does_not_make_it_forget_how_long_a_plan_takes() -> None:
+    made = uncovered()
+    ahead = made.mission.plan_request.ahead
+    assert planned(made, NOWHERE, 7.0) == []
+    longer = made.mission.plan_request.ahead
+    made.hear("thief:thief_leaves", 11.0)
+    made.hear("going_a_to_b:_blocked_", 11.5)
+    assert made.mission.plan_request.locations["thief"] == "gone" and made.mission.plan_request.blocked
+    assert made.mission.plan_request.ahead == longer > ahead
+
+
 def test_where_there_is_no_plan_it_stops_and_says_why() -> None:
     made = uncovered()
     (state,) = made.mission.on_no_plan(made.mission.plan_request.number, "the thief is faster", 4.5)
