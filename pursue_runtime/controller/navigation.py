@@ -89,7 +89,7 @@ class Navigation:
     @property
     def is_open(self) -> bool:
         """Return True while the robot may get goals and actions."""
-        return (self._view.running or self._view.returning) and not self._view.held
+        return (self._may_begin or self._view.returning) and not self._view.held
 
     def is_placed(self, now: float) -> bool:
         """Return True if the robot is known to be where the state has it, or the state says that it is not."""

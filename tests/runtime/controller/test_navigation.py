@@ -227,7 +227,7 @@ def test_what_was_decided_is_begun_though_the_mission_holds() -> None:
     world.state(running=False)
     world.robot.start(WAY, world.now)
     world.wait(5.0)
-    assert [goal.movement for goal in world.goals] == [WAY]
+    assert [goal.movement for goal in world.goals] == [WAY] and world.robot.is_open
     world.state(running=True)
     world.wait(5.0)
     assert len(world.goals) == 1
@@ -242,7 +242,7 @@ def test_a_robot_that_is_lost_begins_nothing_while_the_mission_holds() -> None:
     world.state(running=False, lost=True)
     world.robot.start(WAY, world.now)
     world.wait(5.0)
-    assert world.goals == []
+    assert world.goals == [] and not world.robot.is_open
     world.stay(doing="e", running=False, lost=True)
     world.order("e", "doing_e_in_b")
     world.wait(5.0)
