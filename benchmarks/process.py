@@ -50,7 +50,11 @@ def run(
     Raises OSError where it cannot be started.
     """
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
-        process = subprocess.Popen(list(command), cwd=str(folder), stdin=subprocess.DEVNULL, stdout=out, stderr=err)
+        # An installed program is compiled, whatever this shell says.
+        environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+        process = subprocess.Popen(
+            list(command), cwd=str(folder), env=environment, stdin=subprocess.DEVNULL, stdout=out, stderr=err
+        )
         with contextlib.suppress(ProcessLookupError):
             whole = max(1, math.ceil(seconds))
             resource.prlimit(process.pid, resource.RLIMIT_CPU, (whole, whole + 1))

@@ -13,12 +13,12 @@ on them: they may only have kept the environment from acting.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import AbstractSet, Iterable, List, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Dict, Iterable, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 from pursue_gen.proof.live import Places, commanded, live
 from pursue_gen.proof.moves import Arena, Bound
 from pursue_gen.proof.zones import without
-from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.synthesis.strategy import Strategy, Zone
 from pursue_gen.tga.hidden import is_loosened, why_not_hidden
 from pursue_gen.tga.network import Automaton, Edge, Network, Objective
 from pursue_gen.tga.part import clocks_of, part_of, start_of
@@ -44,8 +44,9 @@ def named_part(network: Network, strategy: Strategy) -> Network:
 def proven_part(network: Network, objective: Objective, strategy: Strategy) -> Tuple[Network, str]:
     """The same without dead edges, and why what it leaves out may matter; "" if it cannot."""
     part, why = _named_of(network, objective, strategy)
+    compared = _compared(strategy)
     for clock in strategy.left_out_clocks:
-        why = why or _why_a_clock_matters(clock, part, strategy)
+        why = why or _why_a_clock_matters(clock, part, compared)
     return (part, why) if why else (without_clocks(part, strategy.left_out_clocks), "")
 
 
@@ -59,12 +60,13 @@ def _named_of(network: Network, objective: Objective, strategy: Strategy) -> Tup
     return part, why_it_matters(alive, objective, part, extent.places)
 
 
-def _why_a_clock_matters(clock: str, part: Network, strategy: Strategy) -> str:
-    """Why the controller may need a clock; "" where bounds on it do nothing but keep the environment from acting.
+def _why_a_clock_matters(clock: str, part: Network, compared: AbstractSet[Optional[str]]) -> str:
+    """Why the controller, which compares these clocks, may need a clock; "" where bounds on it do nothing but keep the
+    environment from acting.
 
     Each bound on it has to be a lower one, on a move that the environment begins and is never obliged to make.
     """
-    if clock in _compared(strategy):
+    if clock in compared:
         return f"it compares {clock}, which it leaves out"
     for automaton in part.automata:
         stays = {location.name for location in automaton.locations if location.invariant}
@@ -86,8 +88,13 @@ def _why_a_clock_matters(clock: str, part: Network, strategy: Strategy) -> str:
 
 def _compared(strategy: Strategy) -> Set[Optional[str]]:
     """The clocks that the strategy compares."""
-    zones = (zone for block in strategy.blocks for zone in (*block.wait, *(z for c in block.commands for z in c.zones)))
-    return {name for zone in zones for constraint in zone for name in (constraint.left, constraint.right)}
+    # Most zones and constraints stand in many places: each is looked at once.
+    zones: Dict[int, Zone] = {}
+    for block in strategy.blocks:
+        for some in (block.wait, *(command.zones for command in block.commands)):
+            zones.update((id(zone), zone) for zone in some)
+    constraints = {id(constraint): constraint for zone in zones.values() for constraint in zone}
+    return {name for constraint in constraints.values() for name in (constraint.left, constraint.right)}
 
 
 def with_clocks_of(part: Network, network: Network, strategy: Strategy) -> Network:

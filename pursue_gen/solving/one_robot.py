@@ -20,19 +20,23 @@ from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.tga.pauses import acting_at_most
 
-_WORK, _STATES = 200_000_000, 100_000
-"""The work that is spent on all games, and the discrete states that each may have."""
+_WORK = 200_000_000
+"""The work that is spent on all games."""
+
+_STATE = 2_000
+"""A discrete state of one of them costs as much as so much work."""
 
 _SHARE = 0.4
 """The part of what is left that one of them gets."""
 
 
 def lost_for_one(
-    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
+    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions, work: int = _WORK
 ) -> Tuple[Objective, ...]:
     """Promises that only one robot can keep and that it cannot keep together, as few as are found; () where so much
     work finds none."""
-    budget = Budget(replace(options.limits, work=_WORK, states=_STATES), options.progress, options.engine)
+    limits = replace(options.limits, work=work, states=work // _STATE)
+    budget = Budget(limits, options.progress, options.engine)
     robots = commanded_agents(network)
     for robot in robots:
         others = frozenset(robots) - {robot}

@@ -37,10 +37,11 @@ from pursue_gen.tga.watchers import Watcher, watched_by, with_watchers
 
 
 @dataclass(frozen=True)
-class _Effort:
+class Effort:
     """How hard shares are looked for: `work` for all games of groups, `game` for one of them, which has at most so many
     discrete `states` and `clocks` (of more, zones cost more than is counted). `thorough`: games that are not won with
-    some hidden are played with all of them as well; `free`: they are played without the pauses of the environment.
+    some hidden are played with all of them as well; `free`: they are played without the pauses of the environment;
+    `joins`: groups that cannot be played beside each other are joined.
     """
 
     work: int
@@ -49,14 +50,18 @@ class _Effort:
     clocks: int = 6
     thorough: bool = False
     free: bool = True
+    joins: bool = True
 
 
 EFFORTS = (
-    _Effort(80_000_000, game=4_000_000),
-    _Effort(200_000_000),
-    _Effort(60_000_000, thorough=True),
-    _Effort(60_000_000, thorough=True, free=False),
-    _Effort(300_000_000, game=120_000_000, states=200_000, clocks=8),
+    Effort(10_000_000, game=150_000, joins=False),
+    Effort(30_000_000, game=1_000_000),
+    Effort(80_000_000, game=4_000_000),
+    Effort(40_000_000),
+    Effort(200_000_000),
+    Effort(60_000_000, thorough=True),
+    Effort(60_000_000, thorough=True, free=False),
+    Effort(300_000_000, game=120_000_000, states=200_000, clocks=8),
 )
 """One after the other, until one wins: few groups that need more than the first are won with little work."""
 
@@ -82,6 +87,19 @@ class _Group:
     bad: Tuple[Place, ...]
 
 
+_Game = Tuple[Network, Tuple[Place, ...], Tuple[Watcher, ...], bool]
+"""A group's game, what it avoids there, the watchers that it follows, and whether it is played without pauses."""
+
+
+class Known:
+    """Strategies of games, games that are known to be lost, whatever the effort, and what all of it took."""
+
+    def __init__(self) -> None:
+        self.won: Dict[_Game, Strategy] = {}
+        self.lost: Set[_Game] = set()
+        self.stats: List[Stats] = []
+
+
 def can_be_shared(network: Network, objective: Objective) -> bool:
     """True for a safety objective with several promises, places to be avoided, that several robots may keep."""
     return objective.kind is Kind.SAFETY and len(objective.bad) > 1 and len(commanded_agents(network)) > 1
@@ -92,32 +110,30 @@ def won_in_shares(
     objective: Objective,
     reaction: Fraction,
     options: SolveOptions,
-    efforts: Sequence[_Effort] = EFFORTS,
+    efforts: Sequence[Effort] = EFFORTS,
+    known: Optional[Known] = None,
 ) -> Optional[Found]:
-    """A proven strategy in shares; None where none is found with so much work, or less if the options say so."""
+    """A proven strategy in shares; None where none is found with so much work, or less if the options say so.
+
+    `known`: what less effort has found, and what this one finds.
+    """
     start, left = options.limits.now(), options.limits.work or sum(effort.work for effort in efforts)
-    won: _Won = {}
+    known = Known() if known is None else known
     for effort in efforts:
         work = min(effort.work, left)
         if work < 1 or not (effort.free or pauses(network)):
             continue
-        search = _Search(network, objective, reaction, options.since(start), replace(effort, work=work), won)
+        search = _Search(network, objective, reaction, options.since(start), replace(effort, work=work), known)
         with suppress(LimitHit):
             strategy = search.found()
             if strategy is not None:
-                return Found(strategy, stats_of_all(search.stats))
+                return Found(strategy, stats_of_all(known.stats))
         left -= work - max(0, int(search.budget.work))
     return None
 
 
-_Game = Tuple[Network, Tuple[Place, ...], Tuple[Watcher, ...], bool]
-"""A group's game, what it avoids there, the watchers that it follows, and whether it is played without pauses."""
-
-_Won = Dict[_Game, Strategy]
-
-
 class _Search:
-    """`won`: the strategies that are known from less effort."""
+    """`known`: what is known from less effort."""
 
     def __init__(
         self,
@@ -125,8 +141,8 @@ class _Search:
         objective: Objective,
         reaction: Fraction,
         options: SolveOptions,
-        effort: _Effort,
-        won: _Won,
+        effort: Effort,
+        known: Known,
     ) -> None:
         self._network, self._objective, self._reaction = network, objective, reaction
         self._options, self._effort = options, effort
@@ -139,11 +155,10 @@ class _Search:
             for edge in automaton.edges:
                 for name, _ in edge.assign:
                     self._setters[name].add(automaton.name)
-        self._won = won
-        self._lost: Set[_Game] = set()
+        self._known = known
+        self._tried: Set[_Game] = set()
         self._watched: Dict[_Group, Tuple[Watcher, ...]] = {}
         self._alone: Dict[_Group, bool] = {}
-        self.stats: List[Stats] = []
 
     def found(self) -> Optional[Strategy]:
         """The first strategy that is found; raises LimitHit where the budget is used up."""
@@ -217,7 +232,7 @@ class _Search:
                 theirs = commanded(blocks)
                 strategy = self._strategy(group, theirs)
                 if strategy is None:
-                    joined = self._joined_with_some(group, before, theirs)
+                    joined = self._joined_with_some(group, before, theirs) if self._effort.joins else None
                     if joined is None:
                         return None
                     met, group, strategy = joined
@@ -268,14 +283,13 @@ class _Search:
         for shown, some in ways:
             game = self._game(group, theirs, shown, some)
             key = game, group.bad, some, self._effort.free and bool(pauses(game))
-            if key not in self._won and key not in self._lost:
-                strategy = self._solved(game, Objective(Kind.SAFETY, bad=_kept(group.bad, some)), free=key[-1])
-                if strategy is None:
-                    self._lost.add(key)
-                else:
-                    self._won[key] = replace(strategy, watchers=some)
-            if key in self._won:
-                return self._won[key]
+            if key not in self._known.won and key not in self._known.lost and key not in self._tried:
+                self._tried.add(key)
+                strategy = self._solved(key, Objective(Kind.SAFETY, bad=_kept(group.bad, some)))
+                if strategy is not None:
+                    self._known.won[key] = replace(strategy, watchers=some)
+            if key in self._known.won:
+                return self._known.won[key]
         return None
 
     def _watchers(self, group: _Group) -> Tuple[Watcher, ...]:
@@ -286,15 +300,17 @@ class _Search:
             self._watched[group] = tuple(w for w in watchers if watched_by(self._network, w) is not None)
         return self._watched[group]
 
-    def _solved(self, game: Network, wanted: Objective, free: bool) -> Optional[Strategy]:
+    def _solved(self, key: _Game, wanted: Objective) -> Optional[Strategy]:
+        game, *_, free = key
         share = min(1.0, self._effort.game / max(1, self.budget.work))
         guessed = self._guessed(game, wanted, share / 4, free) if len(wanted.bad) > 1 else None
         if guessed is not None or len(game.clocks) > self._effort.clocks:
             return guessed
         try:
             verdict = self.budget.verdict(game, wanted, self._reaction, share, without_pauses=free)
-            self.stats.append(verdict.stats)
+            self._known.stats.append(verdict.stats)
             if verdict.strategy is None:
+                self._known.lost.add(key)
                 return None
             how = self._reaction, verdict.ranks, self._options
             return without_hidden(prove(game, wanted, verdict.strategy, *how, otherwise=verdict.cautious))
@@ -308,7 +324,7 @@ class _Search:
         if found is None:
             return None
         strategy, stats = found
-        self.stats.append(stats)
+        self._known.stats.append(stats)
         with suppress(NotProven, LimitHit):
             proven = prove(game, wanted, strategy, self._reaction, options=self._options, closed=True)
             return without_hidden(proven)

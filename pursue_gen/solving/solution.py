@@ -11,6 +11,7 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit, Lost, NotProven
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.worst_case import LIMIT, with_counter, worst_case
+from pursue_gen.solving.attempts import decided_in_rounds
 from pursue_gen.solving.crowds import has_parts, little_work, won_by_some, works_in_parallel
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.least_time import Guarantee, bounds, fastest, unscaled
@@ -22,14 +23,12 @@ from pursue_gen.solving.lost_promises import (
     promises,
     watched,
 )
-from pursue_gen.solving.one_robot import lost_for_one
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.passages import crowd_of, won_by_passages
-from pursue_gen.solving.policies import won_by_policy
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL, Rules, played
-from pursue_gen.solving.shares import EFFORTS, can_be_shared, won_in_shares
+from pursue_gen.solving.shares import can_be_shared
 from pursue_gen.solving.without_pauses import lost_to_few_calls, verdict_with, won_without_pauses
 from pursue_gen.synthesis.cone import out_of_reach
 from pursue_gen.synthesis.enforced import enforced
@@ -53,9 +52,6 @@ them take long to prove, too."""
 
 _CROWD = 4
 """So many robots that must not be at one place are no easy game: an order of passage is looked for first."""
-
-_FOR_POLICY = 5_000_000
-"""The work that may be spent on simple policies; a tenth of it for several robots together."""
 
 _SLOWER = Fraction(11, 10)
 """So much longer a smaller strategy may take."""
@@ -205,20 +201,9 @@ def _with_little_work(
             return Solution(passed[0], objective, passed[1], reaction)
     if verdict is None and several:
         lost = lost_alone(game, objective, reaction, options.since(start))
-        if lost:
-            return lost
-        found = won_in_shares(game, objective, reaction, options.since(start), EFFORTS[:1]) if shared else None
-        most = _FOR_POLICY // 10 if shared else _FOR_POLICY
-        found = found or won_by_policy(game, objective, reaction, most, options.since(start))
-        if found is not None:
-            return found
-        lost = lost_for_one(game, objective, reaction, options.since(start)) if shared else ()
-        lost = lost or lost_promises(game, objective, reaction, options.since(start))
-        if lost:
-            return lost
-        found = won_in_shares(game, objective, reaction, options.since(start), EFFORTS[1:]) if shared else None
-        if found is not None:
-            return found
+        known = lost or decided_in_rounds(game, objective, reaction, options.since(start))
+        if known:
+            return known
     if verdict is None and rests:
         found = won_without_pauses(game, objective, reaction, work, options.since(start))
         if found is not None:

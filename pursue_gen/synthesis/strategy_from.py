@@ -21,6 +21,11 @@ from pursue_gen.synthesis.strategy import (
 )
 from pursue_gen.zones.dbm import INF, LE_ZERO, constant, is_strict
 
+try:
+    from pursue_gen.synthesis.native import _core
+except ImportError:  # no compiler when the package was installed
+    _core = None  # type: ignore[assignment]
+
 Matrix = Tuple[int, ...]
 
 
@@ -126,8 +131,13 @@ def _zone(game: Game, matrix: Matrix, known: _Known) -> Zone:
     return result
 
 
-def minimal(dim: int, matrix: Sequence[int]) -> List[Bound]:
-    """The bounds (i, j, raw) of a canonical matrix that the others, and clocks being >= 0, do not imply.
+def minimal(dim: int, matrix: Matrix) -> List[Bound]:
+    """The bounds (i, j, raw) of a canonical matrix that the others, and clocks being >= 0, do not imply."""
+    return minimal_in_python(dim, matrix) if _core is None else _core.minimal(dim, matrix)
+
+
+def minimal_in_python(dim: int, matrix: Matrix) -> List[Bound]:
+    """The same without the native engine.
 
     Larsen, Larsson, Pettersson and Yi 1997: clocks at fixed differences form a class; each is bound to the first of its
     class, and between the first ones a bound is left out where a way round is as tight.

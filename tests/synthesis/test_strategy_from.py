@@ -10,7 +10,7 @@ from hypothesis import given
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import Game
 from pursue_gen.synthesis.strategy import Command, Constraint, DiscreteState, Move
-from pursue_gen.synthesis.strategy_from import followed, minimal, to_strategy, zone_text
+from pursue_gen.synthesis.strategy_from import followed, minimal, minimal_in_python, to_strategy, zone_text
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
 from pursue_gen.zones.dbm import Dbm, raw
 from tests.synthesis.zones import DIM, zones
@@ -36,6 +36,7 @@ def _zone(*constraints: Tuple[int, int, int]) -> Dbm:
 @given(zones)
 def test_the_bounds_that_are_kept_make_the_same_zone(zone: Dbm) -> None:
     kept = minimal(DIM, zone.m)
+    assert kept == minimal_in_python(DIM, zone.m)
     assert Dbm.of(DIM, kept) == zone
     for left_out in range(len(kept)):
         assert Dbm.of(DIM, kept[:left_out] + kept[left_out + 1 :]) != zone, "and none of them is too many"

@@ -5,39 +5,9 @@
 #include <limits>
 
 #include "proof/native/arena.hpp"
+#include "zones/native/minimal.hpp"
 
 namespace pursue::proof {
-
-// The bounds of a zone that the others, and clocks being >= 0, do not imply (the twin of strategy_from.minimal: Larsen,
-// Larsson, Pettersson and Yi 1997), row by row.
-template <class Z>
-std::vector<Bound> minimal(const Z& zone, int dim) {
-    const auto fixed = [&](int i, int j) { return zone.at(i, j) + zone.at(j, i) == 2 && (zone.at(i, j) & 1); };
-    std::vector<int> first(dim);
-    std::vector<bool> from_zero(dim, false);
-    for (int i = 0; i < dim; ++i)
-        for (first[i] = 0; first[i] < i && !fixed(i, first[i]);) ++first[i];
-    for (int k = 1; k < dim; ++k)
-        if (zone.at(0, k) == LE_ZERO) from_zero[first[k]] = true;
-    const auto implied = [&](int i, int j) {
-        for (int k = 0; k < dim; ++k) {
-            if (first[k] != k || k == i || k == j) continue;
-            const auto there = zone.at(i, k), on = zone.at(k, j);
-            if (there < INF<typename Z::raw_t> && on < INF<typename Z::raw_t> && add(there, on) <= zone.at(i, j)) return true;
-        }
-        return false;
-    };
-    std::vector<Bound> kept;
-    for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j) {
-            const auto bound = zone.at(i, j);
-            if (i == j || bound >= INF<typename Z::raw_t> || (i == 0 && (bound == LE_ZERO || from_zero[j]))) continue;
-            const bool one_class = first[i] == first[j];
-            const bool keep = one_class ? first[i] == i || first[i] == j : first[i] == i && first[j] == j && !implied(i, j);
-            if (keep) kept.push_back({i, j, bound});
-        }
-    return kept;
-}
 
 // One discrete state's part of a strategy while it gets smaller. Action 0 is to wait, action k + 1 is command k.
 template <class Z>
@@ -140,7 +110,8 @@ class BlockZones {
     // Fewer bounds for each zone of the action; differences go first, then upper bounds, then lower ones.
     void relax_all(std::size_t action) {
         for (Part& part : parts[action]) {
-            std::vector<Bound> kept = minimal(part.zone, dim_);
+            std::vector<Bound> kept;
+            for (const auto& [i, j, bound] : minimal(part.zone, dim_)) kept.push_back({i, j, bound});
             Z zone = part.zone;
             std::vector<Bound> by_worth = kept;
             const auto worth = [](const Bound& b) { return std::array<int, 3>{b.i && b.j ? 0 : b.i ? 1 : 2, b.i, b.j}; };

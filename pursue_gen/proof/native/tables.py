@@ -97,7 +97,7 @@ def tables_of(network: Network, strategy: Strategy) -> Tables:
     if not available():
         raise NotHeld
     for tables in _latest:
-        if tables.network is network and tables.strategy is strategy:
+        if tables.strategy is strategy and tables.network == network:
             return tables
     try:
         made = _Maker(network).tables(strategy)

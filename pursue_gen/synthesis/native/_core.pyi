@@ -1,6 +1,6 @@
 """What the native engine (module.cpp) offers."""
 
-from typing import Any, Callable, Dict, Optional
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 class LimitReached(Exception): ...
 
@@ -24,3 +24,4 @@ def guess(
     wall: bool = False,
     progress: Optional[Callable[[int, int, float, int], None]] = None,
 ) -> Dict[str, Any]: ...
+def minimal(dim: int, matrix: Tuple[int, ...]) -> List[Tuple[int, int, int]]: ...

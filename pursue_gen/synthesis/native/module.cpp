@@ -5,6 +5,7 @@
 #include "forward.hpp"
 #include "reach.hpp"
 #include "safety.hpp"
+#include "zones/native/minimal.hpp"
 
 namespace py = pybind11;
 using namespace pursue;
@@ -239,6 +240,29 @@ py::dict guess(const py::dict& in, double seconds, std::size_t states, std::size
     return sized(game, [&](auto zone) { return guess_with<decltype(zone)>(game, limits); });
 }
 
+// A canonical matrix of Python's numbers, of any size; what 64 bits do not hold is no bound.
+struct Matrix {
+    using raw_t = std::int64_t;
+
+    int dim;
+    std::vector<raw_t> m;
+
+    raw_t at(int i, int j) const { return m[i * dim + j]; }
+};
+
+std::vector<std::tuple<int, int, Matrix::raw_t>> minimal_bounds(int dim, const py::tuple& matrix) {
+    Matrix z{dim, {}};
+    if (dim < 1 || matrix.size() != static_cast<std::size_t>(dim) * dim) throw py::value_error("expected dim * dim bounds");
+    z.m.reserve(matrix.size());
+    for (const auto& bound : matrix) {
+        int overflow = 0;
+        const long long raw = PyLong_AsLongLongAndOverflow(bound.ptr(), &overflow);
+        if (raw == -1 && PyErr_Occurred()) throw py::error_already_set();
+        z.m.push_back(overflow ? INF<Matrix::raw_t> : raw);
+    }
+    return minimal(z, dim);
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_core, module) {
@@ -253,4 +277,5 @@ PYBIND11_MODULE(_core, module) {
     module.def("guess", &guess, py::arg("game"), py::arg("seconds") = 0.0, py::arg("states") = 0,
                py::arg("memory_mib") = 0, py::arg("work") = 0, py::arg("wall") = false, py::arg("progress") = py::none(),
                "Tries simple policies in a compiled safety game, see Engine.guess. Limits as for `solve`.");
+    module.def("minimal", &minimal_bounds, py::arg("dim"), py::arg("matrix"), "See strategy_from.minimal.");
 }

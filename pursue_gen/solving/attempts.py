@@ -1,0 +1,62 @@
+"""Several promises at once: ways to win or to lose them are tried in rounds, each with more work than the last one.
+
+What is decided at all is decided by little work as a rule, but nobody knows which way it is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Optional, Sequence, Tuple, Union
+
+from pursue_gen.solving.found import Found
+from pursue_gen.solving.lost_promises import lost_promises
+from pursue_gen.solving.one_robot import lost_for_one
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.policies import won_by_policy
+from pursue_gen.solving.shares import EFFORTS, Effort, Known, can_be_shared, won_in_shares
+from pursue_gen.tga.network import Network, Objective
+
+
+@dataclass(frozen=True)
+class _Round:
+    """How hard shares are looked for, and the work for policies, for promises that one robot cannot keep together, and
+    whether one or two promises are looked for that are lost. 0, (): that is not tried."""
+
+    shares: Sequence[Effort] = ()
+    policy: int = 0
+    one_robot: int = 0
+    lost: bool = False
+
+
+_SHARED = (
+    _Round(EFFORTS[:1], one_robot=10_000_000),
+    _Round(EFFORTS[1:2], policy=100_000, one_robot=80_000_000),
+    _Round(EFFORTS[2:4], policy=500_000, lost=True),
+    _Round(EFFORTS[4:]),
+)
+"""For promises that several robots may keep."""
+
+_ONE = (_Round(policy=5_000_000, lost=True),)
+"""For those of one robot."""
+
+
+def decided_in_rounds(
+    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
+) -> Union[Found, Tuple[Objective, ...]]:
+    """A proven strategy, or parts of the objective that are lost; () where all rounds find neither."""
+    start, known = options.limits.now(), Known()
+    for each in _SHARED if can_be_shared(network, objective) else _ONE:
+        found: Optional[Found] = None
+        lost: Tuple[Objective, ...] = ()
+        if each.shares:
+            found = won_in_shares(network, objective, reaction, options.since(start), each.shares, known)
+        if found is None and each.policy:
+            found = won_by_policy(network, objective, reaction, each.policy, options.since(start))
+        if found is None and each.one_robot:
+            lost = lost_for_one(network, objective, reaction, options.since(start), each.one_robot)
+        if found is None and not lost and each.lost:
+            lost = lost_promises(network, objective, reaction, options.since(start))
+        if found is not None or lost:
+            return found or lost
+    return ()

@@ -1,0 +1,67 @@
+"""Several promises at once: what wins or loses them is tried in rounds."""
+
+from __future__ import annotations
+
+from typing import Tuple
+
+import pytest
+
+from pursue_gen.language import parse
+from pursue_gen.proof.checker import verify
+from pursue_gen.solving.attempts import decided_in_rounds
+from pursue_gen.solving.found import Found
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.shares import EFFORTS, Known, won_in_shares
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Network, Objective
+from tests.solving.test_one_robot import AVOIDS, FLOOR
+
+REACTION = Rules().reaction
+TWO_PATROLS = FLOOR[: FLOOR.index("objective")] + """
+objective: patrol room1 every 40 by bot1
+objective: patrol room2 every 60 by bot2
+"""
+BOTH_AT_ONE_PLACE = FLOOR[: FLOOR.index("objective")] + """
+objective: patrol room1 every 40 by bot1
+objective: patrol room1 every 40 by bot2
+objective: bot1 never_with bot2 at room1
+"""
+
+
+def game(text: str) -> Tuple[Network, Objective]:
+    scenario = parse(text, "floor.pur", "floor")
+    return played(translate(scenario), Rules()), scenario_objective(scenario)
+
+
+def test_what_is_won_is_proven() -> None:
+    network, objective = game(TWO_PATROLS)
+    found = decided_in_rounds(network, objective, REACTION, SolveOptions())
+    assert isinstance(found, Found)
+    assert verify(network, objective, found.strategy, REACTION).ok
+
+
+@pytest.mark.parametrize("text, parts", [(AVOIDS, ("obj", "obj2")), (FLOOR, ("obj", "obj3"))])
+def test_what_is_lost_is_named(text: str, parts: Tuple[str, ...]) -> None:
+    found = decided_in_rounds(*game(text), REACTION, SolveOptions())
+    assert isinstance(found, tuple)
+    assert [tuple(name for name, _ in part.bad) for part in found] == [parts]
+
+
+def test_games_that_less_effort_decided_are_not_played_again() -> None:
+    network, objective = game(TWO_PATROLS)
+    known = Known()
+    first = won_in_shares(network, objective, REACTION, SolveOptions(), EFFORTS[:1], known)
+    won, lost = dict(known.won), set(known.lost)
+    second = won_in_shares(network, objective, REACTION, SolveOptions(), EFFORTS[1:2], known)
+    assert first is not None and second is not None
+    assert second.strategy == first.strategy
+    assert (known.won, known.lost) == (won, lost), "and nothing new had to be looked at"
+    assert second.stats == first.stats
+
+
+def test_groups_that_stand_in_each_others_way_are_joined_with_more_effort() -> None:
+    network, objective = game(BOTH_AT_ONE_PLACE)
+    assert won_in_shares(network, objective, REACTION, SolveOptions(), EFFORTS[:1]) is None
+    found = won_in_shares(network, objective, REACTION, SolveOptions(), EFFORTS[1:2])
+    assert found is not None and len(found.strategy.shares) == 1
