@@ -31,6 +31,7 @@ from pursue_gen.files import write_texts
 from pursue_gen.language import load, parse
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.language.wording import listed, objective_text, periods_found, promise_words
+from pursue_gen.outcomes import Lost
 from pursue_gen.report import timeline
 from pursue_gen.report.recording import ending_text, simulated
 from pursue_gen.simulation.outcome import Settings
@@ -41,10 +42,10 @@ from pursue_gen.solving.optional import promised
 from pursue_gen.solving.options import DEFAULT
 from pursue_gen.solving.periods import least_period
 from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.shares import can_be_shared
 from pursue_gen.solving.solution import Solution, solution
 from pursue_gen.solving.solvers import solved
-from pursue_gen.synthesis.solve import Verdict, solve
-from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga.network import Kind
 from pursue_gen.workspace import Options
 
@@ -96,18 +97,26 @@ def facts(path: Path) -> Facts:
     """Solves a scenario and proves the strategy."""
     scenario = load(path)
     settled = least_period(scenario, Rules())
-    verdict = _verdict(settled)
-    states = verdict.stats.discrete_states
-    if verdict.strategy is None:
+    won, states = _verdict(settled)
+    if not won:
         return Facts(path.stem, scenario, settled, states, None, None)
     found = promised(settled, DEFAULT, lambda some, how: solved(*game_of(some), Rules(), how))
     return Facts(path.stem, scenario, found.scenario, states, found.solution, found.solution.guarantee)
 
 
-def _verdict(scenario: Scenario) -> Verdict:
-    """Whether the default game is won, with nothing optional; that takes less time than a proof."""
-    rules, scenario = Rules(), scenario.giving_up(scenario.optional)
-    return solve(played(translate(scenario), rules), scenario_objective(scenario), rules.reaction)
+def _verdict(scenario: Scenario) -> Tuple[bool, int]:
+    """Whether the default game is won, with nothing optional, and the states that were looked at: of the game in one
+    piece, which takes less time than a proof; in shares, where it can be shared out, as it may be too large else."""
+    rules, (network, objective) = Rules(), game_of(scenario.giving_up(scenario.optional))
+    game = played(network, rules)
+    if not can_be_shared(game, objective):
+        verdict = solve(game, objective, rules.reaction)
+        return verdict.won, verdict.stats.discrete_states
+    try:
+        stats = solution(network, objective, rules).stats
+    except Lost:
+        return False, 0
+    return True, stats.discrete_states if stats is not None else 0
 
 
 # Pages ----------------------------------------------------------------------------------------------------------------
@@ -196,7 +205,7 @@ def _if(text: str, changes: str) -> str:
     if changed == text:
         raise ValueError(f"this changes nothing: {changes}")
     scenario = least_period(parse(changed, "changed.pur", "changed"), Rules())
-    if _verdict(scenario).strategy is None:
+    if not _verdict(scenario)[0]:
         return "cannot be done"
     if not scenario.optional:
         return "can be done"

@@ -758,14 +758,18 @@ def test_ws_of_a_lost_game_writes_nothing(tmp_path: Path) -> None:
 
 def test_the_first_own_scenario_of_the_readme(tmp_path: Path) -> None:
     blocks = (ROOT / "README.md").read_text(encoding="utf-8").split("```")
-    (text,) = [block for block in blocks if block.startswith('\npoi "desk"')]
-    file = tmp_path / "library.pur"
+    (text,) = [block for block in blocks if block.startswith('\npoi "door"')]
+    example = (ROOT / "scenarios/office/lab_floor.pur").read_text(encoding="utf-8")
+    assert text.strip() == example.partition("\n")[2].strip(), "beside its first line, a comment, it is the example"
+    file = tmp_path / "lab_floor.pur"
     file.write_text(text, encoding="utf-8")
     assert pursue("check", file).err.startswith("1 file: 0 errors, 0 warnings")
-    assert pursue("solve", file).status == 0
-    file.write_text(text.replace("mobile 3", "mobile 1"), encoding="utf-8")
+    won = pursue("solve", file)
+    assert won.status == 0 and "if order then unload within 45: answered within 31.8 of 45, at worst." in won.err
+    file.write_text(text.replace("within 45", "within 30"), encoding="utf-8")
     lost = pursue("solve", file)
-    assert lost.status == 4 and "a slower visitor, mobile 2 instead of 1" in lost.err
+    assert lost.status == 4 and "cannot be promised, even if nothing else is" in lost.err
+    assert "a deadline of 32 instead of 30 for unload" in lost.err
 
 
 # --optimize -----------------------------------------------------------------------------------------------------------
