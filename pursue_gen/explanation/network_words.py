@@ -17,6 +17,7 @@ from pursue_gen.tga.objectives import clock_of, events_done, stated
 from pursue_gen.tga.own_turns import own_turns
 from pursue_gen.tga.passages import words_of as passage_words
 from pursue_gen.tga.status_words import turn_words
+from pursue_gen.tga.tours import words_of as tour_words
 
 _DUTIES = {names.IDLE: "kept", names.AT_RISK: "a deadline is running", names.LOSE: "broken"}
 
@@ -129,7 +130,7 @@ def words_of(scenario: Scenario, network: Network) -> Words:
         automaton = network.automaton(names.count(event.name))
         for number, location in enumerate(automaton.locations):
             turns[automaton.name, location.name] = f"{number} of {most} {scenario.shown(event.name)}"
-    turns.update(passage_words(network))
+    turns.update({**passage_words(network), **tour_words(network)})
     places: Dict[str, str] = {}
     moves: Dict[Tuple[str, str, str], str] = {}
     parts: Dict[str, Tuple[str, ...]] = {poi.name: ("at", poi.name) for poi in scenario.pois}

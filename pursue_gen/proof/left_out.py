@@ -159,7 +159,7 @@ def _why_an_edge_matters(automaton: Automaton, kept: Automaton, part: Network, h
     """Why an edge of the automaton that the part does not have may change something there, other than by a move of the
     environment."""
     variables = {name for name, _ in part.variables}
-    for edge in automaton.edges:
+    for edge in automaton.edges if kept is not automaton else ():
         if edge in kept.edges or (hiding and is_loosened(edge, automaton, kept)):
             continue
         what = f"may go from {edge.source} to {edge.target}"
@@ -222,7 +222,7 @@ def _why_it_may_stop_time(
     the first may last a time unit, so that these moves leave time its way. `places`: where it may be.
     """
     stays = {location.name: location for location in automaton.locations if location.invariant}
-    if not stays:
+    if places.isdisjoint(stays):
         return ""
     own = tuple(sorted(clocks_of(automaton)))
     start = start_of(network, own)

@@ -6,14 +6,17 @@ time but need not come: so it wins whatever the others do. Only what they comman
 never sent to a place is not there. Whom a share does not name may be anywhere, and do at any time what he can do to
 those whom it names (see `tga.hidden`), but must not stop time (see `left_out`); that those whom another share names do
 not is shown there. Then each play of the network shows each share one of its plays.
+
+What a share is to avoid and its blocks do not name is looked at apart, in a game for each of these (see `apart`).
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import AbstractSet, FrozenSet, Iterator, List, Sequence, Set, Tuple
+from typing import AbstractSet, FrozenSet, Iterator, List, Sequence, Set, Tuple, Union
 
 from pursue_gen.language.network_names import LOSE
+from pursue_gen.proof.apart import games_apart, kept_apart
 from pursue_gen.proof.left_out import why_it_matters, with_clocks_of
 from pursue_gen.proof.live import Commanded, Extent, commanded, live
 from pursue_gen.proof.stages import Part
@@ -22,6 +25,7 @@ from pursue_gen.synthesis.strategy import Block, Place, Strategy
 from pursue_gen.tga.hidden import HIDDEN, has_hidden, with_hidden
 from pursue_gen.tga.network import Automaton, Kind, Network, Objective, with_controllability
 from pursue_gen.tga.part import part_of, without_unnamed_clocks
+from pursue_gen.tga.tours import Tour
 from pursue_gen.tga.watchers import Watcher
 
 Names = Tuple[FrozenSet[str], FrozenSet[str]]
@@ -36,29 +40,34 @@ def shares_of(network: Network, objective: Objective, strategy: Strategy) -> Ite
     shares = [[strategy.blocks[n] for n in some] for some in numbers]
     alive, extent = live(network, commanded(strategy.blocks))
     fault = fault or _misnamed(network, shares)
-    watchers = [] if fault else [_watchers_of(strategy, k, blocks) for k, blocks in enumerate(shares)]
+    apart = [] if fault else [kept_apart(strategy, k) for k in range(len(shares))]
+    named = [names_of(blocks[0])[0].union(some) for blocks, some in zip(shares, apart)]
+    watchers = [_watchers_of(strategy, k, some) for k, some in enumerate(named)]
     watched = {watcher.objective for some in watchers for watcher in some}
-    fault = fault or _unguarded(objective, shares, watched, extent)
+    fault = fault or _unguarded(objective, watched.union(*named), extent)
     if fault:
         yield Part(0, network, objective, strategy, (), fault)
         return
     for k, blocks in enumerate(shares):
-        automata, variables = names_of(blocks[0])
-        others = {name for some in shares if some is not blocks for name in names_of(some[0])[0]} | watched
+        automata, variables = named[k], names_of(blocks[0])[1]
+        others = watched.union(*(some for some in named if some is not automata))
         game = left_to_others(alive, commanded(b for some in shares if some is not blocks for b in some))
         own = Strategy(tuple(blocks))
         part = with_clocks_of(without_unnamed_clocks(part_of(game, automata, variables)), network, own)
         own = replace(own, left_out_clocks=tuple(clock for clock in strategy.left_out_clocks if clock in part.clocks))
-        known = (*objective.bad, *(_place_of(watcher) for watcher in watchers[k]))
+        known = (*objective.bad, *map(_place_of, watchers[k]), *map(_place_of, strategy.tours))
         wanted = Objective(Kind.SAFETY, bad=tuple(place for place in known if place[0] in automata))
         stays = {name: set() if name in others else places for name, places in extent.places.items()}
         fault = why_it_matters(game, wanted, part, stays, hiding=True)
         for watcher in watchers[k]:
-            fault = fault or why_it_may_miss(game, watcher, automata, variables)
+            beside = automata.difference(apart[k]) | {watcher.name}
+            fault = fault or why_it_may_miss(game, watcher, beside, variables)
         seen = with_hidden(game, part)
-        yield Part(k, seen, wanted, _beside_hidden(own) if has_hidden(seen) else own, numbers[k], fault)
-        if fault:
-            return
+        whole = Part(k, seen, wanted, _beside_hidden(own) if has_hidden(seen) else own, numbers[k], fault)
+        for own_game in games_apart(whole, apart[k]) if apart[k] and not fault else (whole,):
+            yield own_game
+            if own_game.fault:
+                return
 
 
 def left_to_others(network: Network, commands: Commanded) -> Network:
@@ -86,16 +95,16 @@ def names_of(block: Block) -> Names:
     return frozenset(name for name, _ in block.state.locations), frozenset(name for name, _ in block.state.values)
 
 
-def _watchers_of(strategy: Strategy, share: int, blocks: Sequence[Block]) -> List[Watcher]:
-    """The watchers that the share names, and whose objectives it keeps so."""
-    named, avoided = names_of(blocks[0])[0], strategy.shares[share]
+def _watchers_of(strategy: Strategy, share: int, named: AbstractSet[str]) -> List[Watcher]:
+    """The watchers among those whom the share keeps, and whose objectives it keeps so."""
+    avoided = strategy.shares[share]
     kept = (w for w in strategy.watchers if w.name in named and w.objective not in named)
     return [watcher for watcher in kept if (watcher.objective, LOSE) in avoided]
 
 
-def _place_of(watcher: Watcher) -> Place:
-    """What a watcher's robots have to avoid."""
-    return watcher.name, LOSE
+def _place_of(own: Union[Watcher, Tour]) -> Place:
+    """What a watcher's robots have to avoid, or the robot of a tour."""
+    return own.name, LOSE
 
 
 def _misplaced(network: Network, objective: Objective, strategy: Strategy) -> str:
@@ -106,7 +115,7 @@ def _misplaced(network: Network, objective: Objective, strategy: Strategy) -> st
         return "an objective with a goal has no shares"
     if strategy.stages:
         return "a strategy has stages or shares, not both"
-    known = {*objective.bad, *map(_place_of, strategy.watchers)}
+    known = {*objective.bad, *map(_place_of, strategy.watchers), *map(_place_of, strategy.tours)}
     unknown = [place for avoided in strategy.shares for place in avoided if place not in known]
     if unknown:
         return f"{'.'.join(unknown[0])} is not to be avoided"
@@ -138,13 +147,10 @@ def _misnamed(network: Network, shares: Sequence[Sequence[Block]]) -> str:
     return ""
 
 
-def _unguarded(
-    objective: Objective, shares: Sequence[Sequence[Block]], watched: AbstractSet[str], extent: Extent
-) -> str:
-    """What is to be avoided and may happen, though no share guards against it; "" if there is nothing. `watched`: the
-    objectives that are kept because their watchers are."""
-    named = watched | {name for blocks in shares for name in names_of(blocks[0])[0]}
+def _unguarded(objective: Objective, kept: AbstractSet[str], extent: Extent) -> str:
+    """What is to be avoided and may happen, though no share guards against it; "" if there is nothing. `kept`: by
+    shares, or because watchers are."""
     open_ones: List[str] = [
-        f"{name}.{place}" for name, place in objective.bad if name not in named and place in extent.places[name]
+        f"{name}.{place}" for name, place in objective.bad if name not in kept and place in extent.places[name]
     ]
     return f"no share guards against {open_ones[0]}" if open_ones else ""

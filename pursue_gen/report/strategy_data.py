@@ -126,8 +126,9 @@ def _objectives(won: Solution) -> Iterator[Tuple[int, Place, Objective, bool]]:
     """The parts of the strategy: the number of each one's stage, its place, its objective, whether it is in the last
     stage. Shares are all in the first one."""
     watched = {watcher.objective for watcher in won.strategy.watchers}
+    named = {name for block in won.strategy.blocks for name, _ in block.state.locations}
     for avoided in won.strategy.shares:
-        own = tuple(place for place in avoided if place[0] not in watched)
+        own = tuple(place for place in avoided if place[0] not in watched and place[0] in named)
         yield 0, avoided[0], replace(won.objective, bad=own), True
     for stage, milestones in enumerate(won.strategy.stages):
         for place in milestones:
@@ -169,7 +170,7 @@ def _in_parts(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyData
         moved = _Moved(free, at, which, len(zones), len(situations), is_last)
         situations += [moved.situation(some) for some in builder.situations()]
         zones += builder.zones
-    named.update(name for name, _ in won.objective.bad if won.strategy.passages)
+    named.update(name for name, _ in won.objective.bad if won.strategy.passages or won.strategy.tours)
     left_out = tuple(automaton.name for automaton in won.network.automata if automaton.name not in named)
     owners = _owners(scenario, won, reach_obj)
     found = tuple(zones), tuple(situations), left_out, scenario.labels, tuple(parts)

@@ -52,7 +52,7 @@ class _Game:
 def calm(won: Solution, options: SolveOptions) -> Solution:
     """The solution without moves that no promise needs, as far as little work finds one; the same where there is a
     goal. Within the limits; raises LimitHit at them."""
-    if won.objective.kind is not Kind.SAFETY or won.strategy.counter:
+    if won.objective.kind is not Kind.SAFETY or won.strategy.counter or won.strategy.tours:
         return won
     start = options.limits.now()
     budget = Budget(replace(options.limits, work=_WORK, states=_STATES), options.progress, options.engine)

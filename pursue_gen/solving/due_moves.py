@@ -25,6 +25,9 @@ _DUE = "@due_"
 """With the name of an automaton, the variable that is 1 while its deadline is running."""
 
 
+_Senders = Mapping[str, Sequence[Tuple[str, Edge]]]
+
+
 @dataclass(frozen=True)
 class Duty:
     """A deadline: its automaton, clock and length. `visits`: of a patrol, the places at which each robot ends it."""
@@ -58,13 +61,17 @@ class DueMoves:
 
 def patrols(network: Network) -> FrozenSet[str]:
     """The automata whose deadlines robots begin, and nobody else: each place of a patrol has one."""
-    return frozenset(automaton.name for automaton in network.automata if _is_patrol(network, automaton))
+    senders = _senders(network)
+    return frozenset(automaton.name for automaton in network.automata if _is_patrol(senders, automaton))
 
 
-def _is_patrol(network: Network, automaton: Automaton) -> bool:
+def _is_patrol(senders: _Senders, automaton: Automaton) -> bool:
     begins = [edge for edge in automaton.edges if edge.source != AT_RISK and edge.target == AT_RISK]
     return bool(begins) and all(
-        sent.controllable and is_movement(sent.target) for edge in begins for _, sent in _senders(network, edge)
+        sent.controllable and is_movement(sent.target)
+        for edge in begins
+        if edge.sync is not None
+        for _, sent in senders.get(edge.sync.channel, ())
     )
 
 
@@ -73,24 +80,27 @@ def duties(network: Network, objective: Objective, known: AbstractSet[str]) -> T
     names = dict.fromkeys(name for name, _ in objective.bad)
     watching = [automaton for automaton in network.automata if automaton.name in names]
     bounds = ((each, place.invariant) for each in watching for place in each.locations if place.name == AT_RISK)
-    return tuple(_duty(network, each, bound[0], each.name in known) for each, bound in bounds if bound)
+    senders = _senders(network)
+    return tuple(_duty(senders, each, bound[0], each.name in known) for each, bound in bounds if bound)
 
 
-def _duty(network: Network, automaton: Automaton, bound: ClockBound, patrol: bool) -> Duty:
+def _duty(senders: _Senders, automaton: Automaton, bound: ClockBound, patrol: bool) -> Duty:
     visits: Dict[str, Tuple[str, ...]] = {}
     for edge in automaton.edges:
-        if patrol and edge.source == AT_RISK and edge.target == IDLE:
-            for name, sent in _senders(network, edge):
+        if patrol and edge.source == AT_RISK and edge.target == IDLE and edge.sync is not None:
+            for name, sent in senders.get(edge.sync.channel, ()):
                 visits[name] = tuple(dict.fromkeys((*visits.get(name, ()), sent.target)))
     return Duty(automaton.name, bound.clock, bound.bound, visits)
 
 
-def _senders(network: Network, edge: Edge) -> Iterator[Tuple[str, Edge]]:
-    """The edges that send what this one receives, each with its agent."""
-    if edge.sync is not None:
-        sent = replace(edge.sync, sends=True)
-        yield from ((automaton.name, other) for automaton in network.automata for other in automaton.edges
-                    if other.sync == sent)  # fmt: skip
+def _senders(network: Network) -> _Senders:
+    """By channel the edges that send on it, each with its agent."""
+    found: Dict[str, List[Tuple[str, Edge]]] = {}
+    for automaton in network.automata:
+        for edge in automaton.edges:
+            if edge.sync is not None and edge.sync.sends:
+                found.setdefault(edge.sync.channel, []).append((automaton.name, edge))
+    return found
 
 
 def only_due(

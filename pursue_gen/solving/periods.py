@@ -1,7 +1,8 @@
 """The least period of patrols that name none: found by solving, with one period for all of them.
 
 A longer period asks for less. So a period that is lost excludes all shorter ones, and the periods between the longest
-that is lost and the shortest that is won are halved. Periods are whole time units.
+that is lost and the shortest that is won are halved. Periods are whole time units. Where the scenario asks for patrols
+alone, tours keep one that is known at once (see `tours`); of many places it counts.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from pursue_gen.language.wording import patrol_text, periods_found
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.tours import PATROL, period_of_tours
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.enforced import enforced
@@ -80,7 +82,11 @@ def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAU
     base, limits = scenario.giving_up(scenario.optional), options.limits
     limits = limits if limits.chosen.seconds or limits.work else replace(limits, work=WORK)
     budget = Budget(limits, options.progress, options.engine, whole=options.whole)
-    low, high, known = 2, longest(scenario), False  # nothing below `low` is won; `high` is, where it is `known`
+    tours = None if options.whole else _of_tours(base, rules)
+    # Nothing below `low` is won; `high` is, where it is `known`.
+    low, high, known = 2, longest(scenario) if tours is None else max(2, tours), tours is not None
+    if tours is not None and len(base.safety) >= PATROL:
+        return with_period(scenario, high, low)
     floor, probe = low, min(high, _farthest(scenario))
     while floor <= high and not (known and floor == high) and not budget.used_up:
         won = _won(base, probe, rules, budget)
@@ -91,6 +97,14 @@ def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAU
             low = low if won is None else floor
         probe = (floor + high) // 2 if known else min(2 * probe, high)
     return with_period(scenario, high, low)
+
+
+def _of_tours(scenario: Scenario, rules: Rules) -> Optional[int]:
+    """The period that tours keep; None where there are none, or something else is asked for, too."""
+    if scenario.reach or len(without_period(scenario)) < len(scenario.safety):
+        return None
+    tried = with_period(scenario, longest(scenario))
+    return period_of_tours(played(translate(tried), rules), scenario_objective(tried), rules.reaction)
 
 
 def quickly_found(scenario: Scenario) -> List[str]:

@@ -108,7 +108,8 @@ def optional_json(scenario: Scenario) -> Dict[str, Any]:
 def _left_out(won: Solution) -> List[str]:
     """The automata of which the strategy never speaks: they cannot matter."""
     named = {name for block in won.strategy.blocks for name, _ in block.state.locations}
-    named.update(name for name, _ in won.objective.bad if won.strategy.passages)  # kept, though no block names them
+    if won.strategy.passages or won.strategy.tours:
+        named.update(name for name, _ in won.objective.bad)  # kept, though no block names them
     return [automaton.name for automaton in won.network.automata if automaton.name not in named]
 
 

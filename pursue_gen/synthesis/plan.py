@@ -24,6 +24,7 @@ from pursue_gen.synthesis.plan_parts import (
     read_passages,
     read_shares,
     read_stages,
+    read_tours,
     read_watchers,
     spoken_of,
 )
@@ -32,6 +33,7 @@ from pursue_gen.synthesis.plan_text import assign_text, guard_text, sync_text, z
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Move, Strategy, Zone, with_automata_of
 from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.tga.passages import with_passages
+from pursue_gen.tga.tours import with_tours
 from pursue_gen.tga.uppaal_words import with_own_names
 from pursue_gen.tga.watchers import with_watchers
 
@@ -64,7 +66,8 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     text = _ESCAPE.sub("", text).replace("\r\n", "\n")
     watchers = read_watchers(text.partition("\nState:")[0], network, file)
     passages = read_passages(text.partition("\nState:")[0], network, file)
-    network = with_passages(with_watchers(network, watchers), passages)
+    tours = read_tours(text.partition("\nState:")[0], network, file)
+    network = with_tours(with_passages(with_watchers(network, watchers), passages), tours)
     text = with_own_names(text, network)
     header = _HEADER.search(text)
     if header is None:
@@ -95,7 +98,7 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
         reader.line, reader.text = first, ""
         reader.fail("PLN003", "the strategy is empty: no state follows its title", RUN_AGAIN)
     counter = header.group(1).lower().startswith("counter")
-    return Strategy(tuple(blocks), counter, stages, left_out_clocks, shares, watchers, passages)
+    return Strategy(tuple(blocks), counter, stages, left_out_clocks, shares, watchers, passages, tours)
 
 
 def _start(reader: Reader, line: str, seen: Set[DiscreteState]) -> _Open:

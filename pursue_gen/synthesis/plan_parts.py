@@ -8,11 +8,13 @@
     -- Watcher: obj3 bot1
     -- Share: obj.lose obj3_for_bot1.lose obj3.lose
     -- Passage: hall2 bot1 bot3 bot1
+    -- Tour: bot1 2 dock hall1 room1
 
 In a plan with stages, shares or passages each block names what matters to it. A stage's milestones are locations of
 automata and values of variables; a share's places are what it avoids. A watcher is an objective's automaton, and the
 robots for whom alone another one (here `obj3_for_bot1`) watches the same; a passage is a place, and the robots that are
-there one after the other.
+there one after the other. A tour is a robot and the places that it comes to one after the other, behind the number,
+from 1, of the one that follows the last.
 """
 
 from __future__ import annotations
@@ -27,11 +29,13 @@ from pursue_gen.tga.ending import is_value
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.part import part_of
 from pursue_gen.tga.passages import Passage, passage_automaton
+from pursue_gen.tga.tours import Tour, tour_automaton
 from pursue_gen.tga.watchers import Watcher, watched_by
 
 _STAGE = re.compile(r"^ -- Stage:(.*)$", re.MULTILINE)
 _WATCHER = re.compile(r"^ -- Watcher:(.*)$", re.MULTILINE)
 _PASSAGE = re.compile(r"^ -- Passage:(.*)$", re.MULTILINE)
+_TOUR = re.compile(r"^ -- Tour:(.*)$", re.MULTILINE)
 _SHARE = re.compile(r"^ -- Share:(.*)$", re.MULTILINE)
 _LEFT_OUT_CLOCKS = re.compile(r"^ -- Left out clocks:(.*)$", re.MULTILINE)
 _LEFT_OUT = re.compile(r"^ -- Left out:(.*)$", re.MULTILINE)
@@ -50,7 +54,9 @@ def left_out_lines(strategy: Strategy, network: Network) -> List[str]:
         return [f" -- Passage: {' '.join((each.place, *each.robots))}" for each in strategy.passages]
     if strategy.shares:
         watchers = [f" -- Watcher: {' '.join((each.objective, *each.team))}" for each in strategy.watchers]
-        return [*watchers, *(f" -- Share: {' '.join(map('.'.join, avoided))}" for avoided in strategy.shares), *clocks]
+        tours = [f" -- Tour: {' '.join((t.robot, str(t.again + 1), *t.stops))}" for t in strategy.tours]
+        shares = [f" -- Share: {' '.join(map('.'.join, avoided))}" for avoided in strategy.shares]
+        return [*watchers, *tours, *shares, *clocks]
     if strategy.stages:
         variables = dict(network.variables)
         return [
@@ -99,6 +105,20 @@ def read_passages(text: str, network: Network, file: str) -> Tuple[Passage, ...]
             raise _unknown(text, match, message, file)
         passages.append(passage)
     return tuple(passages)
+
+
+def read_tours(text: str, network: Network, file: str) -> Tuple[Tour, ...]:
+    """The tours of such a plan. Raises PursueError for one that cannot be."""
+    tours: List[Tour] = []
+    for match in _TOUR.finditer(text):
+        words = match.group(1).split()
+        again = words[1] if len(words) > 1 and words[1].isascii() and words[1].isdigit() else "0"
+        tour = Tour(words[0], tuple(words[2:]), int(again[:9]) - 1) if words else Tour("", ())
+        if tour_automaton(network, tour) is None and tour.name not in {each.name for each in network.automata}:
+            message = f"the plan has a tour '{' '.join(words)}', which the network cannot have"
+            raise _unknown(text, match, message, file)
+        tours.append(tour)
+    return tuple(tours)
 
 
 def _read_places(

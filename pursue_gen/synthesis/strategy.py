@@ -13,6 +13,7 @@ from pursue_gen.tga.network import Constraint as Constraint
 from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.passages import Passage, with_passages
 from pursue_gen.tga.scale import common_denominator
+from pursue_gen.tga.tours import Tour, with_tours
 from pursue_gen.tga.watchers import Watcher, with_watchers
 
 Place = Tuple[str, str]
@@ -64,9 +65,9 @@ class Strategy:
     stage that is not over.
 
     One in `shares` has for each of them the places that it is to avoid, of automata that no other share names. Shares
-    are played at the same time, by different agents: a block belongs to the one whose places it names (see
-    `proof.shares`). A strategy has stages or shares, or neither. `watchers`: automata that the network has beside its
-    own; a share that names one of them may have the objective in its place.
+    are played at the same time, by different agents: a block belongs to the one whose places it names, at least one of
+    them (see `proof.shares`). A strategy has stages or shares, or neither. `watchers` and `tours`: automata that the
+    network has beside its own; a share that names a watcher may have the objective in its place.
 
     One with `passages` has an automaton for each of them, too (see `tga.passages`). A block is for the one agent that
     it commands, or that it tells to wait, and names what that has to know (see `proof.passages`).
@@ -82,6 +83,7 @@ class Strategy:
     shares: Tuple[Tuple[Place, ...], ...] = ()
     watchers: Tuple[Watcher, ...] = ()
     passages: Tuple[Passage, ...] = ()
+    tours: Tuple[Tour, ...] = ()
 
     @property
     def in_parts(self) -> bool:
@@ -128,8 +130,8 @@ class Strategy:
 
 
 def with_automata_of(network: Network, strategy: Strategy) -> Network:
-    """The network with the strategy's own automata: its watchers and passages."""
-    return with_passages(with_watchers(network, strategy.watchers), strategy.passages)
+    """The network with the strategy's own automata: its watchers, passages and tours."""
+    return with_tours(with_passages(with_watchers(network, strategy.watchers), strategy.passages), strategy.tours)
 
 
 def with_edges(blocks: Iterable[Block], automaton: str, changed: Mapping[Edge, Edge]) -> Tuple[Block, ...]:

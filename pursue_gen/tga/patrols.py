@@ -71,8 +71,9 @@ def patrol_automaton(patrol: Patrol, scenario: Scenario, positions: Positions, n
         guard, assign = Guard(integers=((Test(turn, k),),)), ((turn, (k + 1) % len(patrol.order)),)
         there = k < _begun(patrol, scenario)
     edges: List[Edge] = []
+    elsewhere = {agent.name: _elsewhere(agent, place, positions) for agent in agents}
     for agent in agents:
-        others = [_elsewhere(other, place, positions) for other in agents if other is not agent]
+        others = [clause for name, clause in elsewhere.items() if name != agent.name]
         for a, b in scenario.movements(agent):
             if b == place:
                 comes = Sync(names.arrival(agent.name, a, b), sends=False)

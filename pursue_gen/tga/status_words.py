@@ -14,6 +14,8 @@ from pursue_gen.tga.network import Automaton, Network
 from pursue_gen.tga.objectives import events_done, stated
 from pursue_gen.tga.own_turns import own_turns
 from pursue_gen.tga.passages import OF, words_of
+from pursue_gen.tga.tours import robot_of
+from pursue_gen.tga.tours import words_of as tour_words
 
 _END = names.done("")
 
@@ -49,11 +51,11 @@ def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
     for battery in scenario.batteries:
         texts = {str(level): f"{level} of {battery.capacity}" for level in levels(scenario, battery)}
         found.append(Status(names.level(battery.agent.name), f"battery of {battery.agent.shown}", texts))
-    words = words_of(network)
+    words = {**words_of(network), **tour_words(network)}
     for automaton in network.automata:
         if (automaton.name, automaton.initial) in words:
             texts = {place.name: words[automaton.name, place.name] for place in automaton.locations}
-            found.append(Status(automaton.name, scenario.shown(automaton.name.partition(OF)[0]), texts))
+            found.append(Status(automaton.name, _shown_of(scenario, automaton.name), texts))
     found += _assumptions(scenario)
     for name, objective in stated(scenario).items():
         if isinstance(objective, Patrol) and objective.order and names.rule_turn(name) in variables:
@@ -64,6 +66,12 @@ def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
         texts = {place: _duty(objective, place) for place in places}
         found.append(Status(name, objective_text(objective) + in_turn, texts))
     return tuple(found)
+
+
+def _shown_of(scenario: Scenario, automaton: str) -> str:
+    """What an automaton of a strategy's own is called: by the place of an order of passage, or the robot of a tour."""
+    place, found, _ = automaton.partition(OF)
+    return scenario.shown(place) if found else f"tour of {scenario.shown(robot_of(automaton))}"
 
 
 def turn_words(scenario: Scenario, automaton: Automaton, location: str) -> str:

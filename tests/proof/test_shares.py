@@ -241,7 +241,7 @@ def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     )
     blocks = list(strategy.blocks)
     blocks[number] = changed
-    if draw(st.booleans()):
+    if block.state.locations and draw(st.booleans()):
         name = draw(st.sampled_from([name for name, _ in block.state.locations]))
         blocks = [_without(each, name) if names_of(each) == names_of(block) else each for each in blocks]
         blocks = list({each.state: each for each in blocks}.values())

@@ -19,6 +19,7 @@ from pursue_gen.solving.rules import DEFAULT, IDEAL
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.limits import Limits
 from tests.authoring.commands import pursue
+from tests.patrols import corridor
 
 from .verdicts import is_won
 
@@ -95,7 +96,22 @@ def test_a_search_that_stops_early_says_what_is_known() -> None:
     for found in stopped:
         (known, *_) = [each for each in found.safety if isinstance(each, Patrol)]
         assert known.least is not None and known.least <= least <= known.period
-    assert f"is at most {longest(asked)} units; nothing below 2 can be promised." in periods_found(stopped[0])[0]
+    tours = period(stopped[0])
+    assert f"is at most {tours} units; nothing below 2 can be promised." in periods_found(stopped[0])[0]
+    assert is_won(stopped[0].text) and tours < longest(asked)
+
+
+def test_a_search_among_other_promises_that_stops_early_has_the_longest_period() -> None:
+    asked = rooms("patrol gate, vault by any robot", "avoid bot1 at hall")
+    stopped = least_period(asked, DEFAULT, SolveOptions(limits=Limits(work=1)))
+    assert f"is at most {longest(asked)} units; nothing below 2 can be promised." in periods_found(stopped)[0]
+
+
+def test_of_many_places_the_period_is_that_of_tours() -> None:
+    asked = parse(corridor(6, 2, ""), "x.pur", "x")
+    found = least_period(asked, DEFAULT)
+    assert period(found) == 45
+    assert [tour.robot for tour in solve_scenario(found, DEFAULT).strategy.tours] == ["bot1", "bot2"]
 
 
 def test_the_commands_tell_it_and_a_workspace_has_it(tmp_path: Path) -> None:

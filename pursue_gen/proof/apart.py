@@ -1,0 +1,109 @@
+"""What a share keeps though its blocks do not name it: its commands hold wherever that is.
+
+Such an automaton is looked at alone, beside those that the blocks name, in a game in which each block stands once for
+each of its locations. The others of that kind are hidden there, and each is looked at in its turn: so a round of many
+places takes as many small games, not one of all of them.
+
+Nothing makes a command stale of which the strategy does not speak: what changes the automaton alone leaves a command on
+its way. In the game it is given anew there, and may then come as late again, or nothing says what to do, which fails.
+For that no other advice may follow in a block where a command is due: it has one command at most, and waits only before
+that, by a clock that the automaton does not reset.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Iterator, List, Sequence, Tuple
+
+from pursue_gen.proof.left_out import why_it_matters
+from pursue_gen.proof.stages import Part
+from pursue_gen.synthesis.strategy import Block, Command, Move, Place, Strategy, Zone
+from pursue_gen.tga.network import Automaton, Edge, Network
+from pursue_gen.tga.part import clocks_of, part_of
+
+
+def kept_apart(strategy: Strategy, share: int) -> Sequence[str]:
+    """The automata that a share keeps and its blocks do not name, without those of objectives that watchers have in
+    their place."""
+    avoided = strategy.shares[share]
+    named = {name for n in strategy.numbers_of(share, avoided[0]) for name, _ in strategy.blocks[n].state.locations}
+    kept = {name for name, _ in avoided} | named
+    watched = {watcher.objective for watcher in strategy.watchers if watcher.name in kept}
+    return tuple(dict.fromkeys(name for name, _ in avoided if name not in named | watched))
+
+
+def games_apart(share: Part, names: Sequence[str]) -> Iterator[Part]:
+    """A game for each of these automata, beside those that the share's blocks name."""
+    fault = _why_not_apart(share.strategy.blocks, [share.game.automaton(name) for name in names])
+    for name in names:
+        others = set(names) - {name}
+        kept = {automaton.name for automaton in share.game.automata} - others
+        game = part_of(share.game, kept, {variable for variable, _ in share.game.variables})
+        wanted = replace(share.objective, bad=tuple(place for place in share.objective.bad if place[0] not in others))
+        fault = fault or why_it_matters(share.game, wanted, game, {each: set() for each in others})
+        blocks, numbers = _lifted(share.strategy.blocks, game, name, wanted.bad)
+        clocks = tuple(clock for clock in share.strategy.left_out_clocks if clock in game.clocks)
+        own = replace(share.strategy, blocks=blocks, left_out_clocks=clocks)
+        yield Part(share.stage, game, wanted, own, tuple(share.numbers[k] for k in numbers), fault)
+
+
+def _why_not_apart(blocks: Sequence[Block], automata: Sequence[Automaton]) -> str:
+    """Why commands of these blocks may not outlast what one of the automata does; "" if they do."""
+    own = {clock for automaton in automata for clock in clocks_of(automaton)}
+    for block in blocks:
+        due = [zone for command in block.commands for zone in command.zones]
+        if any(bound.left in own or bound.right in own for zone in (*block.wait, *due) for bound in zone):
+            return "it compares clocks of what it keeps and does not name"
+        if len(block.commands) > 1 or not all(_is_before(wait, zone) for wait in block.wait for zone in due):
+            return "what it keeps and does not name may change while a command is on its way, and is not the last word"
+    return ""
+
+
+def _is_before(zone: Zone, other: Zone) -> bool:
+    """True if a clock is smaller in all of the zone than anywhere in the other one."""
+    for above in (bound for bound in zone if bound.right is None):
+        for below in (bound for bound in other if bound.left is None and bound.right == above.left):
+            if above.bound < -below.bound or (above.bound == -below.bound and (above.strict or below.strict)):
+                return True
+    return False
+
+
+def _lifted(
+    blocks: Sequence[Block], game: Network, name: str, bad: Sequence[Place]
+) -> Tuple[Tuple[Block, ...], Tuple[int, ...]]:
+    """The blocks for each location of this automaton of the game, but for those that are to be avoided, and for each
+    the number of the one that it comes from.
+
+    Where the automaton may receive a command in several ways, the command is none in its game.
+    """
+    place = next(k for k, automaton in enumerate(game.automata) if automaton.name == name)
+    own = game.automata[place]
+    found: List[Block] = []
+    numbers: List[int] = []
+    before = {automaton.name for automaton in game.automata[:place]}
+    for number, block in enumerate(blocks):
+        locations = block.state.locations
+        at = sum(each in before for each, _ in locations)
+        for location in (each.name for each in own.locations if (name, each.name) not in bad):
+            moved = (*locations[:at], (name, location), *locations[at:])
+            commands = tuple(_heard(command, own, location, block) for command in block.commands)
+            found.append(replace(block, state=replace(block.state, locations=moved), commands=commands))
+            numbers.append(number)
+    return tuple(found), tuple(numbers)
+
+
+def _heard(command: Command, automaton: Automaton, location: str, block: Block) -> Command:
+    """The command with the edges on which the automaton receives it there."""
+    received = (Move(automaton.name, edge) for edge in _receiving(command, automaton, location, block))
+    return replace(command, moves=(*command.moves, *received))
+
+
+def _receiving(command: Command, automaton: Automaton, location: str, block: Block) -> Iterator[Edge]:
+    values = dict(block.state.values)
+    sync = command.moves[0].edge.sync
+    for edge in automaton.edges if sync is not None and sync.sends else ():
+        if edge.source != location or edge.sync is None or edge.sync.sends or sync is None:
+            continue
+        tests = edge.guard.integers
+        if edge.sync.channel == sync.channel and all(any(values.get(t.variable) == t.value for t in c) for c in tests):
+            yield edge

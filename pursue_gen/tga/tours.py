@@ -1,0 +1,121 @@
+"""Automata of a strategy that say how far a robot is on its tour: where it is does not tell where it goes next.
+
+A tour is a way around, over and over, perhaps behind a way to where that begins. Its automaton follows the movements
+that its robot is commanded; another movement than the next one breaks it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Dict, Iterable, List, Optional, Set, Tuple
+
+from pursue_gen.language.network_names import LOSE, is_going
+from pursue_gen.tga.network import Automaton, Edge, Location, Network, Sync
+
+OF = "_tour"
+"""Stands behind the robot in the name of its automaton."""
+
+_STOP = "stop_"
+
+
+@dataclass(frozen=True)
+class Tour:
+    """The places that a robot comes to one after the other, from where it starts; behind the last one it goes on to
+    the one with the number `again` (from 0), or stays there, if that is their number."""
+
+    robot: str
+    stops: Tuple[str, ...]
+    again: int = 0
+
+    @property
+    def name(self) -> str:
+        """Its automaton's name."""
+        return self.robot + OF
+
+    def at(self, stop: int) -> str:
+        """The location in which the robot is at this stop (from 0), or on its way there."""
+        return f"{_STOP}{stop + 1}"
+
+    def after(self, stop: int) -> Optional[int]:
+        """The number of the stop behind this one; None where it stays."""
+        following = stop + 1 if stop + 1 < len(self.stops) else self.again
+        return following if following < len(self.stops) else None
+
+
+def robot_of(automaton: str) -> str:
+    """The robot of a tour's automaton."""
+    return automaton[: -len(OF)]
+
+
+def words_of(network: Network) -> Dict[Tuple[str, str], str]:
+    """What the locations of all tours in a network mean, in words, by automaton and location."""
+    agents = {automaton.name for automaton in network.automata}
+    words: Dict[Tuple[str, str], str] = {}
+    for automaton in network.automata:
+        if automaton.name.endswith(OF) and robot_of(automaton.name) in agents:
+            stops = [place.name for place in automaton.locations if place.name != LOSE]
+            for number, name in enumerate(stops, start=1):
+                words[automaton.name, name] = f"stop {number} of {len(stops)}"
+            words[automaton.name, LOSE] = "off the tour"
+    return words
+
+
+def with_tours(network: Network, tours: Iterable[Tour]) -> Network:
+    """The network with the automata of these tours behind its own; one that is there already, or that cannot be (see
+    `tour_automaton`), is left out."""
+    known = {automaton.name for automaton in network.automata}
+    for tour in tours:
+        automaton = None if tour.name in known else tour_automaton(network, tour)
+        if automaton is not None:
+            network = replace(network, automata=(*network.automata, automaton))
+    return network
+
+
+def tour_automaton(network: Network, tour: Tour) -> Optional[Automaton]:
+    """The automaton of a tour. None where its name is taken, in the middle of a play, where the robot does not start at
+    the first stop, or does not move by commands from each stop to the next."""
+    robot = next((automaton for automaton in network.automata if automaton.name == tour.robot), None)
+    taken = {*network.clocks, *network.channels, *(name for name, _ in network.variables)}
+    taken.update(automaton.name for automaton in network.automata)
+    if network.start or robot is None or tour.name in taken or not 0 <= tour.again <= len(tour.stops):
+        return None
+    if not tour.stops or robot.initial != tour.stops[0]:
+        return None
+    edges: List[Edge] = []
+    ways = ways_of(robot)
+    for stop, place in enumerate(tour.stops):
+        after = tour.after(stop)
+        following = "" if after is None else tour.stops[after]
+        if after is not None and following not in ways.get(place, {}):
+            return None
+        for other, edge in ways.get(place, {}).items():
+            target = LOSE if after is None or other != following else tour.at(after)
+            edges.append(Edge(tour.at(stop), target, sync=Sync(_channel(edge), sends=False)))
+    stops = tuple(Location(tour.at(stop)) for stop in range(len(tour.stops)))
+    return Automaton(tour.name, (*stops, Location(LOSE)), tour.at(0), tuple(edges))
+
+
+def ways_of(robot: Automaton) -> Dict[str, Dict[str, Edge]]:
+    """By place, and by the next place, the edge on which a robot sets off for it by a command; none where there are
+    several."""
+    ends: Dict[str, Set[str]] = {}
+    for edge in robot.edges:
+        if edge.source != edge.target:  # what is done on the way leads nowhere
+            ends.setdefault(edge.source, set()).add(edge.target)
+    ways: Dict[str, Dict[str, Edge]] = {}
+    several: Set[Tuple[str, str]] = set()
+    for edge in robot.edges:
+        if edge.sync is None or not edge.sync.sends or not is_going(edge.target) or is_going(edge.source):
+            continue
+        for place in ends.get(edge.target, set()):
+            if place in ways.setdefault(edge.source, {}) or len(ends[edge.target]) > 1:
+                several.add((edge.source, place))
+            ways[edge.source][place] = edge
+    for source, place in several:
+        ways[source].pop(place, None)
+    return ways
+
+
+def _channel(edge: Edge) -> str:
+    assert edge.sync is not None
+    return edge.sync.channel
