@@ -1,8 +1,8 @@
 """What makes a scenario too large to be decided, and what is decided of it.
 
-Of several objectives each is solved alone, then several together (see `decided`). Then parts are left out, each alone,
-and where there is one objective, several together. Each smaller scenario is solved with a share of a fixed budget of
-work, the one that seems smallest first.
+Of several objectives each is solved alone, then several together (see `decided`), then all in cheaper forms (see
+`cheaper`). Then parts are left out, each alone, and where there is one objective, several together. Each smaller
+scenario is solved with a share of a fixed budget of work, the one that seems smallest first.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
+from pursue_gen.explanation.cheaper import Form, cheaper
 from pursue_gen.explanation.decided import Decided, decided, texts
 from pursue_gen.explanation.lesser import Part, without_each
 from pursue_gen.explanation.part import rules_for
@@ -34,9 +35,10 @@ SECONDS = 8.0
 ROOM = 64
 """MiB beside what is in use before."""
 
-_OPTION, _OBJECTIVES, _ALONE, _EACH = 0.3, 0.6, 0.5, 0.5
+_OPTION, _OBJECTIVES, _FORMS, _ALONE, _EACH = 0.3, 0.5, 0.5, 0.5, 0.5
 """The part of the work for the scenario without an option; of the rest for single objectives and some of them; of the
-then rest for parts that are left out alone; and of what is left for each attempt without several of them.
+then rest for cheaper forms of these; of what is left for parts that are left out alone; and of the then rest for each
+attempt without several of them.
 """
 
 _SHOWN, _SEVERAL = 5, 3
@@ -60,12 +62,14 @@ class Cost:
 class Costs:
     """What is decided, the least work first; the parts without which, each alone, the scenario is not decided.
 
-    `objectives`: what is decided of several objectives; None where there is one.
+    `objectives`: what is decided of several objectives; None where there is one. `cheaper`: forms of statements with
+    which all is won.
     """
 
     decided: Tuple[Cost, ...]
     undecided: Tuple[str, ...]
     objectives: Optional[Decided] = None
+    cheaper: Tuple[Form, ...] = ()
 
 
 def costs(
@@ -89,21 +93,26 @@ def costs(
     found: List[Cost] = []
     undecided: List[Part] = []
     objectives: Optional[Decided] = None
+    forms: List[Form] = []
     with suppress(LimitHit), enforced(few, EXPLAINING):
         if option:
             cost = _cost((option,), _game(scenario, rules), rules, budget, _OPTION)
             if cost is not None:
                 return Costs((cost,), ())
         objectives = decided(scenario, rules, budget.split(_OBJECTIVES))
+        if objectives is not None and objectives.next_line:
+            for form in cheaper(scenario, rules, budget.split(_FORMS), objectives.next_line):
+                forms.append(form)  # at once: a limit may end the search
         found, undecided = _alone(scenario, rules, budget.split(_ALONE), objectives is None)
         if not found and objectives is None:
             found = _together(scenario, undecided, rules, budget)
-    return Costs(tuple(found), tuple(part.name for part in undecided), objectives)
+    return Costs(tuple(found), tuple(part.name for part in undecided), objectives, tuple(forms))
 
 
 def in_words(found: Costs) -> str:
     """The costs in sentences, a line for each that is decided; empty where nothing is known."""
     lines = [] if found.objectives is None else texts(found.objectives)
+    lines += [form.in_words() for form in found.cheaper]
     return "\n".join([*lines, *filter(None, [_left_out(found)])])
 
 
@@ -126,7 +135,9 @@ def _left_out(found: Costs) -> str:
 def as_json(found: Costs) -> Dict[str, Any]:
     """The costs as a JSON object."""
     objectives = {} if found.objectives is None else {"objectives": asdict(found.objectives)}
-    return {"decided": [asdict(cost) for cost in found.decided], "undecided": list(found.undecided), **objectives}
+    forms = {"cheaper": [asdict(form) for form in found.cheaper]} if found.cheaper else {}
+    decided_ones = [asdict(cost) for cost in found.decided]
+    return {"decided": decided_ones, "undecided": list(found.undecided), **objectives, **forms}
 
 
 def _alone(

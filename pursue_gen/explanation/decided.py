@@ -64,20 +64,30 @@ def decided(scenario: Scenario, rules: Rules, budget: Budget) -> Optional[Decide
     found: List[Tuple[Known, _Statement]] = []
     some = budget.split(_ALONE)
     for text, statement in statements:
-        won, states = _decided(scenario, statement, rules, some, _EACH)
+        won, states = decided_within(scenario, statement, rules, some, _EACH)
         found.append((Known(text, statement[0].span.line, won, states), statement))
     alone = tuple(known for known, _ in found)
     easy = sorted((pair for pair in found if pair[0].won), key=lambda pair: pair[0].states)
     kept, failed, lost = easy[:1], 0, False
     for known, statement in easy[1:]:
         objectives = [each for _, other in kept for each in other]
-        won, _ = _decided(scenario, [*objectives, *statement], rules, budget, _SET)
+        won, _ = decided_within(scenario, [*objectives, *statement], rules, budget, _SET)
         if won:
             kept.append((known, statement))
         elif not failed:
             failed, lost = known.line, won is False
     failed = failed or next((known.line for known in alone if known.won is None), 0)
     return Decided(alone, tuple(sorted(known.line for known, _ in kept)), failed, lost)
+
+
+def decided_within(
+    scenario: Scenario, objectives: Sequence[StatedObjective], rules: Rules, budget: Budget, share: float
+) -> Tuple[Optional[bool], int]:
+    """Whether these alone are won (None: not decided with that share of the budget), and the states of their game."""
+    try:
+        return _verdict(scenario, objectives, rules, budget, share)
+    except LimitHit:
+        return None, 0
 
 
 def texts(found: Decided) -> List[str]:
@@ -95,16 +105,6 @@ def _outcome(one: Known) -> str:
     if one.won is None:
         return "not decided alone"
     return f"alone it is {'won' if one.won else 'lost'}, with {one.states} states"
-
-
-def _decided(
-    scenario: Scenario, objectives: Sequence[StatedObjective], rules: Rules, budget: Budget, share: float
-) -> Tuple[Optional[bool], int]:
-    """Whether these alone are won (None: not decided with that share of the budget), and the states of their game."""
-    try:
-        return _verdict(scenario, objectives, rules, budget, share)
-    except LimitHit:
-        return None, 0
 
 
 def _verdict(

@@ -98,7 +98,8 @@ def test_one_objective_has_nothing_to_be_compared_with() -> None:
 
 def test_the_whole_text_is_never_listed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(decided_module, "_SET", 1e-9)
-    text = in_words(replace(costs(wards(), RULES), decided=(), undecided=("nora", "otto", "guest", "child")))
+    found = costs(wards(), RULES)
+    text = in_words(replace(found, decided=(), undecided=("nora", "otto", "guest", "child"), cheaper=()))
     assert text.splitlines()[-1] == "Not decided together with line 16: line 14."
     assert "without" not in text.lower()
     many = Costs((), tuple("abcdefgh"))
