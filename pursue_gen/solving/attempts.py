@@ -9,12 +9,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Optional, Sequence, Tuple, Union
 
+from pursue_gen.solving.efforts import EFFORTS, Effort
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.lost_promises import lost_promises
 from pursue_gen.solving.one_robot import lost_for_one
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.policies import won_by_policy
-from pursue_gen.solving.shares import EFFORTS, Effort, Known, can_be_shared, won_in_shares
+from pursue_gen.solving.shares import Known, can_be_shared, won_in_shares
 from pursue_gen.tga.network import Network, Objective
 
 
@@ -30,10 +31,10 @@ class _Round:
 
 
 _SHARED = (
-    _Round(EFFORTS[:1], one_robot=10_000_000),
-    _Round(EFFORTS[1:2], policy=100_000, one_robot=80_000_000),
-    _Round(EFFORTS[2:4], policy=500_000, lost=True),
-    _Round(EFFORTS[4:]),
+    _Round(EFFORTS[:2], one_robot=10_000_000),
+    _Round(EFFORTS[2:3], policy=100_000, one_robot=80_000_000),
+    _Round(EFFORTS[3:5], policy=500_000, lost=True),
+    _Round(EFFORTS[5:]),
 )
 """For promises that several robots may keep."""
 

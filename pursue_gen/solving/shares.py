@@ -19,6 +19,7 @@ from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT, verify
 from pursue_gen.proof.live import Commanded, commanded, is_controllers, live, taken_over
 from pursue_gen.proof.shares import left_to_others
+from pursue_gen.solving.efforts import EFFORTS, Effort
 from pursue_gen.solving.found import Found, stats_of_all
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
@@ -34,36 +35,6 @@ from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.tga.part import part_of, variables_of, without_unnamed_clocks
 from pursue_gen.tga.pauses import pauses
 from pursue_gen.tga.watchers import Watcher, watched_by, with_watchers
-
-
-@dataclass(frozen=True)
-class Effort:
-    """How hard shares are looked for: `work` for all games of groups, `game` for one of them, which has at most so many
-    discrete `states` and `clocks` (of more, zones cost more than is counted). `thorough`: games that are not won with
-    some hidden are played with all of them as well; `free`: they are played without the pauses of the environment;
-    `joins`: groups that cannot be played beside each other are joined.
-    """
-
-    work: int
-    game: int = 20_000_000
-    states: int = 20_000
-    clocks: int = 6
-    thorough: bool = False
-    free: bool = True
-    joins: bool = True
-
-
-EFFORTS = (
-    Effort(10_000_000, game=150_000, joins=False),
-    Effort(30_000_000, game=1_000_000),
-    Effort(80_000_000, game=4_000_000),
-    Effort(40_000_000),
-    Effort(200_000_000),
-    Effort(60_000_000, thorough=True),
-    Effort(60_000_000, thorough=True, free=False),
-    Effort(300_000_000, game=120_000_000, states=200_000, clocks=8),
-)
-"""One after the other, until one wins: few groups that need more than the first are won with little work."""
 
 _WAYS = 30
 """So many ways to share out the promises are tried."""
@@ -163,6 +134,8 @@ class _Search:
     def found(self) -> Optional[Strategy]:
         """The first strategy that is found; raises LimitHit where the budget is used up."""
         able = {place: self._able(place) for place in self._objective.bad}
+        if self._effort.few:
+            return self._by_few(able)
         order = sorted(self._objective.bad, key=lambda place: len(able[place]))
         ways = self._ways(order, able, ())
         for _, groups in zip(range(_WAYS), ways):
@@ -170,6 +143,18 @@ class _Search:
             if strategy is not None:
                 return strategy
         return None
+
+    def _by_few(self, able: Mapping[Place, Tuple[str, ...]]) -> Optional[Strategy]:
+        """A strategy in which half as many robots as promises keep them all, while the others stand still."""
+        needed = [place for place in self._objective.bad if not self._is_won(_Group(_NOBODY, (place,)))]
+        few = self._robots[: -(-len(needed) // 2)]
+        if not 1 < len(few) < len(self._robots) or any(len(able[place]) < len(self._robots) for place in needed):
+            return None
+        group = _Group(frozenset(few), self._objective.bad)
+        game = self._game(group, frozenset(), _NEEDED)
+        wanted = Objective(Kind.SAFETY, bad=self._objective.bad)
+        strategy = self._guessed(game, wanted, 1.0, free=bool(pauses(game)))
+        return None if strategy is None else self._proven({group: strategy})
 
     def _able(self, place: Place) -> Tuple[str, ...]:
         """The robots that can do something about what is to be avoided there."""

@@ -6,13 +6,15 @@ from typing import Tuple
 
 import pytest
 
+from benchmarks.ordinary_families import warehouse
 from pursue_gen.language import parse
 from pursue_gen.proof.checker import verify
 from pursue_gen.solving.attempts import decided_in_rounds
+from pursue_gen.solving.efforts import EFFORTS
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.solving.shares import EFFORTS, Known, won_in_shares
+from pursue_gen.solving.shares import Known, won_in_shares
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from tests.solving.test_one_robot import AVOIDS, FLOOR
@@ -51,9 +53,9 @@ def test_what_is_lost_is_named(text: str, parts: Tuple[str, ...]) -> None:
 def test_games_that_less_effort_decided_are_not_played_again() -> None:
     network, objective = game(TWO_PATROLS)
     known = Known()
-    first = won_in_shares(network, objective, REACTION, SolveOptions(), EFFORTS[:1], known)
+    first = won_in_shares(network, objective, REACTION, SolveOptions(), EFFORTS[1:2], known)
     won, lost = dict(known.won), set(known.lost)
-    second = won_in_shares(network, objective, REACTION, SolveOptions(), EFFORTS[1:2], known)
+    second = won_in_shares(network, objective, REACTION, SolveOptions(), EFFORTS[2:3], known)
     assert first is not None and second is not None
     assert second.strategy == first.strategy
     assert (known.won, known.lost) == (won, lost), "and nothing new had to be looked at"
@@ -62,6 +64,15 @@ def test_games_that_less_effort_decided_are_not_played_again() -> None:
 
 def test_groups_that_stand_in_each_others_way_are_joined_with_more_effort() -> None:
     network, objective = game(BOTH_AT_ONE_PLACE)
-    assert won_in_shares(network, objective, REACTION, SolveOptions(), EFFORTS[:1]) is None
-    found = won_in_shares(network, objective, REACTION, SolveOptions(), EFFORTS[1:2])
+    assert won_in_shares(network, objective, REACTION, SolveOptions(), EFFORTS[1:2]) is None
+    found = won_in_shares(network, objective, REACTION, SolveOptions(), EFFORTS[2:3])
     assert found is not None and len(found.strategy.shares) == 1
+
+
+def test_fewer_robots_than_promises_keep_what_all_can() -> None:
+    network, objective = game(warehouse(3))
+    found = won_in_shares(network, objective, REACTION, SolveOptions(), EFFORTS[:1])
+    assert found is not None
+    assert verify(network, objective, found.strategy, REACTION, closed=True).ok
+    commands = (command for block in found.strategy.blocks for command in block.commands)
+    assert {command.moves[0].automaton for command in commands} == {"bot1", "bot2"}

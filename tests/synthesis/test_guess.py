@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
 
 from benchmarks.lab_scenarios import Size, lab_scenario
+from benchmarks.ordinary_families import warehouse
 from pursue_gen.language import parse
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.proof.checker import verify
@@ -110,6 +111,38 @@ def test_a_robot_moves_for_another_one(text: str) -> None:
     assert strategy is not None
     assert verify(network, objective, strategy, DEFAULT.reaction).ok
     assert "bot2" in {command.moves[0].automaton for block in strategy.blocks for command in block.commands}
+
+
+AISLE = """
+poi "left"
+poi "aisle"
+poi "right"
+connect left and aisle distance 4
+connect aisle and right distance 4
+event "call1"
+event "call2"
+event "work1" location right duration 2
+event "work2" location left duration 2
+agent "bot1" controllable mobile 1 location left can_do work1
+agent "bot2" controllable mobile 1 location right can_do work2
+agent "people" location left can_do call1, call2
+objective: if call1 then work1 within 55
+objective: if call2 then work2 within 55
+objective: bot1 never_with bot2 at aisle
+"""
+
+
+def test_who_is_in_the_aisle_goes_on_to_where_others_wait() -> None:
+    network, objective, strategy = guessed(AISLE)
+    assert strategy is not None
+    assert verify(network, objective, strategy, DEFAULT.reaction).ok
+
+
+def test_who_has_least_to_do_keeps_out_of_the_way_of_others() -> None:
+    network, objective = game_of(warehouse(2))
+    strategy, _ = guess(network, objective, DEFAULT.reaction, without_pauses=True)
+    assert strategy is not None
+    assert verify(network, objective, strategy, DEFAULT.reaction, closed=True).ok
 
 
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))

@@ -28,12 +28,6 @@ class Dispatch {
     // Whether a move from d does the duty of an automaton, or begins it anew.
     bool touches(const Discrete& d, const Joint& joint, int duty) const { return duties_.touches(d, joint, duty); }
 
-    // How many duties are open in d.
-    int open(const Discrete& d) const {
-        const auto is_open = [&](int a) { return duties_.is_open(d, a); };
-        return static_cast<int>(std::count_if(duties_.watching().begin(), duties_.watching().end(), is_open));
-    }
-
     // Which duty each robot is at after a move to d; before, it was at those of `last`. Those just done are -1 in `memory`.
     void remember(const Discrete& d, std::vector<int>& memory, const std::vector<int>& last = {}) {
         for (int& duty : memory)
@@ -59,11 +53,14 @@ class Dispatch {
         for (std::size_t q = 0; q < robots.size(); ++q)
             for (std::size_t r = 0; r < robots.size() && wanted[q] >= 0; ++r) {
                 if (r == q || !ways[q].count(d[robots[r]]) || !leads_to_loss(together(d, robots[q], robots[r]))) continue;
-                if (wanted[r] >= 0 && (r < q || !ways[r].count(d[robots[q]]))) continue;  // it goes on by itself, or first
+                const bool blocked = ways[r].count(d[robots[q]]) && leads_to_loss(together(d, robots[r], robots[q]));
+                if (wanted[r] >= 0 && (r < q || !blocked)) continue;  // it goes on by itself, or first
                 std::set<int> out;
                 commands[r] = makes_way(d, enabled, robots[r], d[robots[q]], ways[q], out);
                 if (commands[r] >= 0 && out.count(ended(joints_[wanted[q]].target(d), robots[q])[robots[q]])) commands[q] = -1;
             }
+        for (std::size_t q = 0; q < load_.size(); ++q)
+            if (commands[q] == wanted[q] && wanted[q] >= 0 && is_in_the_way(d, q, wanted[q], memory, ways[q])) commands[q] = -1;
         // Who can leave only when somebody else is there is relieved by one who has nothing to do.
         for (std::size_t q = 0; q < robots.size(); ++q)
             for (std::size_t r = 0; r < robots.size() && commands[q] >= 0; ++r) {
@@ -78,24 +75,44 @@ class Dispatch {
 
   private:
     static constexpr std::size_t BOUNDS_OF_A_STATE = 1024;  // a look at one takes about as long as at so many bounds
+    static constexpr int STEPS_AHEAD = 16;                  // so many commands of another robot are looked at
 
-    // Gives each duty to one of the robots that can do it, those that few can do first.
+    // Gives each duty to one of the robots that can do it: those that few can do first, then what takes longest.
     void share_out() {
         const std::size_t robots = duties_.robots().size();
-        std::vector<std::pair<std::vector<std::size_t>, int>> able;
+        std::vector<std::tuple<std::vector<std::size_t>, std::int64_t, int>> able;  // who, its time, the duty
         for (const int a : duties_.watching()) {
             std::vector<std::size_t> who;
+            std::int64_t time = 0;
             for (std::size_t r = 0; r < robots; ++r)
-                if (duties_.can(duties_.robots()[r], a)) who.push_back(r);
-            if (!who.empty()) able.emplace_back(std::move(who), a);
+                if (duties_.can(duties_.robots()[r], a)) {
+                    who.push_back(r);
+                    time = std::max(time, time_for(duties_.robots()[r], a));
+                }
+            if (!who.empty()) able.emplace_back(std::move(who), time, a);
         }
-        std::stable_sort(able.begin(), able.end(), [](const auto& x, const auto& y) { return x.first.size() < y.first.size(); });
-        std::vector<int> load(robots, 0);
-        for (const auto& [who, a] : able) {
-            const std::size_t least = *std::min_element(who.begin(), who.end(), [&](auto x, auto y) { return load[x] < load[y]; });
-            ++load[least];
+        std::stable_sort(able.begin(), able.end(), [](const auto& x, const auto& y) {
+            return std::pair(std::get<0>(x).size(), -std::get<1>(x)) < std::pair(std::get<0>(y).size(), -std::get<1>(y));
+        });
+        load_.assign(robots, 0);
+        for (const auto& [who, time, a] : able) {
+            const std::size_t least = *std::min_element(who.begin(), who.end(), [&](auto x, auto y) { return load_[x] < load_[y]; });
+            load_[least] += time;
             of_[a] = least;
         }
+    }
+
+    // About how long a robot takes for the duty of automaton a from where it begins.
+    std::int64_t time_for(int robot, int a) {
+        Discrete d;
+        for (const auto& automaton : game_.automata) d.push_back(automaton.initial);
+        d.insert(d.end(), game_.variables.begin(), game_.variables.end());
+        const auto& bounds = game_.automata[a].invariants;
+        const auto open = std::find_if(bounds.begin(), bounds.end(), [](const auto& some) { return !some.empty(); });
+        if (open != bounds.end()) d[a] = static_cast<int>(open - bounds.begin());
+        duties_.look(d, robot);
+        const std::int64_t cost = duties_.cost(duties_.done(a));
+        return cost == Duties::NEVER ? 0 : cost;
     }
 
     // The next duty for a robot after its last one that no robot is at, behind a number: less is better.
@@ -119,10 +136,13 @@ class Dispatch {
     }
 
     // The state with one robot where another one is.
-    Discrete together(Discrete d, int robot, int other) const {
-        d[robot] = d[other];
+    Discrete together(const Discrete& d, int robot, int other) const { return placed(d, robot, d[other]); }
+
+    // The state with a robot at a location.
+    Discrete placed(Discrete d, int robot, int location) const {
+        d[robot] = location;
         for (const Edge& edge : game_.automata[robot].edges)
-            if (edge.target == d[other])
+            if (edge.target == location)
                 for (const auto& set : edge.assign) d[game_.automata.size() + set.variable] = set.value;
         return d;
     }
@@ -141,6 +161,45 @@ class Dispatch {
                 !joints_[j].changes_nothing(d, game_))
                 return j;
         return -1;
+    }
+
+    // Whether a command takes robot q to where one that has more to do may want to be before q has left again. `way`: q's.
+    bool is_in_the_way(const Discrete& d, std::size_t q, int command, const std::vector<int>& memory, const std::set<int>& way) {
+        const int robot = duties_.robots()[q];
+        const Discrete there = ended(joints_[command].target(d), robot);
+        duties_.look(d, robot);
+        const auto cost = [&](int location) { return duties_.cost(duties_.at_location(robot, location)); };
+        const std::int64_t arrival = cost(there[robot]);
+        std::int64_t left = Duties::NEVER;
+        for (const int location : way)
+            if (cost(location) > arrival) left = std::min(left, cost(location));
+        for (std::size_t r = 0; r < load_.size(); ++r)
+            if (std::pair(load_[r], q) > std::pair(load_[q], r) && memory[r] >= 0 && comes(d, r, memory[r], there, robot, left))
+                return true;
+        return false;
+    }
+
+    // Whether robot r, on its way to a duty, may come within that time to where it must not be with another, who is at its
+    // place in `there`. False where it does not come past the place at which the other one is in d.
+    bool comes(const Discrete& d, std::size_t r, int duty, const Discrete& there, int other, std::int64_t within) {
+        const int robot = duties_.robots()[r];
+        if (leads_to_loss(together(d, robot, other))) return false;
+        Discrete now = ended(d, robot);  // it may be there at once
+        std::vector<int> enabled;
+        std::int64_t time = 0;
+        for (int step = 0; step < STEPS_AHEAD && time < within; ++step) {
+            if (leads_to_loss(placed(there, robot, now[robot]))) return true;
+            std::set<int> way;
+            joints_.enabled(now, enabled);
+            const int next = wants(now, enabled, robot, duty, way);
+            if (next < 0) return false;
+            duties_.look(now, robot);
+            now = ended(joints_[next].target(now), robot);
+            const std::int64_t cost = duties_.cost(duties_.at_location(robot, now[robot]));
+            if (cost == Duties::NEVER) return false;
+            time += cost + 1;
+        }
+        return false;
     }
 
     // What a robot does next for a duty, -1: nothing; `way`: the locations that it passes then.
@@ -213,6 +272,7 @@ class Dispatch {
     Joints& joints_;
     const Guess guess_;
     Duties duties_;
+    std::vector<std::int64_t> load_;  // per robot how long its duties take it, none: they are not shared out
     std::map<int, std::size_t> of_;  // whose duty it is, by automaton
 };
 

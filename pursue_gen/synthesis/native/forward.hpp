@@ -98,7 +98,7 @@ class Forward {
         std::vector<int> others;     // the environment's
         std::map<int, int> targets;  // where a joint move leads, -1: to what is to be avoided
         std::vector<Bound> limits;   // invariants
-        int open = 0;                // so many duties
+        std::vector<int> running;    // the clocks of open duties
         std::vector<std::pair<int, Z>> zones;  // at which plays enter, behind who moved last
         std::vector<wide_t> lower, upper;  // per clock the largest bounds that matter from here on
     };
@@ -128,8 +128,10 @@ class Forward {
             if (!joints_[j].controllable && !joints_[j].changes_nothing(d, game_)) s.others.push_back(j);
         s.commands = dispatch_.decided(d, enabled, memory);
         for (std::size_t a = 0; a < game_.automata.size(); ++a)
-            for (const Bound& b : game_.automata[a].invariants[d[a]]) s.limits.push_back(b);
-        s.open = dispatch_.open(d);
+            for (const Bound& b : game_.automata[a].invariants[d[a]]) {
+                s.limits.push_back(b);
+                if (watches(game_, static_cast<int>(a))) s.running.push_back(b.i);
+            }
         s.lower.assign(Z::size, -1);
         s.upper.assign(Z::size, -1);
         for (std::size_t a = 0; a < game_.automata.size(); ++a)
@@ -169,6 +171,7 @@ class Forward {
             up(future);
             invariant(k, future);
             Federation<Z> waited{future};
+            std::vector<std::pair<Z, int>> entrances;
             for (const int c : s.commands) {
                 Z common = future;
                 if (!guard(joints_[c], common)) continue;
@@ -179,9 +182,15 @@ class Forward {
                     // At once; behind a strict bound there is no first instant: within the next unit of scaled time.
                     const wide_t soon = -(b.raw >> 1) + (b.raw & 1 ? 0 : 1);
                     Z entrance = common;
-                    if (b.i == 0 && constrain(entrance, b.j, 0, static_cast<R>(2 * soon + 1)))
-                        out.acts.emplace_back(entrance, c);
+                    if (b.i == 0 && constrain(entrance, b.j, 0, static_cast<R>(2 * soon + 1))) entrances.emplace_back(entrance, c);
                 }
+            }
+            // Whatever comes first takes effect soon.
+            for (const Z& wait : waited) {
+                Z met = wait;
+                up_within(met, game_.delta + 1);
+                for (const auto& [entrance, c] : entrances)
+                    if (Z act = entrance; intersect(act, met)) out.acts.emplace_back(act, c);
             }
             append(out.waited, waited);
         }
@@ -282,7 +291,17 @@ class Forward {
         const auto covered = [&](const auto& other) { return includes(z, other.second); };
         s.zones.erase(std::remove_if(s.zones.begin(), s.zones.end(), covered), s.zones.end());
         s.zones.emplace_back(owner, z);
-        queue_.emplace(s.open, std::pair(k, z));
+        queue_.emplace(rank(s, z), std::pair(k, z));
+    }
+
+    // What comes first. One robot: few open duties, then young ones, as what comes before is complete then. Several are in
+    // each other's way now and then, and come to a state at many times: first in, first out.
+    std::pair<int, wide_t> rank(const Spot& s, const Z& z) const {
+        if (robots() > 1) return {0, 0};
+        wide_t age = 0;
+        for (const int x : s.running)
+            if (z.at(x, 0) < INF<R>) age = std::max<wide_t>(age, z.at(x, 0));
+        return {static_cast<int>(s.running.size()), age};
     }
 
     // Extra+_LU (Behrmann et al. 2006): what is beyond all bounds that matter is forgotten. That only adds plays.
@@ -347,7 +366,7 @@ class Forward {
     const std::size_t width_;
     States states_;
     std::deque<Spot> spots_;
-    std::multimap<int, std::pair<int, Z>> queue_;  // by the number of open duties: what comes before is complete then
+    std::multimap<std::pair<int, wide_t>, std::pair<int, Z>> queue_;  // by `rank`
     Table lower_, upper_;
     std::size_t followed_ = 0;
 };

@@ -1,0 +1,38 @@
+"""How hard strategies in shares are looked for (see `shares`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How hard shares are looked for: `work` for all games of groups, `game` for one of them, which has at most so many
+    discrete `states` and `clocks` (of more, zones cost more than is counted). `thorough`: games that are not won with
+    some hidden are played with all of them as well; `free`: they are played without the pauses of the environment;
+    `joins`: groups that cannot be played beside each other are joined. `few`: only half as many robots as promises keep
+    them all, by a policy, where all robots can.
+    """
+
+    work: int
+    game: int = 20_000_000
+    states: int = 20_000
+    clocks: int = 6
+    thorough: bool = False
+    free: bool = True
+    joins: bool = True
+    few: bool = False
+
+
+EFFORTS = (
+    Effort(1_000_000, few=True),
+    Effort(10_000_000, game=150_000, joins=False),
+    Effort(30_000_000, game=1_000_000),
+    Effort(80_000_000, game=4_000_000),
+    Effort(40_000_000),
+    Effort(200_000_000),
+    Effort(60_000_000, thorough=True),
+    Effort(60_000_000, thorough=True, free=False),
+    Effort(300_000_000, game=120_000_000, states=200_000, clocks=8),
+)
+"""One after the other, until one wins: few groups that need more than the first are won with little work."""
