@@ -8,6 +8,7 @@ once). `native` has the same in C++. See the design of the game for the rules.
 
 from __future__ import annotations
 
+import operator
 from collections import Counter
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -209,7 +210,8 @@ def pruned(strategy: Strategy, report: Report) -> Strategy:
         fewer = replace(block, wait=kept(block.wait, b, "wait"), commands=tuple(c for c in commands if c.zones))
         if fewer.wait or fewer.commands:
             blocks.append(fewer)
-    return replace(strategy, blocks=tuple(blocks))
+    same = len(blocks) == len(strategy.blocks) and all(map(operator.is_, blocks, strategy.blocks))
+    return strategy if same else replace(strategy, blocks=tuple(blocks))
 
 
 def pruned_ranks(strategy: Strategy, report: Report, ranks: Mapping[ZoneKey, int]) -> Dict[ZoneKey, int]:

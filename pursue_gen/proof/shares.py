@@ -35,6 +35,23 @@ Names = Tuple[FrozenSet[str], FrozenSet[str]]
 def shares_of(network: Network, objective: Objective, strategy: Strategy) -> Iterator[Part]:
     """The shares as games of their own, in their order (`Part.stage` is the number of the share, from 0). After one
     with a fault there are no more."""
+    for known, parts in _latest:
+        if known[2] is strategy and known == (network, objective, strategy):
+            yield from parts
+            return
+    parts = []
+    for part in _taken_apart(network, objective, strategy):
+        parts.append(part)
+        yield part
+    _latest[:] = [((network, objective, strategy), parts)]
+
+
+_latest: List[Tuple[Tuple[Network, Objective, Strategy], List[Part]]] = []
+"""What was taken apart last: one strategy is checked several times in a row."""
+
+
+def _taken_apart(network: Network, objective: Objective, strategy: Strategy) -> Iterator[Part]:
+    """The same, looked at anew."""
     fault = _misplaced(network, objective, strategy)
     numbers = [strategy.numbers_of(k, avoided[0]) for k, avoided in enumerate(strategy.shares) if avoided]
     shares = [[strategy.blocks[n] for n in some] for some in numbers]

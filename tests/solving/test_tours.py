@@ -83,6 +83,15 @@ def test_who_passes_the_place_of_another_is_not_relied_on() -> None:
     assert first.name in verify(network, objective, blind, LATE).reason
 
 
+def test_people_who_walk_about_and_patrols_of_one_robot_change_nothing() -> None:
+    text = corridor(6, 2, " every 162") + "objective: patrol hall6, room6 every 120 by bot2\n"
+    place = text.index("objective")
+    people = 'agent "guest" mobile 2 location room1\nagent "nurse" human controllable location hall1\n'
+    network, objective, strategy = tours_of(text[:place] + people + text[place:])
+    assert {"hall6", "room6"} <= set(next(tour.stops for tour in strategy.tours if tour.robot == "bot2"))
+    assert verify(network, objective, strategy, LATE).ok
+
+
 def test_between_two_rounds_a_robot_stays_as_long_as_the_period_allows() -> None:
     short, long = (tours_of(corridor(6, 1, f" every {every}"))[2] for every in (130, 500))
     assert short.tours == long.tours

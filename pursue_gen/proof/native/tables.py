@@ -89,7 +89,10 @@ def available() -> bool:
 
 
 _latest: List[Tables] = []
-"""The tables that were made last: one strategy is checked several times in a row."""
+"""The tables that were made last: one strategy is checked several times in a row, or each part of it."""
+
+_KEPT = 50_000
+"""So many blocks they have, but for the last ones."""
 
 
 def tables_of(network: Network, strategy: Strategy) -> Tables:
@@ -103,7 +106,9 @@ def tables_of(network: Network, strategy: Strategy) -> Tables:
         made = _Maker(network).tables(strategy)
     except (KeyError, ValueError):  # names that the network does not have: Python says what is wrong, where it matters
         raise NotHeld from None
-    _latest[:] = [made]
+    _latest.append(made)
+    while len(_latest) > 1 and sum(len(tables.strategy.blocks) for tables in _latest) > _KEPT:
+        del _latest[0]
     return made
 
 
