@@ -2,8 +2,9 @@
 
 Measures the whole command `solve` on random lab scenarios (lab_scenarios.py) and on families of ordinary work
 (ordinary_families.py), in the default game and with at most 1 GiB. Each command is a process of its own, and what
-counts is its processor time. `--out docs` keeps the figures in docs/benchmarks/results.json, each with the version that
-was measured, and writes docs/benchmarks.md again.
+counts is its processor time. `--driving 41` simulates lab scenarios that are won, and measures how far robots drive
+(driving.py). `--out docs` keeps the figures in docs/benchmarks/results.json, each with the version that was measured,
+and writes docs/benchmarks.md again.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from pathlib import Path
 from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from benchmarks.command import Goal, command_measured, files_of, terminal
+from benchmarks.driving import driving_measured
 from benchmarks.lab_scenarios import LARGE, SMALL, Size, lab_scenario
 from benchmarks.measure import Bounds, Row
 
@@ -74,6 +76,7 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--labs", type=int, default=40, metavar="SEEDS", help="lab scenarios (40)")
     parser.add_argument("--large", type=int, default=0, metavar="SEEDS", help="lab scenarios of the larger size (0)")
+    parser.add_argument("--driving", type=int, default=0, metavar="SEEDS", help="lab scenarios that are simulated (0)")
     names = sorted({goal.name for goal in GOALS})
     parser.add_argument("--families", nargs="*", default=names, metavar="NAME", help=f"{'; '.join(names)} (all)")
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="write the figures to benchmarks.md there")
@@ -82,15 +85,19 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     if unknown:
         parser.error(f"no family is called {', '.join(unknown)}; there is {', '.join(names)}")
     rows: List[Row] = []
+    driving: List[Row] = []
     try:
         for row in _rows(given):
             rows.append(row)
             print(terminal(row), flush=True)
+        for row in driving_measured(given.driving):
+            driving.append(row)
+            print(f"{row['name']}: driven {row['driven']:g}, at least {row['least']:g}", flush=True)
     except KeyboardInterrupt:
         print("interrupted; nothing was written", file=sys.stderr)
         return 130
     if given.out:
-        keep(given.out, rows)
+        keep(given.out, rows, driving)
     return 0
 
 
@@ -100,7 +107,7 @@ def _rows(given: argparse.Namespace) -> Iterator[Row]:
     yield from labs_measured("large lab", given.large)
 
 
-def keep(folder: Path, rows: Sequence[Row]) -> None:
+def keep(folder: Path, rows: Sequence[Row], driving: Sequence[Row] = ()) -> None:
     """Writes the rows into the results of the benchmarks, in place of those of the same commands, each with the version
     that it is of; and the page again."""
     from benchmarks.synthesis import version, write
@@ -112,6 +119,8 @@ def keep(folder: Path, rows: Sequence[Row]) -> None:
     known.update({row["name"]: {**row, **now} for row in rows})
     order = {goal.title: place for place, goal in enumerate(GOALS)}
     results["ordinary"] = sorted(known.values(), key=lambda row: (order.get(row["name"], len(order)), row["size"]))
+    if driving:
+        results["driving"] = [{**row, **now} for row in driving]
     write(folder, results, plots=False)
 
 

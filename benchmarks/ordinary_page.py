@@ -10,6 +10,9 @@ from benchmarks.measure import Row
 from benchmarks.ordinary import LABS
 from benchmarks.tables import DASH, markdown, number, seconds
 
+_NEAR = 1.2
+"""Robots should drive at most so many times what has to be driven."""
+
 _NONE = "Not measured yet: `python -m benchmarks.ordinary --out docs`.\n"
 
 
@@ -48,6 +51,24 @@ def labs(results: Mapping[str, Any]) -> str:
         "of those decided, s", "MiB, most",
     )  # fmt: skip
     return f"{_measured(rows)}\n{markdown(head, lines, left=1)}\n" + "\n\n".join(undecided) + "\n" * bool(undecided)
+
+
+def driving(results: Mapping[str, Any]) -> str:
+    """How far robots drive in lab scenarios in which nobody else moves, a line for each in which they do."""
+    rows = results.get("driving", ())
+    if not rows:
+        return _NONE
+    those = [row for row in rows if row["driven"] > 0]
+    near = sum(row["driven"] <= _NEAR * row["least"] for row in those)
+    lines = [
+        [row["name"], number(row["driven"]), number(row["least"])]
+        + [f"{row['driven'] / row['least']:.2f}" if row["least"] else DASH]
+        for row in those
+    ]
+    counts = f"Of {len(rows)} scenarios that are won, in {len(rows) - len(those)} nobody drives."
+    counts += f" Beside it, at most {_NEAR:g} times the bound: {near} of {len(those)}."
+    table = markdown(("scenario", "driven", "bound", "quotient"), lines, left=1)
+    return f"{_measured(rows)}\n{counts}\n\n{table}"
 
 
 def _lab(row: Row) -> str:

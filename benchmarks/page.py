@@ -73,6 +73,7 @@ PARTS: Dict[str, Callable[[Results], str]] = {
     "guaranteed times": lambda results: command.times_table(results["rows"]),
     "ordinary work": ordinary_page.families,
     "lab scenarios": ordinary_page.labs,
+    "driving": ordinary_page.driving,
     "random games": lambda results: random_page.table(results["rows"]),
     "agreement": agreement_page.table,
     "tchecker": lambda results: tchecker.table(results["rows"]),
