@@ -54,7 +54,9 @@ def solve(
     from pursue_gen.synthesis.plan import write_plan
 
     printed, output = _plan_to(plan_, output, as_json_)
+    start = request.options.limits.now()
     network, objective, scenario = game_from(files, request, as_json_)
+    request = request.since(start)
     rules, limits = request.rules(network), request.options.limits
     try:
         with progress_line(as_json_) as progress:

@@ -52,7 +52,9 @@ def ws(
     from pursue_gen.workspace.map_check import check_spots
 
     under = None if floor is None else read_floor(floor)
+    start = request.options.limits.now()
     read = scenario_from(scenario, request)
+    request = request.since(start)
     if floor is not None:
         show(check_spots(read, read_ground(floor), spot_distance))
     if request.decides_ends:

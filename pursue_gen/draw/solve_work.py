@@ -105,6 +105,7 @@ def _solve(given: Work, pipe: Connection) -> None:
     progress = Progressing(pipe)
     request = SolveRequest(options=SolveOptions(limits=limits, progress=progress))
     scenario = settled(scenario_of(given), request, progress)
+    request = request.since(start)
     try:
         found = promised_of(scenario, request, progress)
     except (Lost, LimitHit) as problem:

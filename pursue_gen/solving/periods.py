@@ -35,6 +35,9 @@ _LITTLE = 5_000_000
 _SHARE = 0.4
 """The part of what is left of the budget that one game may take."""
 
+_SEARCH = 0.5
+"""The part of the seconds that the search may take."""
+
 _WALKS = 2
 """The longest period that is tried, for each place: walks along all ways there and back, with all events on the way."""
 
@@ -81,6 +84,8 @@ def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAU
         return scenario
     base, limits = scenario.giving_up(scenario.optional), options.limits
     limits = limits if limits.chosen.seconds or limits.work else replace(limits, work=WORK)
+    # With the period that is found the scenario is solved and proven: half of the seconds are for that.
+    limits = replace(limits, seconds=limits.left * _SEARCH, spent=0.0)
     budget = Budget(limits, options.progress, options.engine, whole=options.whole)
     tours = None if options.whole else _of_tours(base, rules)
     # Nothing below `low` is won; `high` is, where it is `known`.

@@ -44,6 +44,10 @@ class SolveRequest:
         """True if nothing but limits was asked for."""
         return replace(self, options=replace(self.options, limits=NO_LIMITS)) == SolveRequest()
 
+    def since(self, start: float) -> SolveRequest:
+        """The same with the limits that are left of work that began at `start` (of `limits.now`)."""
+        return replace(self, options=self.options.since(start))
+
     @property
     def deadline(self) -> Optional[Fraction]:
         """The time units within which the goal has to be reached; None: some time. Raises PursueError (status 2)."""

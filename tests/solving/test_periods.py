@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any, List
 
 import pytest
 
+from pursue_gen.diagnostics import usage_error
 from pursue_gen.language import parse
 from pursue_gen.language.checks import check
 from pursue_gen.language.scenario import Patrol, Scenario
@@ -17,6 +19,7 @@ from pursue_gen.solving.periods import least_period, longest, with_period, witho
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import DEFAULT, IDEAL
 from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits
 from tests.authoring.commands import pursue
 from tests.patrols import corridor
@@ -99,6 +102,41 @@ def test_a_search_that_stops_early_says_what_is_known() -> None:
     tours = period(stopped[0])
     assert f"is at most {tours} units; nothing below 2 can be promised." in periods_found(stopped[0])[0]
     assert is_won(stopped[0].text) and tours < longest(asked)
+
+
+def test_the_search_leaves_half_of_the_limit_for_what_is_solved_then(monkeypatch: pytest.MonkeyPatch) -> None:
+    given: List[Limits] = []
+
+    class Watched(Budget):
+        def __init__(self, limits: Limits, *others: Any, **more: Any) -> None:
+            given.append(limits)
+            super().__init__(limits, *others, **more)
+
+    monkeypatch.setattr("pursue_gen.solving.periods.Budget", Watched)
+    least_period(rooms("patrol gate, hall by bot1"), DEFAULT, SolveOptions(limits=Limits(seconds=100.0, spent=20.0)))
+    assert [each.left for each in given] == [40.0]
+
+
+def test_the_limit_of_a_command_is_for_the_search_and_for_what_is_solved_then(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """What the search has taken is not there for the rest."""
+    file = tmp_path / "rooms.pur"
+    file.write_text(ROOMS + "objective: patrol gate, hall by bot1\n", encoding="utf-8")
+    left: List[float] = []
+
+    def searched(scenario: Scenario, request: SolveRequest, *_: Any) -> Scenario:
+        return with_period(scenario, 40)
+
+    def solved(scenario: Scenario, request: SolveRequest, *_: Any) -> None:
+        left.append(request.options.limits.left)
+        raise usage_error("that is enough", "")
+
+    monkeypatch.setattr("pursue_gen.solving.inputs.settled", searched)
+    monkeypatch.setattr("pursue_gen.cli.solution.promised_of", solved)  # so it is imported before the next one
+    monkeypatch.setattr("pursue_gen.solving.optional.promised_of", solved)
+    pursue("solve", file, "--limit", "10")
+    assert left and 0 < left[0] < 10
 
 
 def test_a_search_among_other_promises_that_stops_early_has_the_longest_period() -> None:
