@@ -249,8 +249,11 @@ def _tour(walker: _Walker, patrol: _Patrol, mine: Round) -> Optional[Tour]:
     start = walker.automaton.initial
     stops = [start, *walker.stops([start, *places])]
     back = walker.stops([places[-1], places[0]])
-    again = len(walker.stops([start, places[0]])) if back else len(stops)
-    return Tour(walker.automaton.name, (*stops, *back[:-1]), again)
+    if not back:
+        return Tour(walker.automaton.name, tuple(stops), len(stops))
+    if places[0] == start:  # where it waits at first it does not in each round
+        return Tour(walker.automaton.name, (*stops, *back), 1)
+    return Tour(walker.automaton.name, (*stops, *back[:-1]), len(walker.stops([start, places[0]])))
 
 
 def _pauses(walker: _Walker, patrol: _Patrol, mine: Round) -> Tuple[Fraction, Fraction]:

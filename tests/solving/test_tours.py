@@ -64,6 +64,19 @@ def test_a_plan_with_tours_is_read_as_it_was_written() -> None:
             read_plan("\n".join(damaged), network, "plan.txt")
 
 
+def test_a_robot_may_start_at_a_place_of_its_round() -> None:
+    """It waits there before it sets off, and not in each round again."""
+    rooms = [f"room{n}" for n in range(1, 6)]
+    lines = [f'poi "{place}"' for place in ("dock", "hall", *rooms)] + ["connect dock and hall distance 4"]
+    lines += [f"connect hall and {room} distance {2 + n % 3}" for n, room in enumerate(rooms)]
+    lines += ['agent "bot1" controllable mobile 1 location dock']
+    lines += [f"objective: patrol {', '.join(rooms)}, dock every 80 by bot1"]
+    network, objective, strategy = tours_of("\n".join(lines))
+    (tour,) = strategy.tours
+    assert (tour.stops[0], tour.stops[-1], tour.again) == ("dock", "dock", 1)
+    assert verify(network, objective, strategy, LATE).ok
+
+
 def test_a_robot_may_stay_at_its_only_place() -> None:
     network, objective, strategy = tours_of(corridor(3, 1, " every 9", "hall1"))
     (tour,) = strategy.tours
