@@ -12,7 +12,7 @@ from typing import AbstractSet, Collection, Dict, Iterator, List, Set, Tuple
 
 from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.network import Automaton, Edge, Network, Test, is_end
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Test, is_end
 from pursue_gen.tga.part import part_of
 from pursue_runtime.locations import is_movement
 
@@ -51,9 +51,10 @@ def without_others(game: Network, bad: Collection[Place], others: AbstractSet[st
     return replace(game, automata=tuple(map(watching, game.automata)))
 
 
-def with_one_walk(game: Network, watching: Collection[str]) -> Iterator[Network]:
+def with_one_walk(game: Network, watching: Collection[str], hurried: bool = False) -> Iterator[Network]:
     """Networks in which one agent whom nobody controls goes to a place that these automata ask about, by the fewest
-    ways, and stays there; all the others stay where they are unless they have to leave in time.
+    ways, and stays there; all the others stay where they are unless they have to leave in time. `hurried`: it sets off
+    within the first time unit in which it may.
 
     The environment need not begin any movement, so what it wins so it wins.
     """
@@ -61,7 +62,31 @@ def with_one_walk(game: Network, watching: Collection[str]) -> Iterator[Network]
     for automaton in game.automata:
         if is_agent(automaton) and not any(edge.controllable for edge in automaton.edges):
             ways = (_way(automaton, test) for test in sorted(asked, key=lambda t: (t.variable, t.value)))
-            yield from (_standing(game, way) for way in dict.fromkeys(ways) if way)
+            walks = ((_standing(game, way), way) for way in dict.fromkeys(ways) if way)
+            yield from (_hurried(walk, automaton.name, way) if hurried else walk for walk, way in walks)
+
+
+def _hurried(game: Network, name: str, way: Collection[Edge]) -> Network:
+    """The network in which an agent does not linger before the movements of its way.
+
+    It could do so anyway. Each way into such a location resets the clock, so that time goes on, and the agent can leave
+    whatever the others do.
+    """
+    agent = game.automaton(name)
+    until: Dict[str, ClockBound] = {}
+    for edge in way:
+        enters = [each for each in agent.edges if each.target == edge.source]
+        bounds = edge.guard.clocks
+        if is_movement(edge.target) and len(bounds) == 1 and bounds[0].op in (">", ">=") and not edge.guard.integers:
+            starts = edge.source != agent.initial or not game.start
+            if starts and all(bounds[0].clock in each.resets for each in enters):
+                until[edge.source] = ClockBound(bounds[0].clock, "<=", bounds[0].bound + 1)
+    places = (
+        replace(place, invariant=(until[place.name],)) if place.name in until and not place.invariant else place
+        for place in agent.locations
+    )
+    changed = replace(agent, locations=tuple(places))
+    return replace(game, automata=tuple(changed if each is agent else each for each in game.automata))
 
 
 def standing(game: Network) -> Network:

@@ -33,6 +33,9 @@ _ALONE, _SHARE = 0.5, 0.05
 _STATES = 20_000
 """So many discrete states it may have."""
 
+_WALK, _WALK_STATES = 3_000_000, 60_000
+"""The work of all games in which one person walks at once, and the discrete states of each."""
+
 _QUICK, _QUICK_GAME, _FEW_STATES = 6_000_000, 1_000_000, 4000
 """The work of all games of single promises that are tried before anything else, that of each, and its states."""
 
@@ -75,6 +78,14 @@ def lost_promises(
     pairs = (_together((*a.goal, *b.goal), (*a.bad, *b.bad)) for a, b in combinations(single, 2))
     lost = (wanted for wanted in pairs if _is_lost(network, objective, wanted, reaction, budget))
     return tuple(islice(lost, 1))
+
+
+def lost_to_one_walk(game: Network, objective: Objective, reaction: Fraction, options: SolveOptions) -> bool:
+    """True if somebody whom nobody controls wins by going to one place at once, and staying there; False where little
+    work does not find that."""
+    budget = Budget(replace(options.limits, work=_WALK, states=_WALK_STATES), options.progress, options.engine)
+    walks = with_one_walk(game, watched(objective), hurried=True)
+    return any(_won(acting_at_most(walk, objective, 1), objective, reaction, budget, 1.0) is False for walk in walks)
 
 
 def _is_lost(network: Network, objective: Objective, wanted: Objective, reaction: Fraction, budget: Budget) -> bool:

@@ -19,6 +19,7 @@ from pursue_gen.solving.lost_promises import (
     cannot_be_promised,
     lost_alone,
     lost_promises,
+    lost_to_one_walk,
     only_promises,
     promises,
     watched,
@@ -208,6 +209,8 @@ def _with_little_work(
         known = lost or decided_in_rounds(game, objective, reaction, options.since(start))
         if known:
             return known
+    if verdict is None and objective.goal and lost_to_one_walk(game, objective, reaction, options.since(start)):
+        return ()
     if verdict is None and rests:
         found = won_without_pauses(game, objective, reaction, work, options.since(start))
         if found is not None:

@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
 from typing import Sequence, Tuple
 
 import pytest
 
 from benchmarks.lab_scenarios import Size, lab_scenario
+from benchmarks.ordinary_families import errands_beside_a_visitor
 from pursue_gen.language import parse
 from pursue_gen.outcomes import Lost
 from pursue_gen.solving.freer import standing, with_one_walk, without_turns
-from pursue_gen.solving.lost_promises import lost_alone, lost_promises, only_promises, promises, watched
+from pursue_gen.solving.lost_promises import (
+    lost_alone,
+    lost_promises,
+    lost_to_one_walk,
+    only_promises,
+    promises,
+    watched,
+)
 from pursue_gen.solving.optional import promised_of
 from pursue_gen.solving.options import DEFAULT
 from pursue_gen.solving.request import SolveRequest
@@ -157,6 +166,47 @@ def test_a_guest_walks_to_where_he_is_in_the_way_and_stays_there() -> None:
     assert moves == [[("gate", "going_gate_to_yard"), ("yard", "going_yard_to_shed")]]
     assert not any(is_movement(e.target) for walk in walks for e in walk.automaton("other").edges)
     assert not solve(walks[0], objective, Rules().reaction).won and not solve(network, objective, Rules().reaction).won
+
+
+RACE = """
+poi "gate"
+poi "yard"
+poi "hall"
+poi "shed"
+connect gate and yard distance 2
+connect yard and hall distance 2
+connect yard and shed distance 2
+event "mend" location shed duration 2
+agent "bot1" controllable mobile 1 location hall can_do mend
+agent "guest" mobile {pace} location gate
+objective: avoid bot1 at yard and guest at yard
+reach_objective: do mend
+"""
+
+
+@pytest.mark.parametrize(("pace", "too_late"), [(1, True), (5, False)])
+def test_a_guest_who_walks_at_once_comes_first_or_not(pace: int, too_late: bool) -> None:
+    network, objective = game(RACE.format(pace=pace))
+    assert lost_to_one_walk(network, objective, Rules().reaction, DEFAULT) is too_late
+    assert solve(network, objective, Rules().reaction).won is not too_late
+
+
+def test_who_walks_at_once_lingers_nowhere_on_the_way() -> None:
+    network, objective = game(errands_beside_a_visitor(6))
+    (walk,) = with_one_walk(network, watched(objective), hurried=True)
+    stays = [place for place in walk.automaton("visitor").locations if not is_movement(place.name)]
+    assert {place.name: bound.bound for place in stays for bound in place.invariant} == {"room1": 2, "hall": 2}
+    assert lost_to_one_walk(network, objective, Rules().reaction, DEFAULT)
+
+
+def test_nobody_is_hurried_out_of_where_time_might_stop() -> None:
+    network, objective = game(STAYS)
+    guest = network.automaton("guest")
+    kept = replace(guest, edges=tuple(replace(e, resets=()) if e.target == "yard" else e for e in guest.edges))
+    changed = replace(network, automata=tuple(kept if a is guest else a for a in network.automata))
+    (walk,) = with_one_walk(changed, watched(objective), hurried=True)
+    places = walk.automaton("guest").locations
+    assert [place.name for place in places if place.invariant and not is_movement(place.name)] == ["gate"]
 
 
 def test_a_milestone_that_cannot_be_reached_is_named_among_others() -> None:
