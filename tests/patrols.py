@@ -44,9 +44,9 @@ def corridor(rooms: int, robots: int, every: str, patrolled: str = "") -> str:
 
 
 @st.composite
-def small_patrols(draw: st.DrawFn, robots: int = 2) -> str:
-    """A tree of three or four places, one or two robots, and places that any of them, or one of them, has to visit."""
-    size, many = draw(st.integers(3, 4)), draw(st.integers(1, robots))
+def small_patrols(draw: st.DrawFn, least: int = 3) -> str:
+    """A tree of up to four places, one or two robots, and places that any of them, or one of them, has to visit."""
+    size, many = draw(st.integers(least, 4)), draw(st.integers(1, 2))
     names = "abcd"[:size]
     lines = [f'poi "{name}"' for name in names]
     for k in range(1, size):

@@ -19,7 +19,7 @@ from pursue_gen.language.wording import patrol_text, periods_found
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.solving.tours import PATROL, period_of_tours
+from pursue_gen.solving.tours import PATROL, least_period_of_patrols, period_of_tours
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.enforced import enforced
@@ -89,7 +89,8 @@ def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAU
     budget = Budget(limits, options.progress, options.engine, whole=options.whole)
     tours = None if options.whole else _of_tours(base, rules)
     # Nothing below `low` is won; `high` is, where it is `known`.
-    low, high, known = 2, longest(scenario) if tours is None else max(2, tours), tours is not None
+    low, high = (2, longest(scenario)) if tours is None else tours
+    known = tours is not None
     if tours is not None and len(base.safety) >= PATROL:
         return with_period(scenario, high, low)
     floor, probe = low, min(high, _farthest(scenario))
@@ -104,12 +105,16 @@ def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAU
     return with_period(scenario, high, low)
 
 
-def _of_tours(scenario: Scenario, rules: Rules) -> Optional[int]:
-    """The period that tours keep; None where there are none, or something else is asked for, too."""
+def _of_tours(scenario: Scenario, rules: Rules) -> Optional[Tuple[int, int]]:
+    """A period below which nothing can be promised, and the one that tours keep; None where there are none, or
+    something else is asked for, too."""
     if scenario.reach or len(without_period(scenario)) < len(scenario.safety):
         return None
     tried = with_period(scenario, longest(scenario))
-    return period_of_tours(played(translate(tried), rules), scenario_objective(tried), rules.reaction)
+    game = played(translate(tried), rules), scenario_objective(tried), rules.reaction
+    every = period_of_tours(*game)
+    least = max(2, least_period_of_patrols(*game))
+    return None if every is None else (least, max(least, every))
 
 
 def quickly_found(scenario: Scenario) -> List[str]:

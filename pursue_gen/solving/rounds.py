@@ -85,6 +85,29 @@ def cost(robot: Robot, visits: Sequence[Visit], some: Round) -> Cost:
     return Cost(max(longest, length - robot.stay) / period, length, longest)
 
 
+def least_wait(robots: Sequence[Robot], visits: Sequence[Visit]) -> Time:
+    """A time for which some visit waits at least, whoever goes where.
+
+    While a place waits longest all are visited, each robot on a way through some of them: with as many ways as robots
+    they are no shorter than a least spanning tree without its longest branches, one fewer than there are robots. A
+    robot may set off on its way at once.
+    """
+    first, *others = dict.fromkeys(visit.place for visit in visits)
+    near = {place: _least_time(robots, first, place) for place in others}
+    branches: List[Time] = []
+    while near:
+        place = min(near, key=lambda each: near[each])
+        branches.append(near.pop(place))
+        near = {each: min(time, _least_time(robots, place, each)) for each, time in near.items()}
+    kept = sorted(branches)[: max(0, len(branches) + 1 - len(robots))]
+    return max(0.0, sum(kept) / len(robots) - max(robot.stay for robot in robots))
+
+
+def _least_time(robots: Sequence[Robot], a: str, b: str) -> Time:
+    """From one of two places to the other."""
+    return min(min(robot.time(a, b), robot.time(b, a)) for robot in robots)
+
+
 class _Search:
     def __init__(self, robots: Sequence[Robot], visits: Sequence[Visit], enough: Time) -> None:
         self._robots, self._visits, self._enough = robots, visits, enough

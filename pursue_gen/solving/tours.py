@@ -23,7 +23,7 @@ from pursue_gen.solving.due_moves import Duty, duties, patrols
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
-from pursue_gen.solving.rounds import Robot, Round, Visit, cost, rounds
+from pursue_gen.solving.rounds import Robot, Round, Visit, cost, least_wait, rounds
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.synthesis.solve import Stats
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Place, Strategy
@@ -77,13 +77,11 @@ class _Walker:
 
 @dataclass(frozen=True)
 class _Patrol:
-    """What tours are to keep: who walks them, the duties, and as `rounds` knows these; what may pass between the first
-    instant at which a command is due and its effect."""
+    """What tours are to keep: who walks them, the duties, and as `rounds` has these; for how long a command is due."""
 
     walkers: Tuple[_Walker, ...]
     duties: Tuple[Duty, ...]
     visits: Tuple[Visit, ...]
-    late: Fraction
     unit: Fraction
 
 
@@ -122,14 +120,24 @@ def period_of_tours(network: Network, objective: Objective, reaction: Fraction) 
     return math.floor(_worst(replace(patrol, visits=visits), some) + 1e-6) + 1
 
 
+def least_period_of_patrols(network: Network, objective: Objective, reaction: Fraction) -> int:
+    """Nothing below this period, in whole time units, can be promised if it is that of each of the objective's patrols;
+    0 where nothing is known."""
+    patrol = _patrol(network, objective, reaction, prompt=True)
+    if patrol is None:
+        return 0
+    wait = least_wait([walker.robot for walker in patrol.walkers], patrol.visits)
+    return math.ceil(wait - 1e-6) if wait < float("inf") else 0
+
+
 def _worst(patrol: _Patrol, some: Sequence[Round]) -> float:
     """The longest time that a place waits, as a part of its period."""
     return max(cost(each.robot, patrol.visits, mine).part for each, mine in zip(patrol.walkers, some))
 
 
-def _patrol(network: Network, objective: Objective, reaction: Fraction) -> Optional[_Patrol]:
+def _patrol(network: Network, objective: Objective, reaction: Fraction, prompt: bool = False) -> Optional[_Patrol]:
     """The patrol that an objective asks for; None where it asks for something else, or a robot does not move as it is
-    told, at any time."""
+    told, at any time. `prompt`: commands are given at the first instant."""
     bad = dict.fromkeys(name for name, _ in objective.bad)
     known = duties(network, objective, patrols(network)) if objective.kind is Kind.SAFETY else ()
     if not known or network.start or len(known) != len(bad) or any(place != LOSE for _, place in objective.bad):
@@ -137,8 +145,9 @@ def _patrol(network: Network, objective: Objective, reaction: Fraction) -> Optio
     if any(len(places) != 1 for duty in known for places in duty.visits.values()) or _in_order(network, known):
         return None
     unit = Fraction(1, least_common_multiple((_UNITS, common_denominator([reaction, *network.times]))))
+    late = reaction if prompt else reaction + unit
     robots = [network.automaton(name) for name in commanded_agents(network)]
-    walkers = [_walker(robot, reaction + unit) for robot in robots]
+    walkers = [_walker(robot, late) for robot in robots]
     able = [walker for walker in walkers if walker is not None]
     if len(able) < len(walkers) or not able:
         return None
@@ -149,7 +158,7 @@ def _patrol(network: Network, objective: Objective, reaction: Fraction) -> Optio
         if len(set(where.values())) != 1:
             return None
         visits.append(Visit(next(iter(where.values())), frozenset(where), float(duty.deadline)))
-    return _Patrol(tuple(able), known, tuple(visits), reaction + unit, unit)
+    return _Patrol(tuple(able), known, tuple(visits), unit)
 
 
 def _in_order(network: Network, known: Sequence[Duty]) -> bool:

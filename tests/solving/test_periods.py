@@ -148,7 +148,9 @@ def test_a_search_among_other_promises_that_stops_early_has_the_longest_period()
 def test_of_many_places_the_period_is_that_of_tours() -> None:
     asked = parse(corridor(6, 2, ""), "x.pur", "x")
     found = least_period(asked, DEFAULT)
-    assert period(found) == 45
+    assert periods_found(found) == [
+        "The least period for the patrol by any robot is at most 45 units; nothing below 26 can be promised."
+    ]
     assert [tour.robot for tour in solve_scenario(found, DEFAULT).strategy.tours] == ["bot1", "bot2"]
 
 

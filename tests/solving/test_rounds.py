@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import permutations, product
 from typing import Dict, List, Sequence, Tuple
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pursue_gen.solving.rounds import Robot, Round, Visit, cost, rounds
+from pursue_gen.solving.rounds import Robot, Round, Visit, cost, least_wait, rounds
 
 NAMES = "abcdefgh"
 
@@ -94,3 +95,17 @@ def test_each_visit_is_in_one_round_of_a_robot_that_can_do_it_and_costs_are_thos
     assert sorted(k for some in found for k in some) == list(range(len(visits)))
     assert all(robot in visits[k].robots for robot, some in enumerate(found) for k in some)
     assert best(robots, visits) - 1e-9 <= parts_of(robots, visits, found)
+
+
+@settings(deadline=None)
+@given(cases())
+def test_no_rounds_make_all_wait_less_than_the_least(case: Tuple[List[Robot], List[Visit]]) -> None:
+    robots, visits = case
+    assert least_wait(robots, visits) <= best(robots, [replace(visit, period=1.0) for visit in visits]) + 1e-9
+
+
+def test_the_least_wait_is_that_of_ways_through_what_is_near() -> None:
+    robots = [on_a_line((0, 2, 4, 20, 22, 24), 0)] * 2
+    visits = [Visit(name, frozenset((0, 1)), 10.0) for name in NAMES[:6]]
+    assert least_wait(robots, visits) == (2 + 2 + 2 + 2) / 2 - 1
+    assert least_wait(robots, visits[:1]) == 0

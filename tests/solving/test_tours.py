@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from fractions import Fraction
 
@@ -21,7 +22,7 @@ from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import DEFAULT, Rules
 from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.solvers import solved
-from pursue_gen.solving.tours import period_of_tours, won_by_tours
+from pursue_gen.solving.tours import least_period_of_patrols, period_of_tours, won_by_tours
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.solve import solve
@@ -162,6 +163,21 @@ def test_what_tours_win_is_not_lost(text: str) -> None:
     assert verify(network, objective, found.strategy, LATE).ok
     try:
         assert solve(network, objective, LATE, limits=LITTLE).won
+    except PursueError:
+        event("too large to judge")
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+@given(text=small_patrols(least=2))
+def test_nothing_below_the_least_period_is_won(text: str) -> None:
+    network, objective = game_of(text)
+    least, tours = (found(network, objective, LATE) for found in (least_period_of_patrols, period_of_tours))
+    assert tours is not None and least <= tours
+    assume(least > 1)
+    shorter = game_of(re.sub(r"every \d+", f"every {least - 1}", text))
+    try:
+        assert not solve(*shorter, LATE, limits=LITTLE).won
+        event("judged")
     except PursueError:
         event("too large to judge")
 
