@@ -59,6 +59,7 @@ class Navigation:
         self.trouble = ""  # what an operator should know, as part of a sentence
         self._log = log
         self._view = View()
+        self._saw_begin = False  # this node has seen how the robot came to be where the state has it
         self._as_of = 0  # the number of the first state that has the robot at its location
         self._trip: Optional[Trip] = None
         self._goal = GoalTracker(settings)
@@ -101,6 +102,7 @@ class Navigation:
         """Take from a state what it says about the robot."""
         before, self._view = self._view, view
         if view.location != before.location:
+            self._saw_begin = bool(before.location)
             self._enter(view, now)
         if self._report is not None and self._is_shown(self._report.word, view):
             self._report.confirmed = True
@@ -279,9 +281,9 @@ class Navigation:
 
     @property
     def _may_begin(self) -> bool:
-        """Return True if the robot may begin what was decided; also while the mission holds, as the others take it that
-        the robot has begun, but for one that is in trouble."""
-        return self._view.running or not (self._view.lost or self._view.displaced)
+        """Return True if the robot may begin what was decided. While the mission holds nobody sets out, but for one that
+        was commanded just before: the others take it that it has begun, unless it is in trouble."""
+        return self._view.running or (self._saw_begin and not (self._view.lost or self._view.displaced))
 
     def _goal_due_at(self, trip: Trip) -> float:
         """Return when the goal is due: a robot that is being moved is sent back when it stands."""

@@ -224,6 +224,7 @@ def test_an_end_counts_while_the_mission_holds(results: World) -> None:
 def test_what_was_decided_is_begun_though_the_mission_holds() -> None:
     """The command of one robot was taken at the moment at which nobody knew what another should do."""
     world = World()
+    world.stay()
     world.state(running=False)
     world.robot.start(WAY, world.now)
     world.wait(5.0)
@@ -237,8 +238,19 @@ def test_what_was_decided_is_begun_though_the_mission_holds() -> None:
     assert "e" in world.actions
 
 
+def test_a_goal_waits_while_the_mission_holds_in_which_its_controller_starts() -> None:
+    world = World()
+    world.state(running=False)
+    world.robot.start(WAY, world.now)
+    world.wait(5.0)
+    assert world.goals == [] and not world.robot.is_open
+    world.state(running=True)
+    assert [goal.movement for goal in world.goals] == [WAY]
+
+
 def test_a_robot_that_is_lost_begins_nothing_while_the_mission_holds() -> None:
     world = World()
+    world.stay()
     world.state(running=False, lost=True)
     world.robot.start(WAY, world.now)
     world.wait(5.0)
