@@ -10,8 +10,9 @@ class Effort:
     """How hard shares are looked for: `work` for all games of groups, `game` for one of them, which has at most so many
     discrete `states` and `clocks` (of more, zones cost more than is counted). `thorough`: games that are not won with
     some hidden are played with all of them as well; `free`: they are played without the pauses of the environment;
-    `joins`: groups that cannot be played beside each other are joined. `few`: only half as many robots as promises keep
-    them all, by a policy, where all robots can.
+    `joins`: groups that cannot be played beside each other are joined; `nobody`: what never happens while all stand
+    still may be nobody's task, until what others are commanded shows that somebody has to see to it. `few`: only half
+    as many robots as promises keep them all, by a policy, where all robots can.
     """
 
     work: int
@@ -21,12 +22,13 @@ class Effort:
     thorough: bool = False
     free: bool = True
     joins: bool = True
+    nobody: bool = False
     few: bool = False
 
 
 EFFORTS = (
     Effort(1_000_000, few=True),
-    Effort(10_000_000, game=150_000, joins=False),
+    Effort(10_000_000, game=150_000, joins=False, nobody=True),
     Effort(30_000_000, game=1_000_000),
     Effort(80_000_000, game=4_000_000),
     Effort(40_000_000),

@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
-from typing import Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT, verify
@@ -178,7 +178,11 @@ class _Search:
     def _teams(
         self, promise: Place, able: Sequence[str], groups: Sequence[_Group]
     ) -> Iterator[FrozenSet[str]]:
-        """Who may keep the promise: one robot, those with least to do first; two where no one can alone."""
+        """Who may keep the promise: nobody, if that is an effort's way; one robot, those with least to do first; two
+        where no one can alone."""
+        timed = any(place.invariant for place in self._network.automaton(promise[0]).locations)
+        if self._effort.nobody and not timed and self._is_won(_Group(_NOBODY, (promise,))):
+            yield _NOBODY
         load = {name: sum(len(group.bad) for group in groups if name in group.team) for name in able}
         alone = [frozenset([name]) for name in sorted(able, key=lambda name: load[name])]
         yield from alone or [_NOBODY]
@@ -217,7 +221,8 @@ class _Search:
                 theirs = commanded(blocks)
                 strategy = self._strategy(group, theirs)
                 if strategy is None:
-                    joined = self._joined_with_some(group, before, theirs) if self._effort.joins else None
+                    may_join = self._effort.joins or not group.team
+                    joined = self._joined_with_some(group, before, theirs) if may_join else None
                     if joined is None:
                         return None
                     met, group, strategy = joined
@@ -230,15 +235,16 @@ class _Search:
         return None
 
     def _joined_with_some(
-        self, group: _Group, groups: Iterable[_Group], theirs: Commanded
+        self, group: _Group, groups: Mapping[_Group, Strategy], theirs: Commanded
     ) -> Optional[Tuple[Sequence[_Group], _Group, Strategy]]:
-        """The group with one of those whose commands come into its game, else with all of them, if that is won: who is
-        joined, the new group, its strategy."""
+        """The group with one of those whose commands come into its game, else with all of them, if that is won against
+        the rest: who is joined, the new group, its strategy."""
         named = {automaton.name for automaton in self._game(group, theirs).automata}
         met = [other for other in groups if other != group and other.team & named]
-        for some in ([*((other,) for other in met), met] if len(met) > 1 else [met]):
-            joined = self._joined([group, *some])
-            strategy = self._strategy(joined, frozenset()) if some else None
+        ways: List[Sequence[_Group]] = [(other,) for other in met]
+        for some in [*ways, met] if len(met) > 1 else ways:
+            joined, rest = self._joined([group, *some]), (g for g in groups if g != group and g not in some)
+            strategy = self._strategy(joined, commanded(block for g in rest for block in groups[g].blocks))
             if strategy is not None:
                 return [group, *some], joined, strategy
         return None

@@ -80,6 +80,40 @@ def test_nothing_moves_without_a_duty() -> None:
     assert idle and not any(block.commands for block in idle)
 
 
+LINE = """
+poi "a"
+poi "b"
+poi "c"
+poi "d"
+connect a and b distance 2
+connect b and c distance 5
+connect c and d distance 5
+agent "bot1" controllable mobile 1 location a
+agent "guest" mobile 3 location d
+"""
+
+
+@pytest.mark.parametrize(
+    "objective",
+    [
+        pytest.param("always not guest at b or bot1 at b", id="where it has to be when a guest comes"),
+        pytest.param("if guest at c then bot1 at c within 6", id="from where it is in time"),
+    ],
+)
+def test_a_robot_waits_where_it_will_be_needed(objective: str) -> None:
+    """From where it begins it would be late."""
+    network, wanted, strategy = guessed(f"{LINE}objective: {objective}\n")
+    assert strategy is not None
+    assert verify(network, wanted, strategy, DEFAULT.reaction, closed=True).ok
+
+
+def test_a_robot_that_comes_too_late_to_its_post_is_not_won() -> None:
+    fast = LINE.replace("mobile 3", "mobile 1")
+    assert guessed(f"{fast}objective: always not guest at b or bot1 at b\n")[2] is not None
+    early = fast.replace("distance 5\nagent", "distance 1\nagent")
+    assert guessed(f"{early}objective: always not guest at c or bot1 at c\n")[2] is None
+
+
 FLOOR = """
 poi "hall1"
 poi "hall2"

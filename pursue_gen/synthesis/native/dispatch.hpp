@@ -5,13 +5,16 @@
 
 namespace pursue {
 
-// Which duty is next for a robot, and what it does where it has none.
+// Which duty is next for a robot.
 enum class Next { in_turn, soonest_due, nearest };
+
+// What a robot does that owes nothing: it stays, goes back to where it began, or to its post.
+enum class Idle { stays, goes_home, goes_to_post };
 
 struct Guess {
     Next next = Next::in_turn;
     bool shared_out = true;  // each duty is one robot's: who has least to do
-    bool home = false;       // where nothing is owed it goes back to where it began
+    Idle idle = Idle::stays;
     std::size_t zones = 1;   // more zones of one state become one, which only adds plays
     bool apart = true;       // but only those that the same agent's moves lead to: then its pause has just begun
 };
@@ -21,6 +24,9 @@ class Dispatch {
     // `joints`: of the game; what is decided are their numbers.
     Dispatch(const Game& game, Joints& joints, const Guess& guess) : game_(game), joints_(joints), guess_(guess), duties_(game) {
         if (guess.shared_out && robots() > 1) share_out();
+        for (const int robot : duties_.robots())
+            homes_.push_back(guess.idle == Idle::goes_home ? duties_.at_location(robot, game.automata[robot].initial) : -1);
+        if (guess.idle == Idle::goes_to_post) find_posts();
     }
 
     std::size_t robots() const { return duties_.robots().size(); }
@@ -48,7 +54,7 @@ class Dispatch {
         std::vector<int> wanted;
         std::vector<std::set<int>> ways;
         for (std::size_t r = 0; r < robots.size(); ++r)
-            wanted.push_back(wants(d, enabled, robots[r], memory[r], ways.emplace_back()));
+            wanted.push_back(wants(d, enabled, r, memory[r], ways.emplace_back()));
         std::vector<int> commands = wanted;
         for (std::size_t q = 0; q < robots.size(); ++q)
             for (std::size_t r = 0; r < robots.size() && wanted[q] >= 0; ++r) {
@@ -147,6 +153,91 @@ class Dispatch {
         return d;
     }
 
+    // A robot's post is where it has to be lest something happen that has no deadline; else the place from which the worst
+    // of its duties takes the least part of its time.
+    void find_posts() {
+        const Discrete start = initial(game_);
+        for (const int a : duties_.watching()) {
+            std::int64_t least = Duties::NEVER;
+            std::size_t who = robots();
+            int post = -1;
+            for (const auto& [r, location] : required(start, a)) {
+                const int fact = duties_.at_location(duties_.robots()[r], location);
+                duties_.look(start, duties_.robots()[r]);
+                if ((homes_[r] >= 0 && homes_[r] != fact) || duties_.cost(fact) >= least) continue;
+                std::tie(least, who, post) = std::tuple(duties_.cost(fact), r, fact);
+            }
+            if (who < robots()) homes_[who] = post;
+        }
+        for (std::size_t r = 0; r < robots(); ++r)
+            if (homes_[r] < 0) homes_[r] = in_the_middle(start, r);
+    }
+
+    // The robots that keep automaton a from what is to be avoided by being at a location, and only there.
+    std::vector<std::pair<std::size_t, int>> required(const Discrete& start, int a) const {
+        std::vector<std::pair<std::size_t, int>> out;
+        for (const Edge& edge : game_.automata[a].edges)
+            for (std::size_t r = 0; r < robots() && duties_.is_loss(a, edge) && !is_timed(a, edge.source); ++r) {
+                const int robot = duties_.robots()[r];
+                std::vector<int> places;
+                for (const int location : rests(robot))
+                    if (prevents(placed(start, robot, location), robot, edge)) places.push_back(location);
+                if (places.size() == 1) out.emplace_back(r, places.front());
+            }
+        return out;
+    }
+
+    // Whether an edge cannot be taken because of what a robot is at, whatever the others do.
+    bool prevents(const Discrete& d, int robot, const Edge& edge) const {
+        const auto& own = game_.automata[robot].edges;
+        const auto is_own = [&](const Test& test) {
+            return std::any_of(own.begin(), own.end(), [&](const Edge& e) {
+                return std::any_of(e.assign.begin(), e.assign.end(), [&](const Test& set) { return set.variable == test.variable; });
+            });
+        };
+        const auto holds = [&](const Test& test) { return d[game_.automata.size() + test.variable] == test.value; };
+        return std::any_of(edge.clauses.begin(), edge.clauses.end(), [&](const auto& clause) {
+            return std::all_of(clause.begin(), clause.end(), is_own) && std::none_of(clause.begin(), clause.end(), holds);
+        });
+    }
+
+    // The location from which the worst of a robot's duties takes the least part of its time, -1: it has none.
+    int in_the_middle(const Discrete& start, std::size_t r) {
+        const int robot = duties_.robots()[r];
+        double best = std::numeric_limits<double>::infinity();
+        int middle = -1;
+        for (const int location : rests(robot)) {
+            double worst = -1;
+            for (const int a : duties_.watching()) {
+                const auto whose = of_.find(a);
+                if (!duties_.can(robot, a) || (whose != of_.end() && whose->second != r)) continue;
+                Discrete d = placed(start, robot, location);
+                worst = std::max(worst, 0.0);
+                for (const Edge& edge : game_.automata[a].edges) {
+                    if (is_timed(a, edge.source) || !is_timed(a, edge.target) || prevents(d, robot, edge)) continue;
+                    attend(BOUNDS_OF_A_STATE);
+                    d[a] = edge.target;
+                    duties_.look(d, robot);
+                    worst = std::max(worst, static_cast<double>(duties_.cost(duties_.done(a))) / duties_.deadline(d, a));
+                }
+            }
+            if (worst < 0 || worst >= best) continue;
+            best = worst;
+            middle = duties_.at_location(robot, location);
+        }
+        return middle;
+    }
+
+    bool is_timed(int a, int location) const { return !game_.automata[a].invariants[location].empty(); }
+
+    // Where a robot may stay.
+    std::vector<int> rests(int robot) const {
+        std::vector<int> out;
+        for (int location = 0; location < static_cast<int>(game_.automata[robot].invariants.size()); ++location)
+            if (!is_timed(robot, location)) out.push_back(location);
+        return out;
+    }
+
     // The first command on a robot's way to a location, -1: none.
     int towards(const Discrete& d, const std::vector<int>& enabled, int robot, int location) {
         duties_.look(d, robot);
@@ -191,7 +282,7 @@ class Dispatch {
             if (leads_to_loss(placed(there, robot, now[robot]))) return true;
             std::set<int> way;
             joints_.enabled(now, enabled);
-            const int next = wants(now, enabled, robot, duty, way);
+            const int next = wants(now, enabled, r, duty, way);
             if (next < 0) return false;
             duties_.look(now, robot);
             now = ended(joints_[next].target(now), robot);
@@ -202,11 +293,9 @@ class Dispatch {
         return false;
     }
 
-    // What a robot does next for a duty, -1: nothing; `way`: the locations that it passes then.
-    int wants(const Discrete& d, const std::vector<int>& enabled, int robot, int duty, std::set<int>& way) {
-        const int fact = duty >= 0      ? duties_.done(duty)
-                         : guess_.home ? duties_.at_location(robot, game_.automata[robot].initial)
-                                       : -1;
+    // What robot r does next for a duty, -1: nothing; `way`: the locations that it passes then.
+    int wants(const Discrete& d, const std::vector<int>& enabled, std::size_t r, int duty, std::set<int>& way) {
+        const int fact = duty >= 0 ? duties_.done(duty) : homes_[r], robot = duties_.robots()[r];
         if (fact < 0) return -1;
         duties_.look(d, robot);
         if (duties_.cost(fact) == Duties::NEVER || duties_.cost(fact) == 0) return -1;
@@ -274,6 +363,7 @@ class Dispatch {
     Duties duties_;
     std::vector<std::int64_t> load_;  // per robot how long its duties take it, none: they are not shared out
     std::map<int, std::size_t> of_;  // whose duty it is, by automaton
+    std::vector<int> homes_;         // by robot, the fact that it is where it goes when it owes nothing; -1: it stays
 };
 
 }  // namespace pursue

@@ -47,6 +47,13 @@ class Duties {
     // The deadline itself, raw.
     wide_t deadline(const Discrete& d, int a) const { return game_.automata[a].invariants[d[a]].front().raw; }
 
+    // Whether an edge of automaton a leads to what is to be avoided.
+    bool is_loss(int a, const Edge& edge) const {
+        return std::any_of(game_.bad.begin(), game_.bad.end(), [&](const Place& p) {
+            return p.automaton == a && p.location == edge.target;
+        });
+    }
+
     // The fact that the duty of automaton a has been done; that it is at a location.
     int done(int a) const { return known(-1 - a, 0); }
     int at_location(int a, int location) const { return known(a, location); }
@@ -146,12 +153,6 @@ class Duties {
     };
 
     bool is_robot(int a) const { return std::find(robots_.begin(), robots_.end(), a) != robots_.end(); }
-
-    bool is_loss(int a, const Edge& edge) const {
-        return std::any_of(game_.bad.begin(), game_.bad.end(), [&](const Place& p) {
-            return p.automaton == a && p.location == edge.target;
-        });
-    }
 
     int known(int what, int value) const {
         const auto found = numbers_.find({what, value});

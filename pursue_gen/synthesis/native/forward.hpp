@@ -15,10 +15,13 @@ namespace pursue {
 
 // One after the other.
 inline const std::vector<Guess> GUESSES = {
-    {Next::in_turn, true, false, 1, false}, {Next::in_turn, true, false},     {Next::in_turn, true, true},
-    {Next::in_turn, false, false},          {Next::in_turn, false, true},     {Next::soonest_due, true, false},
-    {Next::soonest_due, true, true},        {Next::nearest, false, false},    {Next::nearest, false, true},
-    {Next::in_turn, true, false, 4},        {Next::soonest_due, true, false, 4},
+    {Next::in_turn, true, Idle::stays, 1, false}, {Next::in_turn, true},
+    {Next::in_turn, true, Idle::goes_home},       {Next::in_turn, true, Idle::goes_to_post},
+    {Next::in_turn, false},                       {Next::in_turn, false, Idle::goes_home},
+    {Next::soonest_due, true},                    {Next::soonest_due, true, Idle::goes_home},
+    {Next::soonest_due, true, Idle::goes_to_post},
+    {Next::nearest, false},                       {Next::nearest, false, Idle::goes_home},
+    {Next::in_turn, true, Idle::stays, 4},        {Next::soonest_due, true, Idle::stays, 4},
 };
 
 template <class Z>
@@ -34,9 +37,7 @@ class Forward {
 
     // Whether the policy keeps from all that is to be avoided. False says nothing of the game.
     bool wins() {
-        Discrete d;
-        for (const auto& a : game_.automata) d.push_back(a.initial);
-        d.insert(d.end(), game_.variables.begin(), game_.variables.end());
+        const Discrete d = initial(game_);
         if (dispatch_.robots() == 0 || at_bad(game_, d)) return false;
         std::vector<int> memory(dispatch_.robots(), -1);
         dispatch_.remember(d, memory);

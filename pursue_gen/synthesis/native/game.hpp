@@ -59,6 +59,14 @@ struct Game {
 // A discrete state: a location per automaton, then a value per variable.
 using Discrete = std::vector<std::int32_t>;
 
+// The state in which a game begins.
+inline Discrete initial(const Game& game) {
+    Discrete d;
+    for (const auto& a : game.automata) d.push_back(a.initial);
+    d.insert(d.end(), game.variables.begin(), game.variables.end());
+    return d;
+}
+
 inline bool at(const Discrete& d, const Place& p) { return d[p.automaton] == p.location; }
 
 inline bool at_goal(const Game& game, const Discrete& d) {

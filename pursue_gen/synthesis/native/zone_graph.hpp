@@ -71,10 +71,7 @@ class ZoneGraph {
 
     // Enters the initial state; false: its invariants do not hold for all clocks at the start.
     bool enter_start() {
-        Discrete d;
-        for (const auto& a : game_.automata) d.push_back(a.initial);
-        d.insert(d.end(), game_.variables.begin(), game_.variables.end());
-        Node<Z>& n = nodes_[node(d)];
+        Node<Z>& n = nodes_[node(initial(game_))];
         const Z start = n.hull = start_zone();
         n.reached = invariant(n, n.hull) && includes(n.hull, start);
         if (!n.reached) return false;
