@@ -18,6 +18,7 @@ from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solution import Solution, solve_scenario
 from pursue_gen.tga import scenario_objective, translate
+from tests.patrols import corridor
 
 SCENARIOS = Path(__file__).resolve().parent.parent.parent / "scenarios"
 CATCH = load(SCENARIOS / "thesis" / "catch_the_thief.pur")
@@ -128,3 +129,14 @@ def test_whom_no_stage_names_is_left_out_and_states_are_shown_where_they_are_nam
     assert data.variables == ("open",)
     known = {situation.values for situation in data.situations}
     assert known == {(UNKNOWN,), (0,), (1,)}
+
+
+def test_of_tours_each_robot_has_a_part_and_what_is_kept_apart_is_not_left_out() -> None:
+    scenario = parse(corridor(6, 2, " every 81"), "patrol.pur", "patrol")
+    won = solve_scenario(scenario, Rules())
+    data = strategy_data_of(scenario, won, "dedicated")
+    assert [(part.stage, part.who, part.until) for part in data.parts] == [(0, ("bot1",), ""), (0, ("bot2",), "")]
+    assert [name for name, _, _ in data.automata] == ["bot1", "bot2", "bot1_tour", "bot2_tour"]
+    places = {name: [words for words, *_ in shown] for name, _, shown in data.automata}
+    assert "stop 2 of 11" in places["bot1_tour"]
+    assert data.left_out == ()
