@@ -22,7 +22,7 @@ from pursue_gen.explanation.together import Conflict, conflict
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import listed, statement_text
 from pursue_gen.outcomes import LimitHit
-from pursue_gen.solving.lost_promises import quoted
+from pursue_gen.solving.lost_promises import lost_to_one_walk, quoted
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
@@ -40,6 +40,9 @@ _FOR_WHOLE, _FOR_ALL, _FOR_CONFLICT, _FOR_CHANGES, _FOR_ENDLESS = 0.03, 0.5, 0.2
 """The part of what is left of the budget, where fewer promises are known to be lost, for the scenario as it is, and for
 its explanation; for which objectives exclude each other; for changes; and for whether time has to pass. The rest is for
 plays."""
+
+_FOR_WALK = 0.2
+"""The part of the rest for the play of somebody who wins by one walk."""
 
 _LINES, _FIRST_LINES = 10, 3
 """So many lines of a play are shown, and so many of its beginning where it is longer."""
@@ -112,6 +115,10 @@ def _explained(scenario: Scenario, rules: Rules, budget: Budget, conflicting: bo
     plays: List[Play] = []
     with suppress(LimitHit):
         repeating = endless(network, objective, rules.reaction, budget.split(_FOR_ENDLESS))
+    if objective.goal:  # who wins by one walk shows it best
+        walk = lost_to_one_walk(network, objective, rules.reaction, budget.part())
+        if walk is not None:
+            network, budget = walk, budget.split(_FOR_WALK)
     with suppress(LimitHit):
         plays.extend(counter_plays(network, objective, rules.reaction, budget, found.helpful, bool(repeating)))
     main = describe(scenario, plays[0]) if plays else ()

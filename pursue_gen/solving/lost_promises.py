@@ -18,6 +18,7 @@ from pursue_gen.outcomes import LimitHit, Lost
 from pursue_gen.solving.freer import standing, with_one_walk, without_turns
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Automaton, Kind, Network, Objective
 from pursue_gen.tga.objectives import stated
@@ -80,12 +81,14 @@ def lost_promises(
     return tuple(islice(lost, 1))
 
 
-def lost_to_one_walk(game: Network, objective: Objective, reaction: Fraction, options: SolveOptions) -> bool:
-    """True if somebody whom nobody controls wins by going to one place at once, and staying there; False where little
-    work does not find that."""
-    budget = Budget(replace(options.limits, work=_WALK, states=_WALK_STATES), options.progress, options.engine)
-    walks = with_one_walk(game, watched(objective), hurried=True)
-    return any(_won(acting_at_most(walk, objective, 1), objective, reaction, budget, 1.0) is False for walk in walks)
+def lost_to_one_walk(
+    game: Network, objective: Objective, reaction: Fraction, limits: Limits, progress: Optional[Listener] = None
+) -> Optional[Network]:
+    """A game in which somebody whom nobody controls wins by going to one place at once, and staying there; None where
+    little work finds none."""
+    budget = Budget(replace(limits, work=_WALK, states=_WALK_STATES), progress)
+    walks = (acting_at_most(w, objective, 1) for w in with_one_walk(game, watched(objective), hurried=True))
+    return next((walk for walk in walks if _won(walk, objective, reaction, budget, 1.0) is False), None)
 
 
 def _is_lost(network: Network, objective: Objective, wanted: Objective, reaction: Fraction, budget: Budget) -> bool:

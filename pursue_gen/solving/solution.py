@@ -209,7 +209,8 @@ def _with_little_work(
         known = lost or decided_in_rounds(game, objective, reaction, options.since(start))
         if known:
             return known
-    if verdict is None and objective.goal and lost_to_one_walk(game, objective, reaction, options.since(start)):
+    walking = reaction, options.since(start).limits, options.progress
+    if verdict is None and objective.goal and lost_to_one_walk(game, objective, *walking) is not None:
         return ()
     if verdict is None and rests:
         found = won_without_pauses(game, objective, reaction, work, options.since(start))

@@ -11,6 +11,7 @@ from typing import Tuple
 
 import pytest
 
+from benchmarks.ordinary_families import errands_beside_a_visitor
 from pursue_gen.explanation.changes import Change
 from pursue_gen.explanation.explain import Explanation, as_json, explain, render
 from pursue_gen.language import parse
@@ -457,3 +458,11 @@ def test_whoever_could_act_without_end_and_need_not_is_not_blamed() -> None:
     text = HAGGLER.replace('rule "order":', 'event "open"\nrule "first": open before serve\nrule "order":')
     text = text.replace("reach_objective", 'agent "clerk" location desk can_do open\nreach_objective')
     assert explain(parse(text, "x.pur"), DEFAULT, Limits(PLENTY)).endless == ()
+
+
+@pytest.mark.skipif(not native.available(), reason="takes minutes in the Python engine")
+def test_who_wins_by_one_walk_is_shown_walking() -> None:
+    explanation = explain(parse(errands_beside_a_visitor(6), "errands.pur", "errands"), DEFAULT)
+    assert explanation.preventing == ("visitor",)
+    walked = [line for line in explanation.play if line.who == "visitor"]
+    assert walked and all("room1" in line.text or "hall" in line.text or "end" in line.text for line in walked)

@@ -187,7 +187,8 @@ reach_objective: do mend
 @pytest.mark.parametrize(("pace", "too_late"), [(1, True), (5, False)])
 def test_a_guest_who_walks_at_once_comes_first_or_not(pace: int, too_late: bool) -> None:
     network, objective = game(RACE.format(pace=pace))
-    assert lost_to_one_walk(network, objective, Rules().reaction, DEFAULT) is too_late
+    walk = lost_to_one_walk(network, objective, Rules().reaction, DEFAULT.limits)
+    assert (walk is not None) is too_late
     assert solve(network, objective, Rules().reaction).won is not too_late
 
 
@@ -196,7 +197,7 @@ def test_who_walks_at_once_lingers_nowhere_on_the_way() -> None:
     (walk,) = with_one_walk(network, watched(objective), hurried=True)
     stays = [place for place in walk.automaton("visitor").locations if not is_movement(place.name)]
     assert {place.name: bound.bound for place in stays for bound in place.invariant} == {"room1": 2, "hall": 2}
-    assert lost_to_one_walk(network, objective, Rules().reaction, DEFAULT)
+    assert lost_to_one_walk(network, objective, Rules().reaction, DEFAULT.limits) is not None
 
 
 def test_nobody_is_hurried_out_of_where_time_might_stop() -> None:
