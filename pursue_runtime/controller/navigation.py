@@ -281,8 +281,8 @@ class Navigation:
 
     @property
     def _may_begin(self) -> bool:
-        """Return True if the robot may begin what was decided. While the mission holds nobody sets out, but for one that
-        was commanded just before: the others take it that it has begun, unless it is in trouble."""
+        """Return True if the robot may begin what was decided. While the mission holds nobody sets out but one that was
+        commanded just before: the others take it that it has begun, unless it is in trouble."""
         return self._view.running or (self._saw_begin and not (self._view.lost or self._view.displaced))
 
     def _goal_due_at(self, trip: Trip) -> float:
