@@ -52,7 +52,7 @@ def test_the_plan_is_in_shares_and_knows_what_to_do_where_it_begins() -> None:
     assert answer["won"], answer
     cover = read_cover(answer["cover"])
     there = SystemState(5, 0.0, asked["locations"], asked["values"], {c: t + 1.0 for c, t in asked["clocks"].items()})
-    assert len(cover.find(there)) == 3
+    assert len(cover.find(there)) >= 3, "each share has a block of its own"
     assert sum(len(Strategy(data)) > 0 for data in answer["strategies"].values()) == 3
 
 
