@@ -1,0 +1,229 @@
+"""Two promises that exclude each other where somebody stays: "no robot at room1 while the guest is there", and "a robot
+at room1 within 60 of the guest's coming".
+
+An agent whom nobody controls goes to a place and stays there for ever. What all the others do, wherever they are, is
+the controller's choice at any moment. That is more than it has, so where the promises cannot be kept even so they are
+lost. No times are looked at but that what has a deadline has to end, so this is decided at once, with any number of
+robots.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations, product
+from math import prod
+from typing import AbstractSet, Collection, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+
+from pursue_gen.synthesis.strategy import Place
+from pursue_gen.tga.ends import is_agent
+from pursue_gen.tga.network import Automaton, Edge, Guard, Kind, Network, Objective
+
+_MOST = 500
+"""So many valuations of the others' variables are looked at; promises about more are left to the solver."""
+
+_Places = Tuple[str, ...]
+"""A location of each automaton that watches one of the promises."""
+
+_Valuation = Mapping[str, int]
+
+
+def excluded_by_a_stay(network: Network, objective: Objective) -> Tuple[Objective, ...]:
+    """The first two promises, places to be avoided, that cannot both be kept where one agent stays; () where none are
+    found."""
+    if objective.kind is not Kind.SAFETY:
+        return ()
+    for arrival in _arrivals(network):
+        asking = [place for place in objective.bad if _asks(network.automaton(place[0]), arrival)]
+        for pair in combinations(asking, 2):
+            if not _can_be_kept(network, pair, arrival):
+                return (Objective(Kind.SAFETY, bad=pair),)
+    return ()
+
+
+def _arrivals(network: Network) -> Iterator[Edge]:
+    """The edges by which agents whom nobody controls come to places where they may stay for ever, each by a way that
+    they can take in any case."""
+    for automaton in network.automata:
+        if not is_agent(automaton) or any(edge.controllable for edge in automaton.edges):
+            continue
+        lasting = {place.name for place in automaton.locations if not place.invariant}
+        met, waiting = {automaton.initial}, [automaton.initial]
+        while waiting:
+            here = waiting.pop()
+            for edge in automaton.edges:
+                if edge.source == here and edge.target not in met and _is_its_own(edge):
+                    met.add(edge.target)
+                    waiting.append(edge.target)
+                    if edge.target in lasting and edge.assign:
+                        yield edge
+
+
+def _is_its_own(edge: Edge) -> bool:
+    return not edge.guard.integers and (edge.sync is None or edge.sync.sends)
+
+
+def _asks(automaton: Automaton, arrival: Edge) -> bool:
+    """True if the automaton hears of the arrival, or asks about where it leads."""
+    stay, sync = dict(arrival.assign), arrival.sync
+    if sync is not None and any(e.sync is not None and e.sync.channel == sync.channel for e in automaton.edges):
+        return True
+    return any(stay.get(t.variable) == t.value for edge in automaton.edges for c in edge.guard.integers for t in c)
+
+
+def _can_be_kept(network: Network, bad: Sequence[Place], arrival: Edge) -> bool:
+    """False where those who watch these promises come to what is to be avoided after the arrival whatever the others
+    do."""
+    watching = [network.automaton(name) for name, _ in bad]
+    others = _Others(network, watching, arrival)
+    if others.too_many:
+        return True
+    before = set(product(*([place.name for place in a.locations if (a.name, place.name) not in bad] for a in watching)))
+    kept = set(before)
+    while kept:
+        steps = {here: _steps(watching, here, others, kept) for here in kept}
+        lasting = {here for here in kept if steps[here] is not None and _ends_in_time(watching, here, steps)}
+        if lasting == kept:
+            break
+        kept = lasting
+    return any(
+        there in kept and not _is_led_out(watching, there, values, kept)
+        for here in before
+        for values in others.valuations
+        for there in _after(watching, here, values, arrival)
+    )
+
+
+def _after(watching: Sequence[Automaton], here: _Places, values: _Valuation, arrival: Edge) -> Iterator[_Places]:
+    """Where the automata may be that hear of the arrival; each that can hear it does."""
+    if arrival.sync is None:
+        yield here
+        return
+    moved = {name for name, _ in arrival.assign}
+    options: List[List[str]] = []
+    for automaton, place in zip(watching, here):
+        hearing = _hearing([e for e in automaton.edges if e.source == place], arrival.sync.channel)
+        # What such an edge asks about who arrives is asked before the arrival: it may be so or not.
+        sure = [e for e in hearing if moved.isdisjoint(t.variable for clause in e.guard.integers for t in clause)]
+        taken = [e.target for e in hearing if e not in sure or _holds(e.guard, values)]
+        options.append(taken if any(e.target in taken and _holds(e.guard, values) for e in sure) else [place, *taken])
+    yield from product(*options)
+
+
+class _Others:
+    """What holds beside a stay: all values of the variables that those who watch ask about, one of each that they
+    cannot tell apart. More than `_MOST` are `too_many`, and then not made.
+
+    `sending`: of each channel what is set where somebody sends on it, but for who stays.
+    """
+
+    def __init__(self, network: Network, watching: Sequence[Automaton], arrival: Edge) -> None:
+        clauses = {clause for a in watching for edge in a.edges for clause in edge.guard.integers}
+        stay = dict(arrival.assign)
+        edges = [edge for a in network.automata if arrival not in a.edges for edge in a.edges]
+        self._classes: Dict[str, Dict[int, int]] = {}
+        domains: Dict[str, Collection[int]] = {}
+        for name in sorted({test.variable for clause in clauses for test in clause}):
+            asked = [{test.value for test in clause if test.variable == name} for clause in clauses]
+            known = [value for variable, value in network.variables if variable == name]
+            known += [value for edge in edges for variable, value in edge.assign if variable == name]
+            first: Dict[Tuple[bool, ...], int] = {}
+            self._classes[name] = {v: first.setdefault(tuple(v in some for some in asked), v) for v in known}
+            domains[name] = [stay[name]] if name in stay else list(first.values())
+        self.too_many = prod(map(len, domains.values())) > _MOST or any(
+            edge.sync is not None and edge.sync.sends for a in watching for edge in a.edges
+        )
+        rows = () if self.too_many else product(*domains.values())
+        self.valuations: List[_Valuation] = [dict(zip(domains, row)) for row in rows]
+        self.sending: Dict[str, Set[Tuple[Tuple[str, int], ...]]] = {}
+        for edge in edges:
+            if edge.sync is not None and edge.sync.sends:
+                some = tuple((name, value) for name, value in edge.assign if name in domains and name not in stay)
+                self.sending.setdefault(edge.sync.channel, set()).add(some)
+
+    def after(self, values: _Valuation, assign: Tuple[Tuple[str, int], ...]) -> _Valuation:
+        """The values when some are set."""
+        return {**values, **{name: self._classes[name][value] for name, value in assign}} if assign else values
+
+
+_Step = Tuple[_Places, FrozenSet[int]]
+"""Where a step leads, and which automata end there what has a deadline, or begin it anew."""
+
+
+def _steps(
+    watching: Sequence[Automaton], here: _Places, others: _Others, kept: AbstractSet[_Places]
+) -> Optional[Set[_Step]]:
+    """The steps from here that stay in `kept`, None where whatever holds the environment leads out of it."""
+    found: Set[_Step] = set()
+    possible = False
+    for values in others.valuations:
+        if _is_led_out(watching, here, values, kept):
+            continue
+        possible = True
+        taken = _taken(watching, here, values)
+        alone = [
+            (values, [edge if k == n else None for k in range(len(here))])
+            for n, some in enumerate(taken)
+            for edge in some
+            if edge.sync is None
+        ]
+        heard = {e.sync.channel for some in taken for e in some if e.sync is not None}
+        together = [
+            (others.after(values, sent), list(edges))
+            for channel in heard
+            for sent in others.sending.get(channel, ())
+            for edges in product(
+                *([None, *(e for e in some if e.sync and e.sync.channel == channel)] for some in taken)
+            )
+        ]
+        for then, edges in (*alone, *together):
+            there = tuple(place if edge is None else edge.target for place, edge in zip(here, edges))
+            if there in kept and not _is_led_out(watching, there, then, kept):
+                ended = (k for k, edge in enumerate(edges) if edge is not None and _ends(watching[k], edge))
+                found.add((there, frozenset(ended)))
+    return found if possible else None
+
+
+def _ends_in_time(watching: Sequence[Automaton], here: _Places, steps: Mapping[_Places, Optional[Set[_Step]]]) -> bool:
+    """True if from here each deadline that is running can come to an end."""
+    met, waiting = {here}, [here]
+    ended: Set[int] = set()
+    while waiting:
+        for there, some in steps[waiting.pop()] or ():
+            ended |= some
+            if there not in met:
+                met.add(there)
+                waiting.append(there)
+    return all(k in ended for k, (a, place) in enumerate(zip(watching, here)) if _deadline(a, place))
+
+
+def _taken(watching: Sequence[Automaton], here: _Places, values: _Valuation) -> List[List[Edge]]:
+    """Of each automaton the edges that can be taken there, whatever the clocks."""
+    pairs = zip(watching, here)
+    return [[e for e in a.edges if e.source == place and _holds(e.guard, values)] for a, place in pairs]
+
+
+def _hearing(edges: Sequence[Edge], channel: str) -> List[Edge]:
+    return [edge for edge in edges if edge.sync is not None and edge.sync.channel == channel]
+
+
+def _is_led_out(watching: Sequence[Automaton], here: _Places, values: _Valuation, kept: AbstractSet[_Places]) -> bool:
+    """True if the environment can at once lead one of the automata out of `kept`."""
+    taken = enumerate(_taken(watching, here, values))
+    moves = ((*here[:k], e.target, *here[k + 1 :]) for k, some in taken for e in some if _is_environments(e))
+    return any(there not in kept for there in moves)
+
+
+def _is_environments(edge: Edge) -> bool:
+    return not edge.controllable and edge.sync is None and not edge.guard.clocks
+
+
+def _ends(automaton: Automaton, edge: Edge) -> bool:
+    return edge.target != edge.source or bool(_deadline(automaton, edge.source).intersection(edge.resets))
+
+
+def _deadline(automaton: Automaton, place: str) -> Set[str]:
+    """The clocks that bound a stay there."""
+    return {bound.clock for location in automaton.locations if location.name == place for bound in location.invariant}
+
+
+def _holds(guard: Guard, values: _Valuation) -> bool:
+    return all(any(values[test.variable] == test.value for test in clause) for clause in guard.integers)
