@@ -6,6 +6,7 @@ from typing import Tuple
 
 import pytest
 
+from benchmarks.lab_scenarios import lab_scenario
 from benchmarks.ordinary_families import warehouse
 from pursue_gen.language import parse
 from pursue_gen.proof.checker import verify
@@ -76,3 +77,8 @@ def test_fewer_robots_than_promises_keep_what_all_can() -> None:
     assert verify(network, objective, found.strategy, REACTION, closed=True).ok
     commands = (command for block in found.strategy.blocks for command in block.commands)
     assert {command.moves[0].automaton for command in commands} == {"bot1", "bot2"}
+
+
+def test_robots_that_never_meet_win_without_a_right_of_way() -> None:
+    found = decided_in_rounds(*game(lab_scenario(26)), REACTION, SolveOptions())
+    assert isinstance(found, Found)

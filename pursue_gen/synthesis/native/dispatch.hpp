@@ -17,6 +17,7 @@ struct Guess {
     Idle idle = Idle::stays;
     std::size_t zones = 1;   // more zones of one state become one, which only adds plays
     bool apart = true;       // but only those that the same agent's moves lead to: then its pause has just begun
+    bool by_time = false;    // duties are shared out by how long they take; who has more to do has the right of way
 };
 
 class Dispatch {
@@ -65,7 +66,7 @@ class Dispatch {
                 commands[r] = makes_way(d, enabled, robots[r], d[robots[q]], ways[q], out);
                 if (commands[r] >= 0 && out.count(ended(joints_[wanted[q]].target(d), robots[q])[robots[q]])) commands[q] = -1;
             }
-        for (std::size_t q = 0; q < load_.size(); ++q)
+        for (std::size_t q = 0; q < load_.size() && guess_.by_time; ++q)
             if (commands[q] == wanted[q] && wanted[q] >= 0 && is_in_the_way(d, q, wanted[q], memory, ways[q])) commands[q] = -1;
         // Who can leave only when somebody else is there is relieved by one who has nothing to do.
         for (std::size_t q = 0; q < robots.size(); ++q)
@@ -83,7 +84,7 @@ class Dispatch {
     static constexpr std::size_t BOUNDS_OF_A_STATE = 1024;  // a look at one takes about as long as at so many bounds
     static constexpr int STEPS_AHEAD = 16;                  // so many commands of another robot are looked at
 
-    // Gives each duty to one of the robots that can do it: those that few can do first, then what takes longest.
+    // Gives each duty to one of the robots that can do it: those that few can do first, then perhaps what takes longest.
     void share_out() {
         const std::size_t robots = duties_.robots().size();
         std::vector<std::tuple<std::vector<std::size_t>, std::int64_t, int>> able;  // who, its time, the duty
@@ -93,7 +94,7 @@ class Dispatch {
             for (std::size_t r = 0; r < robots; ++r)
                 if (duties_.can(duties_.robots()[r], a)) {
                     who.push_back(r);
-                    time = std::max(time, time_for(duties_.robots()[r], a));
+                    time = guess_.by_time ? std::max(time, time_for(duties_.robots()[r], a)) : 1;
                 }
             if (!who.empty()) able.emplace_back(std::move(who), time, a);
         }

@@ -15,7 +15,7 @@ namespace pursue {
 
 // One after the other.
 inline const std::vector<Guess> GUESSES = {
-    {Next::in_turn, true, Idle::stays, 1, false}, {Next::in_turn, true},
+    {Next::in_turn, true, Idle::stays, 1, false}, {Next::in_turn, true, Idle::stays, 1, true, true}, {Next::in_turn, true},
     {Next::in_turn, true, Idle::goes_home},       {Next::in_turn, true, Idle::goes_to_post},
     {Next::in_turn, false},                       {Next::in_turn, false, Idle::goes_home},
     {Next::soonest_due, true},                    {Next::soonest_due, true, Idle::goes_home},
