@@ -1,4 +1,4 @@
-"""Several promises at once: ways to win or to lose them are tried in rounds, each with more work than the last one.
+"""Several promises at once: ways to win or to lose them are tried one after the other, then again with more work.
 
 What is decided at all is decided by little work as a rule, but nobody knows which way it is.
 """
@@ -20,7 +20,7 @@ from pursue_gen.tga.network import Network, Objective
 
 
 @dataclass(frozen=True)
-class _Round:
+class _Attempt:
     """How hard shares are looked for, and the work for policies, for promises that one robot cannot keep together, and
     whether one or two promises are looked for that are lost. 0, (): that is not tried."""
 
@@ -31,21 +31,21 @@ class _Round:
 
 
 _SHARED = (
-    _Round(EFFORTS[:2], one_robot=10_000_000),
-    _Round(EFFORTS[2:3], policy=100_000, one_robot=80_000_000),
-    _Round(EFFORTS[3:5], policy=500_000, lost=True),
-    _Round(EFFORTS[5:]),
+    _Attempt(EFFORTS[:2], one_robot=10_000_000),
+    _Attempt(EFFORTS[2:3], policy=100_000, one_robot=80_000_000),
+    _Attempt(EFFORTS[3:5], policy=500_000, lost=True),
+    _Attempt(EFFORTS[5:]),
 )
 """For promises that several robots may keep."""
 
-_ONE = (_Round(policy=5_000_000, lost=True),)
+_ONE = (_Attempt(policy=5_000_000, lost=True),)
 """For those of one robot."""
 
 
-def decided_in_rounds(
+def decided_by_attempts(
     network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
 ) -> Union[Found, Tuple[Objective, ...]]:
-    """A proven strategy, or parts of the objective that are lost; () where all rounds find neither."""
+    """A proven strategy, or parts of the objective that are lost; () where no attempt finds either."""
     start, known = options.limits.now(), Known()
     for each in _SHARED if can_be_shared(network, objective) else _ONE:
         found: Optional[Found] = None

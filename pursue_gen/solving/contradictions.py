@@ -58,7 +58,9 @@ def _arrivals(network: Network) -> Iterator[Edge]:
 
 
 def _is_its_own(edge: Edge) -> bool:
-    return not edge.guard.integers and (edge.sync is None or edge.sync.sends)
+    """True if nobody can keep the agent from the edge, and it need not be in time for it."""
+    late = all(bound.op in (">", ">=") for bound in edge.guard.clocks)
+    return late and not edge.guard.integers and (edge.sync is None or edge.sync.sends)
 
 
 def _asks(automaton: Automaton, arrival: Edge) -> bool:

@@ -11,7 +11,7 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit, Lost, NotProven
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.worst_case import LIMIT, with_counter, worst_case
-from pursue_gen.solving.attempts import decided_in_rounds
+from pursue_gen.solving.attempts import decided_by_attempts
 from pursue_gen.solving.contradictions import excluded_by_a_stay
 from pursue_gen.solving.crowds import has_parts, little_work, won_by_some, works_in_parallel
 from pursue_gen.solving.found import Found
@@ -207,7 +207,7 @@ def _with_little_work(
             return Solution(passed[0], objective, passed[1], reaction)
     if verdict is None and several:
         lost = lost_alone(game, objective, reaction, options.since(start)) or excluded_by_a_stay(game, objective)
-        known = lost or decided_in_rounds(game, objective, reaction, options.since(start))
+        known = lost or decided_by_attempts(game, objective, reaction, options.since(start))
         if known:
             return known
     walking = reaction, options.since(start).limits, options.progress

@@ -1,4 +1,4 @@
-"""Several promises at once: what wins or loses them is tried in rounds."""
+"""Several promises at once: what wins or loses them is tried with more and more work."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from benchmarks.lab_scenarios import lab_scenario
 from benchmarks.ordinary_families import warehouse
 from pursue_gen.language import parse
 from pursue_gen.proof.checker import verify
-from pursue_gen.solving.attempts import decided_in_rounds
+from pursue_gen.solving.attempts import decided_by_attempts
 from pursue_gen.solving.efforts import EFFORTS
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.options import SolveOptions
@@ -39,14 +39,14 @@ def game(text: str) -> Tuple[Network, Objective]:
 
 def test_what_is_won_is_proven() -> None:
     network, objective = game(TWO_PATROLS)
-    found = decided_in_rounds(network, objective, REACTION, SolveOptions())
+    found = decided_by_attempts(network, objective, REACTION, SolveOptions())
     assert isinstance(found, Found)
     assert verify(network, objective, found.strategy, REACTION).ok
 
 
 @pytest.mark.parametrize("text, parts", [(AVOIDS, ("obj", "obj2")), (FLOOR, ("obj", "obj3"))])
 def test_what_is_lost_is_named(text: str, parts: Tuple[str, ...]) -> None:
-    found = decided_in_rounds(*game(text), REACTION, SolveOptions())
+    found = decided_by_attempts(*game(text), REACTION, SolveOptions())
     assert isinstance(found, tuple)
     assert [tuple(name for name, _ in part.bad) for part in found] == [parts]
 
@@ -80,5 +80,5 @@ def test_fewer_robots_than_promises_keep_what_all_can() -> None:
 
 
 def test_robots_that_never_meet_win_without_a_right_of_way() -> None:
-    found = decided_in_rounds(*game(lab_scenario(26)), REACTION, SolveOptions())
+    found = decided_by_attempts(*game(lab_scenario(26)), REACTION, SolveOptions())
     assert isinstance(found, Found)

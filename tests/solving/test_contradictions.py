@@ -66,6 +66,8 @@ def test_what_a_robot_may_keep_is_not_excluded(one: str, two: str) -> None:
 def test_who_cannot_come_or_has_to_leave_excludes_nothing() -> None:
     apart = FLOOR.replace('"guest" mobile 2 location hall', '"guest" location hall')
     assert excluded_by_a_stay(*game(AVOID, NEAR, floor=apart)) == ()
+    for assumed in ("guest leaves room1 within 20", "guest never at room1"):
+        assert excluded_by_a_stay(*game(AVOID, NEAR, floor=f"{FLOOR}assume: {assumed}\n")) == ()
 
 
 @pytest.mark.parametrize("one, two", list(combinations(FORMS, 2)))
