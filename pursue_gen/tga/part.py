@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import AbstractSet, Iterator, Sequence, Set, Tuple
+from typing import AbstractSet, Iterator, Optional, Sequence, Set, Tuple
 
 from pursue_gen.tga.network import Automaton, Constraint, Edge, Network
 
@@ -30,6 +30,11 @@ def part_of(network: Network, automata: AbstractSet[str], variables: AbstractSet
         kept,
         start_of(network, clocks),
     )
+
+
+def beside(network: Network, automaton: Optional[Automaton]) -> Network:
+    """The network with one automaton more, behind its own; the network itself where there is none."""
+    return network if automaton is None else replace(network, automata=(*network.automata, automaton))
 
 
 def without_unnamed_clocks(network: Network) -> Network:

@@ -6,11 +6,12 @@ commanded: a robot has the place from the moment at which it sets off for it unt
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Dict, Iterable, List, Optional, Set, Tuple
 
 from pursue_gen.language.network_names import is_going
 from pursue_gen.tga.network import Automaton, Edge, Location, Network, Sync
+from pursue_gen.tga.part import beside
 
 OF = "_passage"
 """Stands behind the place in the name of its automaton."""
@@ -63,11 +64,8 @@ def words_of(network: Network) -> Dict[Tuple[str, str], str]:
 def with_passages(network: Network, passages: Iterable[Passage]) -> Network:
     """The network with the automata of these passages behind its own; one that is there already, or that cannot be
     (see `passage_automaton`), is left out."""
-    known = {automaton.name for automaton in network.automata}
     for passage in passages:
-        automaton = None if passage.name in known else passage_automaton(network, passage)
-        if automaton is not None:
-            network = replace(network, automata=(*network.automata, automaton))
+        network = beside(network, passage_automaton(network, passage))
     return network
 
 

@@ -6,11 +6,12 @@ that its robot is commanded; another movement than the next one breaks it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Dict, Iterable, List, Optional, Set, Tuple
 
 from pursue_gen.language.network_names import LOSE, is_going
 from pursue_gen.tga.network import Automaton, Edge, Location, Network, Sync
+from pursue_gen.tga.part import beside
 
 OF = "_tour"
 """Stands behind the robot in the name of its automaton."""
@@ -63,11 +64,8 @@ def words_of(network: Network) -> Dict[Tuple[str, str], str]:
 def with_tours(network: Network, tours: Iterable[Tour]) -> Network:
     """The network with the automata of these tours behind its own; one that is there already, or that cannot be (see
     `tour_automaton`), is left out."""
-    known = {automaton.name for automaton in network.automata}
     for tour in tours:
-        automaton = None if tour.name in known else tour_automaton(network, tour)
-        if automaton is not None:
-            network = replace(network, automata=(*network.automata, automaton))
+        network = beside(network, tour_automaton(network, tour))
     return network
 
 
