@@ -1,13 +1,14 @@
 """A strategy for a safety objective without moves that no promise needs, proven like any other.
 
-On a patrol robots set off only for places that are due (see `due_moves`), as late as is won with little work. Commands
-that are given while nothing is owed are left out, all of them if the strategy wins without; else those of some robots,
-or some of each. A share commands nothing then that it did not command before, and the checker has the last word: where
-it refuses, the strategy stays as it is.
+On a patrol robots wait until a place is due, as late as is won with little work: by a simple policy (see
+`Engine.guess`), else in a game in which they set off only for what is due (see `due_moves`). Commands that are given
+while nothing is owed are left out, all of them if the strategy wins without; else those of some robots, or some of
+each. The checker has the last word: where it refuses, the strategy stays as it is.
 """
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
@@ -57,7 +58,7 @@ def calm(won: Solution, options: SolveOptions) -> Solution:
     start = options.limits.now()
     budget = Budget(replace(options.limits, work=_WORK, states=_STATES), options.progress, options.engine)
     for game in _games(won):
-        for fewer in (_when_due, _owed):
+        for fewer in (_put_off, _owed):
             strategy = fewer(game, won.reaction, budget, options.since(start))
             if strategy is None:
                 continue
@@ -89,6 +90,18 @@ def _with(whole: Strategy, game: _Game, strategy: Strategy) -> Strategy:
     own = set(whole.numbers_of(game.number, first))
     others = tuple(block for number, block in enumerate(whole.blocks) if number not in own)
     return replace(whole, blocks=(*others, *without_hidden(strategy).blocks))
+
+
+def _put_off(game: _Game, reaction: Fraction, budget: Budget, options: SolveOptions) -> Optional[Strategy]:
+    """A proven strategy in which patrols wait until they are due; None where none is found, or there is no patrol."""
+    if budget.used_up or game.patrols.isdisjoint(name for name, _ in game.objective.bad):
+        return None
+    free = bool(game.strategy.left_out_clocks)
+    found = budget.guess(game.network, game.objective, reaction, _SHARE, without_pauses=free, late=True)
+    if found is not None:
+        with suppress(LimitHit, NotProven):
+            return prove(game.network, game.objective, found[0], reaction, options=options, closed=True)
+    return _when_due(game, reaction, budget, options)
 
 
 def _when_due(game: _Game, reaction: Fraction, budget: Budget, options: SolveOptions) -> Optional[Strategy]:

@@ -79,11 +79,17 @@ class Budget:
         return verdict
 
     def guess(
-        self, network: Network, objective: Objective, reaction: Fraction, share: float, without_pauses: bool = False
+        self,
+        network: Network,
+        objective: Objective,
+        reaction: Fraction,
+        share: float,
+        without_pauses: bool = False,
+        late: bool = False,
     ) -> Optional[Tuple[Strategy, Stats]]:
         """What `solve.guess` finds with that share of what is left, and what it took."""
         limits = self.part(share)
-        how = self._engine, limits, self._progress, self._games_whole, without_pauses
+        how = self._engine, limits, self._progress, self._games_whole, without_pauses, late
         try:
             strategy, stats = guess(network, objective, reaction, *how)
         except LimitHit:

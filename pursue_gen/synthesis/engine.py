@@ -70,12 +70,14 @@ class Engine(ABC):
         """The engine that gives a game at least so much work as it is, before anything else is tried in turn."""
         return self
 
-    def guess(self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Outcome:
+    def guess(
+        self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None, late: bool = False
+    ) -> Outcome:
         """Try simple policies in a safety game that it `holds`: each robot does one duty after the other, by itself.
 
         `won` if one keeps from all that is to be avoided; else nothing is known of the game. Zones in which to wait may
-        overlap, and those of commands, too. `progress` and what it raises: as `solve`. An engine need not know any
-        policy.
+        overlap, and those of commands, too. `late`: patrols wait until they are due. `progress` and what it raises: as
+        `solve`. An engine need not know any policy.
         """
         return NOT_GUESSED
 

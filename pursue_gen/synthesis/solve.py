@@ -127,13 +127,15 @@ def guess(
     progress: Optional[Listener] = None,
     whole: bool = False,
     without_pauses: bool = False,
+    late: bool = False,
 ) -> Tuple[Optional[Strategy], Stats]:
     """A strategy for a safety game by a simple policy (see `Engine.guess`), None: none of those that are known wins.
 
-    Arguments, and what it raises, as for `solve`. An engine that does not guess finds none.
+    `late`: one by which patrols wait until they are due. Other arguments, and what it raises, as for `solve`. An engine
+    that does not guess finds none.
     """
     chosen, game, gone = _compiled(network, objective, reaction, engine, whole, without_pauses)
-    outcome = chosen.guess(game, limits, progress)
+    outcome = chosen.guess(game, limits, progress, late)
     return to_strategy(game, outcome.blocks, gone) if outcome.won else None, _stats(chosen, outcome)
 
 

@@ -20,6 +20,7 @@ from pursue_gen.simulation.make import make_case
 from pursue_gen.simulation.mission import SimulatedMission
 from pursue_gen.simulation.outcome import SAFE
 from pursue_gen.simulation.runs import MissionRunner
+from pursue_gen.solving.answers import answers
 from pursue_gen.solving.calm import calm
 from pursue_gen.solving.due_moves import duties, only_due, patrols
 from pursue_gen.solving.options import SolveOptions
@@ -108,6 +109,56 @@ def test_a_patrol_makes_a_round_when_it_is_due_and_waits_in_between() -> None:
     # left, so this takes 170 at most if the guard waits at both, and at the start it is in the hall: 15 ways in 400.
     assert 15 <= some <= 1.2 * 15
     assert len(departures(*won(ROUNDS, quiet=False))) > 4 * some
+
+
+BOTH_ENDS = """
+poi "hall"
+poi "east"
+poi "west"
+connect hall and east distance 3
+connect hall and west distance 3
+agent "guard" controllable mobile 1 location hall
+objective: patrol east, west every 30 by guard
+"""
+
+RELIEVED = """
+poi "gate"
+poi "hall"
+poi "east"
+poi "west"
+connect gate and hall distance 2
+connect hall and east distance 3
+connect hall and west distance 3
+agent "guard" controllable mobile 1 location gate
+agent "porter" controllable mobile 1 location east
+objective: always any robot at gate
+objective: patrol east, west every 40 by guard
+"""
+"""The guard can leave the gate once the porter is there."""
+
+
+def test_two_places_that_are_due_at_once_make_nobody_go_round_more_often_than_it_takes() -> None:
+    some = len(departures(*won(BOTH_ENDS)))
+    # From one end to the other it takes 10 at worst: it may leave one 20 after it left the other one, each time by two
+    # ways.
+    assert some <= 1.2 * 2 * 400 / 20
+
+
+def test_a_patrol_waits_whose_robot_is_relieved_by_another() -> None:
+    driving = departures(*won(RELIEVED))
+    assert sum(name == "porter" for _, name in driving) == 2
+    assert len(driving) <= 2 + 1.2 * 2 * 400 / 30
+
+
+def test_who_waits_with_a_patrol_goes_to_a_call_at_once() -> None:
+    text = BOTH_ENDS.replace("every 30", "every 90").replace("location hall", "location hall can_do help")
+    text = text.replace("agent", 'event "call"\nevent "help" location hall duration 1\nagent', 1)
+    text += 'agent "guest" location hall can_do call\nobjective: if call then help within 85\n'
+    scenario, some = won(text)
+    assert len(departures(scenario, some)) <= 1.2 * 2 * 400 / 80
+    (late,) = (answer.worst for answer in answers(scenario, some) if isinstance(answer.promise, Respond))
+    # Where it has set off it goes to both ends first: of 85 it would take most if calls came after what is put off.
+    assert late <= 30
 
 
 def test_every_move_of_a_patrol_leads_nearer_to_a_place_that_is_due() -> None:

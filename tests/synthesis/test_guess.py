@@ -191,11 +191,11 @@ def test_what_a_policy_wins_in_a_random_game_wins_it(drawn: Tuple[Network, Objec
 
 
 @settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
-@given(st.integers(0, 10**6), st.integers(1, 2), st.booleans())
-def test_what_a_policy_wins_is_not_lost_exactly(seed: int, robots: int, free: bool) -> None:
+@given(st.integers(0, 10**6), st.integers(1, 2), st.booleans(), st.booleans())
+def test_what_a_policy_wins_is_not_lost_exactly(seed: int, robots: int, free: bool, late: bool) -> None:
     network, objective = game_of(lab_scenario(seed, Size(places=4, robots=robots, people=1, promises=2)))
     try:
-        strategy, _ = guess(network, objective, DEFAULT.reaction, limits=SMALL, without_pauses=free)
+        strategy, _ = guess(network, objective, DEFAULT.reaction, limits=SMALL, without_pauses=free, late=late)
     except LimitHit:
         return
     event(f"won: {strategy is not None}")

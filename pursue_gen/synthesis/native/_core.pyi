@@ -23,5 +23,6 @@ def guess(
     work: int = 0,
     wall: bool = False,
     progress: Optional[Callable[[int, int, float, int], None]] = None,
+    late: bool = False,
 ) -> Dict[str, Any]: ...
 def minimal(dim: int, matrix: Tuple[int, ...]) -> List[Tuple[int, int, int]]: ...

@@ -24,6 +24,7 @@ class Duties {
             });
             if (watches(game, a)) watching_.push_back(a);
             else if (acts) robots_.push_back(a);
+            patrols_.push_back(watches(game, a) && begun_by_robots(a));
         }
         for (int a = 0; a < count; ++a) {
             for (const Edge& edge : game.automata[a].edges) {
@@ -131,6 +132,28 @@ class Duties {
         return locations;
     }
 
+    // Whether robots see to the duty of automaton a by going to and fro: they alone begin it.
+    bool is_patrol(int a) const { return patrols_[a]; }
+
+    bool is_timed(int a, int location) const { return !game_.automata[a].invariants[location].empty(); }
+
+    // Where a robot may stay.
+    std::vector<int> rests(int robot) const {
+        std::vector<int> out;
+        for (int location = 0; location < static_cast<int>(game_.automata[robot].invariants.size()); ++location)
+            if (!is_timed(robot, location)) out.push_back(location);
+        return out;
+    }
+
+    // The state with a robot at a location.
+    Discrete placed(Discrete d, int robot, int location) const {
+        d[robot] = location;
+        for (const Edge& edge : game_.automata[robot].edges)
+            if (edge.target == location)
+                for (const auto& set : edge.assign) d[game_.automata.size() + set.variable] = set.value;
+        return d;
+    }
+
     // Whether a joint move from d does the duty of automaton a, or begins it anew.
     bool touches(const Discrete& d, const Joint& joint, int a) const {
         for (const auto& [index, value] : joint.writes)
@@ -142,6 +165,23 @@ class Duties {
     }
 
   private:
+    bool begun_by_robots(int a) const {
+        const auto begins = [&](const Edge& sender) {
+            const auto& edges = game_.automata[a].edges;
+            return sender.channel >= 0 && sender.sends && std::any_of(edges.begin(), edges.end(), [&](const Edge& e) {
+                return e.channel == sender.channel && !is_timed(a, e.source) && is_timed(a, e.target);
+            });
+        };
+        bool any = false;
+        for (const Automaton& automaton : game_.automata)
+            for (const Edge& edge : automaton.edges)
+                if (begins(edge)) {
+                    if (!edge.controllable) return false;
+                    any = true;
+                }
+        return any;
+    }
+
     using Entry = std::tuple<std::int64_t, int, int>;  // cost, operator, fact
 
     struct Operator {
@@ -210,6 +250,7 @@ class Duties {
 
     const Game& game_;
     std::vector<int> robots_, watching_;
+    std::vector<bool> patrols_;
 
     int facts_ = 0;
     std::map<std::pair<int, int>, int> numbers_;  // of facts: an automaton or (behind them) a variable, and its value

@@ -61,11 +61,13 @@ class NativeEngine(Engine):
         """With a larger `small_budget`."""
         return replace(self, small_budget=max(self.small_budget, work))
 
-    def guess(self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None) -> Outcome:
+    def guess(
+        self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None, late: bool = False
+    ) -> Outcome:
         """Try simple policies, see `Engine`."""
         if game.kind is not Kind.SAFETY:
             return NOT_GUESSED
-        return self._run(game, limits, progress, _core.guess)
+        return self._run(game, limits, progress, partial(_core.guess, late=late))
 
     def solve(
         self,

@@ -13,17 +13,6 @@
 
 namespace pursue {
 
-// One after the other.
-inline const std::vector<Guess> GUESSES = {
-    {Next::in_turn, true, Idle::stays, 1, false}, {Next::in_turn, true, Idle::stays, 1, true, true}, {Next::in_turn, true},
-    {Next::in_turn, true, Idle::goes_home},       {Next::in_turn, true, Idle::goes_to_post},
-    {Next::in_turn, false},                       {Next::in_turn, false, Idle::goes_home},
-    {Next::soonest_due, true},                    {Next::soonest_due, true, Idle::goes_home},
-    {Next::soonest_due, true, Idle::goes_to_post},
-    {Next::nearest, false},                       {Next::nearest, false, Idle::goes_home},
-    {Next::in_turn, true, Idle::stays, 4},        {Next::soonest_due, true, Idle::stays, 4},
-};
-
 template <class Z>
 class Forward {
   public:
@@ -40,7 +29,7 @@ class Forward {
         const Discrete d = initial(game_);
         if (dispatch_.robots() == 0 || at_bad(game_, d)) return false;
         std::vector<int> memory(dispatch_.robots(), -1);
-        dispatch_.remember(d, memory);
+        dispatch_.remember(d, memory, std::vector<int>(memory));
         Z z = universe<Z>();
         if (game_.start.empty()) z = origin<Z>(game_.clocks);
         for (const Bound& b : game_.start)
@@ -71,19 +60,20 @@ class Forward {
         std::map<Discrete, std::vector<Piece<Z>>> out;
         for (const auto& [d, numbers] : same) {
             Federation<Z> waits, acts;
+            std::map<int, Federation<Z>> given;  // by joint move
             auto& pieces = out[d];
             for (const int k : numbers)
                 for (const auto& [owner, zone] : spots_[k].zones) {
                     monitor_.look();
                     const Passage passed = pass(k, zone);
                     for (const auto& [act, joint] : passed.acts) {
-                        const auto known = [&, a = act, j = joint](const Piece<Z>& p) { return p.joint == j && includes(p.zone, a); };
-                        if (std::any_of(pieces.begin(), pieces.end(), known)) continue;
-                        pieces.push_back({act, joint, 0});
-                        acts.push_back(act);
+                        absorb(given[joint], act);
+                        absorb(acts, act);
                     }
                     for (const Z& wait : passed.waited) absorb(waits, wait);
                 }
+            for (const auto& [joint, zones] : given)
+                for (const Z& zone : zones) pieces.push_back({zone, joint, 0});
             for (const Z& wait : reduced(minus(waits, acts))) pieces.push_back({wait, -1, 0});
         }
         return out;
@@ -95,7 +85,7 @@ class Forward {
 
   private:
     struct Spot {
-        std::vector<int> commands;   // joint moves
+        std::vector<Order> commands;
         std::vector<int> others;     // the environment's
         std::map<int, int> targets;  // where a joint move leads, -1: to what is to be avoided
         std::vector<Bound> limits;   // invariants
@@ -155,15 +145,20 @@ class Forward {
         return true;
     }
 
+    static bool given(const Order& order, const Joint& joint, Z& z) {
+        const Bound& since = order.since;
+        return guard(joint, z) && (since.i == since.j || constrain(z, since.i, since.j, static_cast<R>(since.raw)));
+    }
+
     // Time from an entry: what is waited in, where which command is given, and where it is on its way.
     Passage pass(int k, const Z& zone) {
         const Spot& s = spots_[k];
         Passage out;
         Federation<Z> rest{zone};
-        for (const int c : s.commands) {
+        for (const Order& order : s.commands) {
             Z act = zone;
-            if (!guard(joints_[c], act)) continue;
-            out.acts.emplace_back(act, c);
+            if (!given(order, joints_[order.joint], act)) continue;
+            out.acts.emplace_back(act, order.joint);
             rest = minus(rest, act);
         }
         for (const Z& piece : rest) {
@@ -173,17 +168,20 @@ class Forward {
             invariant(k, future);
             Federation<Z> waited{future};
             std::vector<std::pair<Z, int>> entrances;
-            for (const int c : s.commands) {
+            for (const Order& order : s.commands) {
+                const int c = order.joint;
                 Z common = future;
-                if (!guard(joints_[c], common)) continue;
+                if (!given(order, joints_[c], common)) continue;
                 Z later = common;
                 up(later);
                 waited = minus(waited, later);
-                for (const Bound& b : joints_[c].guard) {
+                std::vector<Bound> bounds = joints_[c].guard;
+                bounds.push_back(order.since);
+                for (const Bound& b : bounds) {
                     // At once; behind a strict bound there is no first instant: within the next unit of scaled time.
                     const wide_t soon = -(b.raw >> 1) + (b.raw & 1 ? 0 : 1);
                     Z entrance = common;
-                    if (b.i == 0 && constrain(entrance, b.j, 0, static_cast<R>(2 * soon + 1))) entrances.emplace_back(entrance, c);
+                    if (b.i == 0 && b.j > 0 && constrain(entrance, b.j, 0, static_cast<R>(2 * soon + 1))) entrances.emplace_back(entrance, c);
                 }
             }
             // Whatever comes first takes effect soon.
@@ -264,11 +262,8 @@ class Forward {
         const Discrete target = joint.target(d);
         if (at_bad(game_, target)) return -1;
         const Discrete key = states_[k];
-        const std::vector<int> last(key.begin() + static_cast<std::ptrdiff_t>(width_), key.end());
-        std::vector<int> memory = last;
-        for (int& duty : memory)
-            if (duty >= 0 && dispatch_.touches(d, joint, duty)) duty = -1;
-        dispatch_.remember(target, memory, last);
+        std::vector<int> memory(key.begin() + static_cast<std::ptrdiff_t>(width_), key.end());
+        dispatch_.remember(d, joint, memory);
         return spot(target, memory);
     }
 
@@ -334,8 +329,12 @@ class Forward {
                 table[a][location][x] = std::max(table[a][location][x], bound);
             };
             const bool duty = watches(game_, static_cast<int>(a));
+            const bool waits = guess_.reserve > 0 && duty && dispatch_.is_patrol(static_cast<int>(a));
             for (std::size_t l = 0; l < places; ++l)
-                for (const Bound& b : automaton.invariants[l]) note(duty ? lower_ : upper_, static_cast<int>(l), b.i, b.raw >> 1);
+                for (const Bound& b : automaton.invariants[l]) {
+                    if (duty) note(lower_, static_cast<int>(l), b.i, b.raw >> 1);
+                    if (!duty || waits) note(upper_, static_cast<int>(l), b.i, b.raw >> 1);
+                }
             for (const Edge& edge : automaton.edges)
                 for (const Bound& b : edge.guard) {
                     if (b.i) note(upper_, edge.source, b.i, b.raw >> 1);
@@ -374,8 +373,8 @@ class Forward {
 
 // The first policy that wins, or none.
 template <class Z>
-std::unique_ptr<Forward<Z>> winning_guess(const Game& game, LimitMonitor& monitor) {
-    for (const Guess& each : GUESSES) {
+std::unique_ptr<Forward<Z>> winning_guess(const Game& game, LimitMonitor& monitor, bool late) {
+    for (const Guess& each : late ? late_guesses() : GUESSES) {
         auto forward = std::make_unique<Forward<Z>>(game, monitor, each);
         if (!each.shared_out && forward->robots() < 2) continue;  // the same as one that was tried
         if (forward->wins()) return forward;

@@ -1,0 +1,193 @@
+// Policies for several duties: which there are, whose duty each one is, and where a robot waits for its own.
+#pragma once
+
+#include "duties.hpp"
+
+namespace pursue {
+
+// Which duty is next for a robot.
+enum class Next { in_turn, soonest_due, nearest };
+
+// What a robot does that owes nothing: it stays, goes back to where it began, or to its post.
+enum class Idle { stays, goes_home, goes_to_post };
+
+struct Guess {
+    Next next = Next::in_turn;
+    bool shared_out = true;  // each duty is one robot's: who has least to do
+    Idle idle = Idle::stays;
+    std::size_t zones = 1;   // more zones of one state become one, which only adds plays
+    bool apart = true;       // but only those that the same agent's moves lead to: then its pause has just begun
+    bool by_time = false;    // duties are shared out by how long they take; who has more to do has the right of way
+    int reserve = 0;         // patrols wait until this part of their period, in hundredths, is left beside the way; 0: never
+    bool sets_off = false;   // but the first one is begun at once
+};
+
+// One after the other.
+inline const std::vector<Guess> GUESSES = {
+    {Next::in_turn, true, Idle::stays, 1, false}, {Next::in_turn, true, Idle::stays, 1, true, true}, {Next::in_turn, true},
+    {Next::in_turn, true, Idle::goes_home},       {Next::in_turn, true, Idle::goes_to_post},
+    {Next::in_turn, false},                       {Next::in_turn, false, Idle::goes_home},
+    {Next::soonest_due, true},                    {Next::soonest_due, true, Idle::goes_home},
+    {Next::soonest_due, true, Idle::goes_to_post},
+    {Next::nearest, false},                       {Next::nearest, false, Idle::goes_home},
+    {Next::in_turn, true, Idle::stays, 4},        {Next::soonest_due, true, Idle::stays, 4},
+};
+
+// Likewise, where patrols wait until they are due, as late as is won.
+inline std::vector<Guess> late_guesses() {
+    std::vector<Guess> out;
+    for (const int reserve : {5, 15, 30, 60})
+        for (Guess guess : GUESSES) {
+            guess.reserve = reserve;
+            if (guess.next == Next::in_turn && guess.shared_out && guess.zones == 1)
+                for (const bool sets_off : {false, true}) {
+                    guess.sets_off = sets_off;
+                    out.push_back(guess);
+                }
+        }
+    return out;
+}
+
+inline constexpr std::size_t BOUNDS_OF_A_STATE = 1024;  // a look at one takes about as long as at so many bounds
+
+class Tasks {
+  public:
+    Tasks(const Game& game, Duties& duties, const Guess& guess) : game_(game), duties_(duties), guess_(guess) {
+        for (const int robot : duties.robots()) {
+            auto& own = for_.emplace_back();
+            for (int a = 0; a < static_cast<int>(game.automata.size()); ++a) own.push_back(watches(game, a) && duties.can(robot, a));
+            homes_.push_back(guess.idle == Idle::goes_home ? duties.at_location(robot, game.automata[robot].initial) : -1);
+        }
+        if (guess.shared_out && duties.robots().size() > 1) share_out();
+        if (guess.idle == Idle::goes_to_post) find_posts();
+    }
+
+    // Per robot how long its duties take it, none: they are not shared out.
+    const std::vector<std::int64_t>& load() const { return load_; }
+
+    // Whether the duty of automaton a is for robot r: it can do it, and it is not another's.
+    bool is_for(std::size_t r, int a) const { return for_[r][a]; }
+
+    // The fact that a robot is where it goes when it owes nothing; -1: it stays.
+    int home(std::size_t r) const { return homes_[r]; }
+
+  private:
+    // Gives each duty to one of the robots that can do it: those that few can do first, then perhaps what takes longest.
+    void share_out() {
+        const std::size_t robots = duties_.robots().size();
+        std::vector<std::tuple<std::vector<std::size_t>, std::int64_t, int>> able;  // who, its time, the duty
+        for (const int a : duties_.watching()) {
+            std::vector<std::size_t> who;
+            std::int64_t time = 0;
+            for (std::size_t r = 0; r < robots; ++r)
+                if (for_[r][a]) {
+                    who.push_back(r);
+                    time = guess_.by_time ? std::max(time, time_for(duties_.robots()[r], a)) : 1;
+                }
+            if (!who.empty()) able.emplace_back(std::move(who), time, a);
+        }
+        std::stable_sort(able.begin(), able.end(), [](const auto& x, const auto& y) {
+            return std::pair(std::get<0>(x).size(), -std::get<1>(x)) < std::pair(std::get<0>(y).size(), -std::get<1>(y));
+        });
+        load_.assign(robots, 0);
+        for (const auto& [who, time, a] : able) {
+            const std::size_t least = *std::min_element(who.begin(), who.end(), [&](auto x, auto y) { return load_[x] < load_[y]; });
+            load_[least] += time;
+            for (const std::size_t r : who) for_[r][a] = r == least;
+        }
+    }
+
+    // About how long a robot takes for the duty of automaton a from where it begins.
+    std::int64_t time_for(int robot, int a) {
+        Discrete d = initial(game_);
+        const auto& bounds = game_.automata[a].invariants;
+        const auto open = std::find_if(bounds.begin(), bounds.end(), [](const auto& some) { return !some.empty(); });
+        if (open != bounds.end()) d[a] = static_cast<int>(open - bounds.begin());
+        duties_.look(d, robot);
+        const std::int64_t cost = duties_.cost(duties_.done(a));
+        return cost == Duties::NEVER ? 0 : cost;
+    }
+
+    // A robot's post is where it has to be lest something happen that has no deadline; else the place from which the worst
+    // of its duties takes the least part of its time.
+    void find_posts() {
+        const Discrete start = initial(game_);
+        for (const int a : duties_.watching()) {
+            std::int64_t least = Duties::NEVER;
+            std::size_t who = duties_.robots().size();
+            int post = -1;
+            for (const auto& [r, location] : required(start, a)) {
+                const int fact = duties_.at_location(duties_.robots()[r], location);
+                duties_.look(start, duties_.robots()[r]);
+                if ((homes_[r] >= 0 && homes_[r] != fact) || duties_.cost(fact) >= least) continue;
+                std::tie(least, who, post) = std::tuple(duties_.cost(fact), r, fact);
+            }
+            if (who < duties_.robots().size()) homes_[who] = post;
+        }
+        for (std::size_t r = 0; r < duties_.robots().size(); ++r)
+            if (homes_[r] < 0) homes_[r] = in_the_middle(start, r);
+    }
+
+    // The robots that keep automaton a from what is to be avoided by being at a location, and only there.
+    std::vector<std::pair<std::size_t, int>> required(const Discrete& start, int a) const {
+        std::vector<std::pair<std::size_t, int>> out;
+        for (const Edge& edge : game_.automata[a].edges)
+            for (std::size_t r = 0; r < duties_.robots().size() && duties_.is_loss(a, edge) && !duties_.is_timed(a, edge.source); ++r) {
+                const int robot = duties_.robots()[r];
+                std::vector<int> places;
+                for (const int location : duties_.rests(robot))
+                    if (prevents(duties_.placed(start, robot, location), robot, edge)) places.push_back(location);
+                if (places.size() == 1) out.emplace_back(r, places.front());
+            }
+        return out;
+    }
+
+    // Whether an edge cannot be taken because of what a robot is at, whatever the others do.
+    bool prevents(const Discrete& d, int robot, const Edge& edge) const {
+        const auto& own = game_.automata[robot].edges;
+        const auto is_own = [&](const Test& test) {
+            return std::any_of(own.begin(), own.end(), [&](const Edge& e) {
+                return std::any_of(e.assign.begin(), e.assign.end(), [&](const Test& set) { return set.variable == test.variable; });
+            });
+        };
+        const auto holds = [&](const Test& test) { return d[game_.automata.size() + test.variable] == test.value; };
+        return std::any_of(edge.clauses.begin(), edge.clauses.end(), [&](const auto& clause) {
+            return std::all_of(clause.begin(), clause.end(), is_own) && std::none_of(clause.begin(), clause.end(), holds);
+        });
+    }
+
+    // The location from which the worst of a robot's duties takes the least part of its time, -1: it has none.
+    int in_the_middle(const Discrete& start, std::size_t r) {
+        const int robot = duties_.robots()[r];
+        double best = std::numeric_limits<double>::infinity();
+        int middle = -1;
+        for (const int location : duties_.rests(robot)) {
+            double worst = -1;
+            for (const int a : duties_.watching()) {
+                if (!is_for(r, a)) continue;
+                Discrete d = duties_.placed(start, robot, location);
+                worst = std::max(worst, 0.0);
+                for (const Edge& edge : game_.automata[a].edges) {
+                    if (duties_.is_timed(a, edge.source) || !duties_.is_timed(a, edge.target) || prevents(d, robot, edge)) continue;
+                    attend(BOUNDS_OF_A_STATE);
+                    d[a] = edge.target;
+                    duties_.look(d, robot);
+                    worst = std::max(worst, static_cast<double>(duties_.cost(duties_.done(a))) / duties_.deadline(d, a));
+                }
+            }
+            if (worst < 0 || worst >= best) continue;
+            best = worst;
+            middle = duties_.at_location(robot, location);
+        }
+        return middle;
+    }
+
+    const Game& game_;
+    Duties& duties_;
+    const Guess guess_;
+    std::vector<std::int64_t> load_;
+    std::vector<std::vector<bool>> for_;  // by robot and automaton
+    std::vector<int> homes_;
+};
+
+}  // namespace pursue
