@@ -18,9 +18,9 @@ from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT, verify
 from pursue_gen.proof.shares import shares_of
 from pursue_gen.solving.due_moves import only_due, patrols
+from pursue_gen.solving.group_games import without_hidden
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
-from pursue_gen.solving.shares import without_hidden
 from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Move, Strategy

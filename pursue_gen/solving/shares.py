@@ -3,60 +3,52 @@
 A promise goes to one robot, or to two where none can keep it alone; robots that have one in common are a group. At
 first each group's game is played as if all the others stood still. Then what they are commanded comes into it, as moves
 of the environment, where it matters, until nothing changes any more; groups that cannot be played so are joined. Which
-robot keeps which promise is tried in turn, those with least to do first. Whatever wins so wins the game, in which it is
+robot keeps which promise is tried in turn, those with least to do first, of these the nearest; groups that were found
+to clash are not tried again. Whatever wins so wins the game, in which it is
 proven (see `proof.shares`); where nothing does, nothing is known.
 """
 
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
-from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT, verify
-from pursue_gen.proof.live import Commanded, commanded, is_controllers, live, taken_over
-from pursue_gen.proof.shares import left_to_others
+from pursue_gen.proof.live import Commanded, commanded
+from pursue_gen.solving.distances import time_to_help
 from pursue_gen.solving.efforts import EFFORTS, Effort
 from pursue_gen.solving.found import Found, stats_of_all
+from pursue_gen.solving.group_games import (
+    ALL,
+    NEEDED,
+    NOBODY,
+    PEOPLE,
+    PLACES,
+    Group,
+    GroupGames,
+    avoided,
+    kept,
+    without_hidden,
+)
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.subgoals import commanded_agents
-from pursue_gen.solving.useful import useful
 from pursue_gen.synthesis.budget import Budget
-from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.synthesis.solve import Stats
 from pursue_gen.synthesis.strategy import Place, Strategy
-from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.hidden import HIDDEN, is_loosened, why_not_hidden, with_hidden
 from pursue_gen.tga.network import Kind, Network, Objective
-from pursue_gen.tga.part import part_of, variables_of, without_unnamed_clocks
 from pursue_gen.tga.pauses import pauses
-from pursue_gen.tga.watchers import Watcher, watched_by, with_watchers
+from pursue_gen.tga.watchers import Watcher, watched_by
 
 _WAYS = 30
 """So many ways to share out the promises are tried."""
 
-_ROUNDS = 8
+_TIMES = 8
 """So many times each group is looked at again, as the others' commands have changed."""
-
-
-_NEEDED, _PEOPLE, _PLACES, _ALL = range(4)
-"""Who is shown in a group's game: whoever its commands depend on; those, too, on whose place something else depends, at
-first without other robots; all who matter."""
-
-_NOBODY: FrozenSet[str] = frozenset()
-
-
-@dataclass(frozen=True)
-class _Group:
-    """Robots, and what they keep from happening, in the objective's order."""
-
-    team: FrozenSet[str]
-    bad: Tuple[Place, ...]
-
 
 _Game = Tuple[Network, Tuple[Place, ...], Tuple[Watcher, ...], bool]
 """A group's game, what it avoids there, the watchers that it follows, and whether it is played without pauses."""
@@ -120,16 +112,12 @@ class _Search:
         limits = replace(options.limits, work=effort.work, states=effort.states)
         self.budget = Budget(limits, options.progress, options.engine, whole=True)
         self._robots = commanded_agents(network)
-        self._taken = taken_over(network)
-        self._setters: Dict[str, Set[str]] = {name: set() for name, _ in network.variables}
-        for automaton in network.automata:
-            for edge in automaton.edges:
-                for name, _ in edge.assign:
-                    self._setters[name].add(automaton.name)
+        self._games = GroupGames(network, objective)
         self._known = known
         self._tried: Set[_Game] = set()
-        self._watched: Dict[_Group, Tuple[Watcher, ...]] = {}
-        self._alone: Dict[_Group, bool] = {}
+        self._watched: Dict[Group, Tuple[Watcher, ...]] = {}
+        self._alone: Dict[Group, bool] = {}
+        self._clashes: List[FrozenSet[Group]] = []
 
     def found(self) -> Optional[Strategy]:
         """The first strategy that is found; raises LimitHit where the budget is used up."""
@@ -146,60 +134,63 @@ class _Search:
 
     def _by_few(self, able: Mapping[Place, Tuple[str, ...]]) -> Optional[Strategy]:
         """A strategy in which half as many robots as promises keep them all, while the others stand still."""
-        needed = [place for place in self._objective.bad if not self._is_won(_Group(_NOBODY, (place,)))]
+        needed = [place for place in self._objective.bad if not self._is_won(Group(NOBODY, (place,)))]
         few = self._robots[: -(-len(needed) // 2)]
         if not 1 < len(few) < len(self._robots) or any(len(able[place]) < len(self._robots) for place in needed):
             return None
-        group = _Group(frozenset(few), self._objective.bad)
-        game = self._game(group, frozenset(), _NEEDED)
+        group = Group(frozenset(few), self._objective.bad)
+        game = self._games.game(group, frozenset(), NEEDED)
         wanted = Objective(Kind.SAFETY, bad=self._objective.bad)
         strategy = self._guessed(game, wanted, 1.0, free=bool(pauses(game)))
         return None if strategy is None else self._proven({group: strategy})
 
     def _able(self, place: Place) -> Tuple[str, ...]:
         """The robots that can do something about what is to be avoided there."""
-        game = self._game(_Group(frozenset(self._robots), (place,)), frozenset())
+        game = self._games.game(Group(frozenset(self._robots), (place,)), frozenset())
         names = {automaton.name for automaton in game.automata}
         return tuple(name for name in self._robots if name in names)
 
     def _ways(
-        self, promises: Sequence[Place], able: Dict[Place, Tuple[str, ...]], groups: Tuple[_Group, ...]
-    ) -> Iterator[Tuple[_Group, ...]]:
+        self, promises: Sequence[Place], able: Dict[Place, Tuple[str, ...]], groups: Tuple[Group, ...]
+    ) -> Iterator[Tuple[Group, ...]]:
         """The ways to share out these promises among groups that have some already; each group wins its game alone."""
         if not promises:
             yield groups
             return
         first, rest = promises[0], promises[1:]
         for team in self._teams(first, able[first], groups):
+            if self._are_known_to_clash(groups):
+                return
             grown = self._grown(groups, team, first)
-            if self._is_won(grown[-1]):
+            if not self._are_known_to_clash(grown) and self._is_won(grown[-1]):
                 yield from self._ways(rest, able, grown)
 
     def _teams(
-        self, promise: Place, able: Sequence[str], groups: Sequence[_Group]
+        self, promise: Place, able: Sequence[str], groups: Sequence[Group]
     ) -> Iterator[FrozenSet[str]]:
-        """Who may keep the promise: nobody, if that is an effort's way; one robot, those with least to do first; two
-        where no one can alone."""
+        """Who may keep the promise: nobody, if that is an effort's way; one robot, those with least to do first, of
+        these the nearest; two where no one can alone."""
         timed = any(place.invariant for place in self._network.automaton(promise[0]).locations)
-        if self._effort.nobody and not timed and self._is_won(_Group(_NOBODY, (promise,))):
-            yield _NOBODY
+        if self._effort.nobody and not timed and self._is_won(Group(NOBODY, (promise,))):
+            yield NOBODY
         load = {name: sum(len(group.bad) for group in groups if name in group.team) for name in able}
-        alone = [frozenset([name]) for name in sorted(able, key=lambda name: load[name])]
-        yield from alone or [_NOBODY]
-        if not any(self._is_won(_Group(team, (promise,))) for team in alone):
+        nearest = sorted(able, key=lambda name: (load[name], time_to_help(self._network, name, promise)))
+        alone = [frozenset([name]) for name in nearest]
+        yield from alone or [NOBODY]
+        if not any(self._is_won(Group(team, (promise,))) for team in alone):
             yield from (frozenset(two) for two in combinations(able, 2))
 
-    def _grown(self, groups: Sequence[_Group], team: FrozenSet[str], promise: Place) -> Tuple[_Group, ...]:
+    def _grown(self, groups: Sequence[Group], team: FrozenSet[str], promise: Place) -> Tuple[Group, ...]:
         """The groups, those of this team joined, with one promise more; that group is the last."""
         met = [group for group in groups if group.team & team]
-        return (*(group for group in groups if group not in met), self._joined([*met, _Group(team, (promise,))]))
+        return (*(group for group in groups if group not in met), self._joined([*met, Group(team, (promise,))]))
 
-    def _joined(self, groups: Sequence[_Group]) -> _Group:
+    def _joined(self, groups: Sequence[Group]) -> Group:
         bad = {place for group in groups for place in group.bad}
-        team = _NOBODY.union(*(group.team for group in groups))
-        return _Group(team, tuple(place for place in self._objective.bad if place in bad))
+        team = NOBODY.union(*(group.team for group in groups))
+        return Group(team, tuple(place for place in self._objective.bad if place in bad))
 
-    def _is_won(self, group: _Group) -> bool:
+    def _is_won(self, group: Group) -> bool:
         """True if the group wins its game while the others stand still."""
         if group not in self._alone:
             lost = (other for other, won in self._alone.items() if not won and other.team == group.team)
@@ -207,14 +198,15 @@ class _Search:
             self._alone[group] = not hopeless and self._strategy(group, frozenset()) is not None
         return self._alone[group]
 
-    def _together(self, groups: Sequence[_Group]) -> Optional[Strategy]:
+    def _together(self, groups: Sequence[Group]) -> Optional[Strategy]:
         """A strategy of these groups that is proven, each with the others' commands; None where there is none."""
-        won: Dict[_Group, Strategy] = {}
+        won: Dict[Group, Strategy] = {}
         for group in groups:
             strategy = self._strategy(group, frozenset())
             assert strategy is not None
             won[group] = strategy
-        for _ in range(_ROUNDS):
+        joins = {group: frozenset([group]) for group in groups}
+        for _ in range(_TIMES):
             before = dict(won)
             for group in before:
                 blocks = (block for other, some in before.items() if other != group for block in some.blocks)
@@ -224,9 +216,12 @@ class _Search:
                     may_join = self._effort.joins or not group.team
                     joined = self._joined_with_some(group, before, theirs) if may_join else None
                     if joined is None:
+                        who = self._in_the_way(group, before, theirs, may_join)
+                        self._clashes.append(frozenset().union(*(joins[each] for each in (group, *who))))
                         return None
                     met, group, strategy = joined
                     won = {other: some for other, some in before.items() if other not in met}
+                    joins[group] = frozenset().union(*(joins[each] for each in met))
                 won[group] = strategy
                 if group not in before:
                     break
@@ -234,14 +229,16 @@ class _Search:
                 return self._proven(won)
         return None
 
+    def _are_known_to_clash(self, groups: Sequence[Group]) -> bool:
+        return any(_have(groups, clash) for clash in self._clashes)
+
     def _joined_with_some(
-        self, group: _Group, groups: Mapping[_Group, Strategy], theirs: Commanded
-    ) -> Optional[Tuple[Sequence[_Group], _Group, Strategy]]:
+        self, group: Group, groups: Mapping[Group, Strategy], theirs: Commanded
+    ) -> Optional[Tuple[Sequence[Group], Group, Strategy]]:
         """The group with one of those whose commands come into its game, else with all of them, if that is won against
         the rest: who is joined, the new group, its strategy."""
-        named = {automaton.name for automaton in self._game(group, theirs).automata}
-        met = [other for other in groups if other != group and other.team & named]
-        ways: List[Sequence[_Group]] = [(other,) for other in met]
+        met = self._met(group, groups, theirs)
+        ways: List[Sequence[Group]] = [(other,) for other in met]
         for some in [*ways, met] if len(met) > 1 else ways:
             joined, rest = self._joined([group, *some]), (g for g in groups if g != group and g not in some)
             strategy = self._strategy(joined, commanded(block for g in rest for block in groups[g].blocks))
@@ -249,7 +246,24 @@ class _Search:
                 return [group, *some], joined, strategy
         return None
 
-    def _proven(self, won: Mapping[_Group, Strategy]) -> Optional[Strategy]:
+    def _met(self, group: Group, groups: Iterable[Group], theirs: Commanded) -> Sequence[Group]:
+        """The other groups whose commands come into the group's game."""
+        named = {automaton.name for automaton in self._games.game(group, theirs).automata}
+        return [other for other in groups if other != group and other.team & named]
+
+    def _in_the_way(
+        self, group: Group, groups: Mapping[Group, Strategy], theirs: Commanded, may_join: bool
+    ) -> Sequence[Group]:
+        """One whose commands alone are too much for the group, also if they join, else all that come into its game."""
+        met = self._met(group, groups, theirs)
+        if len(met) > 1:
+            for other in met:
+                joined = may_join and self._is_won(self._joined([group, other]))
+                if not joined and self._strategy(group, commanded(groups[other].blocks)) is None:
+                    return [other]
+        return met
+
+    def _proven(self, won: Mapping[Group, Strategy]) -> Optional[Strategy]:
         """The strategies of the groups as one, if it wins the game."""
         some = won.values()
         blocks = tuple(block for strategy in some for block in strategy.blocks)
@@ -259,31 +273,31 @@ class _Search:
         strategy = Strategy(
             blocks,
             left_out_clocks=left_out,
-            shares=tuple(_avoided(group.bad, strategy.watchers) for group, strategy in won.items()),
+            shares=tuple(avoided(group.bad, strategy.watchers) for group, strategy in won.items()),
             watchers=watchers,
         )
         limits = self._options.limits
         report = verify(self._network, self._objective, strategy, self._reaction, LIMIT, limits=limits)
         return strategy if report.ok else None
 
-    def _strategy(self, group: _Group, theirs: Commanded) -> Optional[Strategy]:
+    def _strategy(self, group: Group, theirs: Commanded) -> Optional[Strategy]:
         """A proven strategy of the group's game against these commands of others; None where none is found."""
         watchers = self._watchers(group)
-        ways = [(shown, some) for shown in (_NEEDED, _PEOPLE) for some in dict.fromkeys(((), watchers))]
-        ways += [(shown, ()) for shown in (_PLACES, _ALL)[: 1 + self._effort.thorough]]
+        ways = [(shown, some) for shown in (NEEDED, PEOPLE) for some in dict.fromkeys(((), watchers))]
+        ways += [(shown, ()) for shown in (PLACES, ALL)[: 1 + self._effort.thorough]]
         for shown, some in ways:
-            game = self._game(group, theirs, shown, some)
+            game = self._games.game(group, theirs, shown, some)
             key = game, group.bad, some, self._effort.free and bool(pauses(game))
             if key not in self._known.won and key not in self._known.lost and key not in self._tried:
                 self._tried.add(key)
-                strategy = self._solved(key, Objective(Kind.SAFETY, bad=_kept(group.bad, some)))
+                strategy = self._solved(key, Objective(Kind.SAFETY, bad=kept(group.bad, some)))
                 if strategy is not None:
                     self._known.won[key] = replace(strategy, watchers=some)
             if key in self._known.won:
                 return self._known.won[key]
         return None
 
-    def _watchers(self, group: _Group) -> Tuple[Watcher, ...]:
+    def _watchers(self, group: Group) -> Tuple[Watcher, ...]:
         """What the group may follow in place of promises that other robots can keep, too."""
         if group not in self._watched:
             team = tuple(name for name in self._robots if name in group.team)
@@ -308,7 +322,7 @@ class _Search:
         except (NotProven, LimitHit):
             if self.budget.used_up:
                 raise
-            return None
+            return self._guessed(game, wanted, share / 4, free) if len(wanted.bad) == 1 else None
 
     def _guessed(self, game: Network, wanted: Objective, share: float, free: bool) -> Optional[Strategy]:
         found = self.budget.guess(game, wanted, self._reaction, share, without_pauses=free)
@@ -321,60 +335,6 @@ class _Search:
             return without_hidden(proven)
         return None
 
-    def _game(
-        self, group: _Group, theirs: Commanded, shown: int = _ALL, watchers: Tuple[Watcher, ...] = ()
-    ) -> Network:
-        """The group's game: what matters to its promises, where it may do what it likes, and others these commands.
-
-        `shown`: how much of the others is in it; the rest is hidden (see `tga.hidden`). `watchers`: followed in place
-        of their objectives.
-        """
-        network, bad = with_watchers(self._network, watchers), _kept(group.bad, watchers)
-        mine = {c for c in useful(network, group.team, bad) if is_controllers(c[1], self._taken)}
-        alive = left_to_others(live(network, mine | theirs)[0], theirs)
-        # The automata of other promises only watch.
-        names = {automaton.name for automaton in alive.automata}.difference(name for name, _ in self._objective.bad)
-        names.update(name for name, _ in bad)
-        alive = part_of(alive, names, self._setters.keys())
-        hidden = {a.name for a in alive.automata if is_agent(a) and a.name not in group.team and shown != _ALL}
-        tested = {name for _, edge in mine for name in variables_of(edge)}
-        while True:
-            ignored = {_NEEDED: hidden, _PEOPLE: hidden.intersection(self._robots)}.get(shown, _NOBODY)
-            away = {name for name, who in self._setters.items() if who and who <= ignored} - tested
-            part = without_unnamed_clocks(part_of(alive, names - hidden, self._setters.keys() - away))
-            game = cone_of_influence(with_hidden(alive, part), Objective(Kind.SAFETY, bad=bad))
-            seen = {name for name in hidden if why_not_hidden(alive.automaton(name), game)}
-            seen |= {name for variable, _ in game.variables for name in self._setters[variable] & hidden}
-            seen |= {name for variable in _decisive(alive, game) for name in self._setters[variable] & hidden}
-            if not seen:
-                return game
-            hidden -= seen
-
-
-def _kept(bad: Sequence[Place], watchers: Sequence[Watcher]) -> Tuple[Place, ...]:
-    """What is avoided by those who follow watchers in place of their objectives."""
-    followed = {watcher.objective: watcher.name for watcher in watchers}
-    return tuple((followed.get(name, name), place) for name, place in bad)
-
-
-def _avoided(bad: Sequence[Place], watchers: Sequence[Watcher]) -> Tuple[Place, ...]:
-    """The same, and what is avoided so."""
-    return tuple(dict.fromkeys((*_kept(bad, watchers), *bad)))
-
-
-def _decisive(network: Network, game: Network) -> Iterator[str]:
-    """The variables that the game does not have, and whose tests cannot be left out."""
-    for automaton in game.automata:
-        if automaton.name != HIDDEN:
-            whole = network.automaton(automaton.name)
-            for edge in whole.edges:
-                if edge not in automaton.edges and not is_loosened(edge, whole, automaton):
-                    yield from variables_of(edge)
-
-
-def without_hidden(strategy: Strategy) -> Strategy:
-    """The strategy in the names of the network itself."""
-    if not strategy.blocks or strategy.blocks[0].state.locations[-1][0] != HIDDEN:
-        return strategy
-    blocks = (replace(b, state=replace(b.state, locations=b.state.locations[:-1])) for b in strategy.blocks)
-    return replace(strategy, blocks=tuple(blocks))
+def _have(groups: Iterable[Group], some: Iterable[Group]) -> bool:
+    """True if these groups have the same teams, with the same promises and perhaps more."""
+    return all(any(g.team == each.team and set(each.bad) <= set(g.bad) for g in groups) for each in some)

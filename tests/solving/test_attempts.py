@@ -82,3 +82,29 @@ def test_fewer_robots_than_promises_keep_what_all_can() -> None:
 def test_robots_that_never_meet_win_without_a_right_of_way() -> None:
     found = decided_by_attempts(*game(lab_scenario(26)), REACTION, SolveOptions())
     assert isinstance(found, Found)
+
+
+CORRIDOR = """
+poi "hall1"
+poi "hall2"
+connect hall1 and hall2 distance 3
+event "call1"
+event "call2"
+event "serve1" location hall1 duration 1
+event "serve2" location hall2 duration 1
+agent "bot1" controllable mobile 1 location hall2 can_do serve1, serve2
+agent "bot2" controllable mobile 1 location hall1 can_do serve1, serve2
+agent "people" location hall1 can_do call1, call2
+objective: if call1 then serve1 within 40
+objective: if call2 then serve2 within 40
+"""
+
+
+def test_the_nearest_robot_keeps_a_promise_that_each_can() -> None:
+    found = won_in_shares(*game(CORRIDOR), REACTION, SolveOptions(), EFFORTS[1:2])
+    assert found is not None
+    moves = (command.moves[0] for block in found.strategy.blocks for command in block.commands)
+    assert {(move.automaton, move.edge.target) for move in moves} == {
+        ("bot1", "doing_serve2_in_hall2"),
+        ("bot2", "doing_serve1_in_hall1"),
+    }

@@ -147,6 +147,36 @@ def test_a_robot_moves_for_another_one(text: str) -> None:
     assert "bot2" in {command.moves[0].automaton for block in strategy.blocks for command in block.commands}
 
 
+AROUND = """
+poi "hall"
+poi "room1"
+poi "room2"
+poi "room3"
+connect hall and room1 distance 2
+connect room1 and room2 distance 2
+connect hall and room3 distance 3
+connect room3 and room2 distance 3
+event "call"
+event "serve" location room2 duration 1
+agent "bot1" controllable mobile 1 location hall can_do serve
+agent "people" location hall can_do call
+agent "guest" mobile 1 location room1
+objective: if call then serve within 40
+objective: avoid bot1 at room1 and guest at room1
+"""
+
+
+@pytest.mark.parametrize("stays", [False, True])
+def test_a_robot_goes_around_where_it_must_not_meet_somebody(stays: bool) -> None:
+    """The shorter way leads past the guest's room."""
+    still = AROUND.replace(" mobile 1 location room1", " location room1")
+    network, objective, strategy = guessed(still if stays else AROUND)
+    assert strategy is not None
+    ways = {command.moves[0].edge.target for block in strategy.blocks for command in block.commands}
+    assert "going_hall_to_room3" in ways and not any(target.endswith("_to_room1") for target in ways)
+    assert verify(network, objective, strategy, DEFAULT.reaction, closed=True).ok
+
+
 AISLE = """
 poi "left"
 poi "aisle"

@@ -92,9 +92,16 @@ class Duties {
                 sums_[number] += cost;
                 if (++met_[number] < static_cast<int>(op.needs.size())) continue;
                 if (op.controllable && op.owner != robot && is_robot(op.owner)) continue;
-                for (const int effect : op.effects) queue.emplace(sums_[number] + op.time, number, effect);
+                for (const int effect : op.effects) queue.emplace(sums_[number] + op.time + detours_[effect], number, effect);
             }
         }
+    }
+
+    // From now on a robot takes a way past these locations only where there is no other.
+    void keep_out(int robot, const std::set<int>& locations) {
+        detours_.resize(facts_, 0);
+        for (const int location : locations)
+            if (const int fact = known(robot, location); fact >= 0) detours_[fact] = DETOUR;
     }
 
     std::int64_t cost(int fact) const { return fact < 0 ? NEVER : costs_[fact]; }
@@ -259,6 +266,9 @@ class Duties {
     std::vector<int> preconditions_;              // per precondition the operator that has it
     std::vector<Operator> operators_;
 
+    static constexpr std::int64_t DETOUR = std::int64_t{1} << 40;  // longer than any way
+
+    std::vector<std::int64_t> detours_;           // per fact what it costs besides the way
     std::vector<std::int64_t> costs_, sums_;
     std::vector<int> achiever_, support_, met_;
 };

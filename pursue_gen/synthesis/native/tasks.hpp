@@ -58,6 +58,7 @@ class Tasks {
             for (int a = 0; a < static_cast<int>(game.automata.size()); ++a) own.push_back(watches(game, a) && duties.can(robot, a));
             homes_.push_back(guess.idle == Idle::goes_home ? duties.at_location(robot, game.automata[robot].initial) : -1);
         }
+        for (const int robot : duties.robots()) duties.keep_out(robot, dangers(robot));
         if (guess.shared_out && duties.robots().size() > 1) share_out();
         if (guess.idle == Idle::goes_to_post) find_posts();
     }
@@ -144,15 +145,51 @@ class Tasks {
 
     // Whether an edge cannot be taken because of what a robot is at, whatever the others do.
     bool prevents(const Discrete& d, int robot, const Edge& edge) const {
-        const auto& own = game_.automata[robot].edges;
-        const auto is_own = [&](const Test& test) {
-            return std::any_of(own.begin(), own.end(), [&](const Edge& e) {
-                return std::any_of(e.assign.begin(), e.assign.end(), [&](const Test& set) { return set.variable == test.variable; });
-            });
-        };
+        const auto is_own = [&](const Test& test) { return is_set_by(robot, test); };
         const auto holds = [&](const Test& test) { return d[game_.automata.size() + test.variable] == test.value; };
         return std::any_of(edge.clauses.begin(), edge.clauses.end(), [&](const auto& clause) {
             return std::all_of(clause.begin(), clause.end(), is_own) && std::none_of(clause.begin(), clause.end(), holds);
+        });
+    }
+
+    // Where a robot must not be when somebody is somewhere whom no robot of the game moves.
+    std::set<int> dangers(int robot) const {
+        const Discrete start = initial(game_);
+        const std::size_t places = game_.automata[robot].invariants.size();
+        std::set<int> out;
+        for (const int a : duties_.watching())
+            for (const Edge& edge : game_.automata[a].edges) {
+                if (!duties_.is_loss(a, edge) || duties_.is_timed(a, edge.source)) continue;
+                std::set<int> some;
+                for (int location = 0; location < static_cast<int>(places); ++location)
+                    if (is_danger(duties_.placed(start, robot, location), robot, edge)) some.insert(location);
+                if (2 * some.size() < places) out.insert(some.begin(), some.end());  // else it has to be somewhere
+            }
+        return out;
+    }
+
+    // Whether an edge may be taken because of where a robot is, whatever all robots do.
+    bool is_danger(const Discrete& d, int robot, const Edge& edge) const {
+        const auto& robots = duties_.robots();
+        bool depends = false;
+        for (const auto& clause : edge.clauses) {
+            const auto holds = [&](const Test& test) {
+                return is_set_by(robot, test) && d[game_.automata.size() + test.variable] == test.value;
+            };
+            const auto is_robots = [&](const Test& test) {
+                return std::any_of(robots.begin(), robots.end(), [&](int r) { return is_set_by(r, test); });
+            };
+            if (std::any_of(clause.begin(), clause.end(), holds)) depends = true;
+            else if (std::all_of(clause.begin(), clause.end(), is_robots)) return false;
+        }
+        return depends;
+    }
+
+    // Whether an automaton sets the variable that is tested.
+    bool is_set_by(int a, const Test& test) const {
+        const auto& edges = game_.automata[a].edges;
+        return std::any_of(edges.begin(), edges.end(), [&](const Edge& e) {
+            return std::any_of(e.assign.begin(), e.assign.end(), [&](const Test& set) { return set.variable == test.variable; });
         });
     }
 
