@@ -1,19 +1,18 @@
-"""How far robots drive in lab scenarios while nobody else does anything, beside what patrols make them drive at least.
+"""How far robots drive in lab scenarios while nobody else does anything, beside the least that is known for patrols.
 
-In each period of a patrol, or the longest one of several, each place is visited. What their robots drive in it, taken
-together, joins the places to at most as many pieces as there are robots, and is no shorter than the least forest of so
-many pieces, over shortest ways. One robot alone also goes to and fro between each two of its places. Robots that stand
-somewhere for another promise may have to drive more.
+That comes of a search: each place of a patrol is for one robot, which goes through its places in some order again and
+again, over shortest ways that take as long as they may, and sets off as late as it may. Of all that the best counts.
+Robots that stand somewhere for another promise, or have to be able to answer a call, may have to drive more; robots
+that help each other might drive less.
 """
 
 from __future__ import annotations
 
 import math
-from itertools import combinations
-from typing import Any, Dict, FrozenSet, Iterator, List, Sequence, Tuple
+from itertools import product
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from benchmarks.lab_scenarios import lab_scenario
-from pursue_gen.diagnostics import Span
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Patrol, Scenario
 from pursue_gen.outcomes import LimitHit, Lost
@@ -25,11 +24,16 @@ from pursue_gen.solving.request import SolveRequest
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.workspace import Options
 
-UNTIL = 200.0
-"""Time units for which a mission is simulated."""
+Demands = Tuple[Tuple[str, float], ...]
+"""Places, each with the period within which it is visited again."""
 
-LEG = 2.0
-"""Time units that each way takes beside its length at worst: its window, and the rest before the next one."""
+Distances = Dict[Tuple[str, str], float]
+
+UNTIL = 1000.0
+"""Time units for which a mission is simulated, as `pursue-gen sim` does."""
+
+LEG, REST = 2.0, 1.0
+"""Time units that each way takes beside its length at worst, the rest before it included; that rest."""
 
 LIMITS = Limits(seconds=10.0, memory=1024)
 """Within which a scenario has to be won to be counted."""
@@ -37,7 +41,7 @@ LIMITS = Limits(seconds=10.0, memory=1024)
 
 def driving_measured(count: int) -> Iterator[Dict[str, Any]]:
     """A row for each of the first so many lab scenarios that is won: what is driven in UNTIL time units with everybody
-    else standing still, and what is driven at least, in units of distance."""
+    else standing still, and the least that is known, in units of distance."""
     for seed in range(count):
         scenario = parse(lab_scenario(seed), f"lab_{seed}.pur", f"lab_{seed}")
         try:
@@ -51,56 +55,71 @@ def driving_measured(count: int) -> Iterator[Dict[str, Any]]:
 
 
 def least(scenario: Scenario, until: float) -> float:
-    """What the patrols make robots drive at least in so many time units, in units of distance."""
-    ways = _shortest(scenario)
-    patrols: Dict[Span, List[Patrol]] = {}
-    for patrol in scenario.safety:
-        if isinstance(patrol, Patrol):
-            patrols.setdefault(patrol.span, []).append(patrol)
-    bounds: List[Tuple[FrozenSet[str], float]] = []
-    for count in range(1, len(patrols) + 1):
-        for some in combinations(patrols.values(), count):
-            together = [patrol for statement in some for patrol in statement]
-            robots = frozenset(agent.name for patrol in together for agent in scenario.on_patrol(patrol))
-            places = sorted({patrol.place.name for patrol in together})
-            period = float(max(patrol.period for patrol in together))
-            bound = math.floor(until / period) * _forest(places, ways, len(robots))
-            if len(robots) == 1:
-                (speed,) = (float(agent.mobile or 0) for agent in scenario.agents if agent.name in robots)
-                times = _shortest(scenario, speed, LEG)
-                pairs = combinations(places, 2)
-                bound = max([bound, *(_to_and_fro(ways[pair], times[pair] - 1, period, until) for pair in pairs)])
-            bounds.append((robots, bound))
-    return _largest(bounds, frozenset())
+    """The least that robots drive to keep the patrols for so long, in units of distance, as far as is known here."""
+    patrols = [each for each in scenario.safety if isinstance(each, Patrol)]
+    best = math.inf
+    known: Dict[Tuple[str, Demands], float] = {}
+    for robots in product(*(scenario.on_patrol(patrol) for patrol in patrols)):
+        wanted: Dict[str, Dict[str, float]] = {}
+        for patrol, robot in zip(patrols, robots):
+            periods, place = wanted.setdefault(robot.name, {}), patrol.place.name
+            periods[place] = min(float(patrol.period), periods.get(place, math.inf))
+        parts = [(name, tuple(sorted(periods.items()))) for name, periods in wanted.items()]
+        for part in parts:
+            if part not in known:
+                known[part] = _alone(scenario, *part, until)
+        best = min(best, sum(known[part] for part in parts))
+    return best
 
 
-def _to_and_fro(way: float, takes: float, period: float, until: float) -> float:
-    """What one robot drives between two places: it is back at one a period after it left, and was at the other
-    meanwhile. So it leaves for the other one within the period less the time that one way takes at worst, again and
-    again."""
-    return 0.0 if takes >= period else way * math.floor(max(0.0, until - takes) / (period - takes))
+def _alone(scenario: Scenario, name: str, demands: Demands, until: float) -> float:
+    """What one robot drives at least that keeps these periods, by going through the same places again and again."""
+    (agent,) = (agent for agent in scenario.agents if agent.name == name)
+    ways, times = _shortest(scenario), _shortest(scenario, float(agent.mobile or 0), LEG)
+    home, places = agent.location.name, [place for place, _ in demands]
+    if len(places) == 1:
+        return ways[home, places[0]]
+    best = math.inf
+    for length in range(len(places), len(places) + (3 if len(places) < 5 else 0) + 1):
+        for order in product(places, repeat=length):
+            if set(order) == set(places) and all(a != b for a, b in zip(order, (*order[1:], order[0]))):
+                best = min(best, _driven(home, order, dict(demands), ways, times, until))
+    return best
 
 
-def _largest(bounds: Sequence[Tuple[FrozenSet[str], float]], taken: FrozenSet[str]) -> float:
-    """The largest sum of bounds for robots none of whom is in two of them."""
-    free = [(robots, bound + _largest(bounds[k + 1 :], taken | robots))
-            for k, (robots, bound) in enumerate(bounds) if not robots & taken]  # fmt: skip
-    return max((bound for _, bound in free), default=0.0)
+def _driven(
+    home: str, order: Sequence[str], periods: Dict[str, float], ways: Distances, times: Distances, until: float
+) -> float:
+    """What a robot drives that goes through these places in turn and sets off as late as may be, inf: it would be late.
+
+    It leaves for stop k at `leaves[k]`, at the latest so that it is at the place within its period after it left there,
+    and at the stop before in time.
+    """
+    stops, end = [home], 0.0
+    while end < until + max(periods.values()):
+        stops.append(order[(len(stops) - 1) % len(order)])
+        end += times[stops[-2], stops[-1]]
+    last = {home: 0}
+    before: List[Optional[int]] = []
+    for k, stop in enumerate(stops[1:]):
+        before.append(last.get(stop))
+        last[stop] = k + 1
+    leaves = [math.inf] * len(stops)
+    changed = True
+    while changed and leaves[0] >= 0:
+        changed = False
+        for k in (*range(len(before)), *reversed(range(len(before)))):
+            takes, visited = times[stops[k], stops[k + 1]], before[k]
+            since = 0.0 if visited is None else leaves[visited]
+            latest = min(since + periods[stops[k + 1]] - (takes - REST), leaves[k + 1] - takes)
+            if latest < leaves[k]:
+                leaves[k], changed = latest, True
+    if leaves[0] < 0:
+        return math.inf
+    return sum(ways[stops[k], stops[k + 1]] for k in range(len(before)) if leaves[k] < until)
 
 
-def _forest(places: Sequence[str], ways: Dict[Tuple[str, str], float], pieces: int) -> float:
-    """The length of the least forest of so many pieces that has all places (Kruskal's algorithm)."""
-    piece = {place: place for place in places}
-    length, left = 0.0, len(places)
-    for a, b in sorted(combinations(places, 2), key=lambda pair: ways[pair]):
-        if left > pieces and piece[a] != piece[b]:
-            joined, into = piece[a], piece[b]
-            piece.update((place, into) for place in places if piece[place] == joined)
-            length, left = length + ways[a, b], left - 1
-    return length
-
-
-def _shortest(scenario: Scenario, factor: float = 1.0, more: float = 0.0) -> Dict[Tuple[str, str], float]:
+def _shortest(scenario: Scenario, factor: float = 1.0, more: float = 0.0) -> Distances:
     """The distances between places, ways taken in both directions and whenever one likes (Floyd's algorithm), each way
     so many times its length and so much more."""
     names = [poi.name for poi in scenario.pois]

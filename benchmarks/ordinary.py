@@ -92,7 +92,7 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
             print(terminal(row), flush=True)
         for row in driving_measured(given.driving):
             driving.append(row)
-            print(f"{row['name']}: driven {row['driven']:g}, at least {row['least']:g}", flush=True)
+            print(f"{row['name']}: driven {row['driven']:g}, least known {row['least']:g}", flush=True)
     except KeyboardInterrupt:
         print("interrupted; nothing was written", file=sys.stderr)
         return 130

@@ -11,7 +11,7 @@ from benchmarks.ordinary import LABS
 from benchmarks.tables import DASH, markdown, number, seconds
 
 _NEAR = 1.2
-"""Robots should drive at most so many times what has to be driven."""
+"""Robots should drive at most so many times the least that is known."""
 
 _NONE = "Not measured yet: `python -m benchmarks.ordinary --out docs`.\n"
 
@@ -66,8 +66,8 @@ def driving(results: Mapping[str, Any]) -> str:
         for row in those
     ]
     counts = f"Of {len(rows)} scenarios that are won, in {len(rows) - len(those)} nobody drives."
-    counts += f" Beside it, at most {_NEAR:g} times the bound: {near} of {len(those)}."
-    table = markdown(("scenario", "driven", "bound", "quotient"), lines, left=1)
+    counts += f" In {near} of the other {len(those)} they drive at most {_NEAR:g} times the least that is known."
+    table = markdown(("scenario", "driven", "least known", "quotient"), lines, left=1)
     return f"{_measured(rows)}\n{counts}\n\n{table}"
 
 

@@ -94,10 +94,11 @@ def _with(whole: Strategy, game: _Game, strategy: Strategy) -> Strategy:
 
 def _put_off(game: _Game, reaction: Fraction, budget: Budget, options: SolveOptions) -> Optional[Strategy]:
     """A proven strategy in which patrols wait until they are due; None where none is found, or there is no patrol."""
-    if budget.used_up or game.patrols.isdisjoint(name for name, _ in game.objective.bad):
+    late = game.patrols.intersection(name for name, _ in game.objective.bad)
+    if budget.used_up or not late:
         return None
     free = bool(game.strategy.left_out_clocks)
-    found = budget.guess(game.network, game.objective, reaction, _SHARE, without_pauses=free, late=True)
+    found = budget.guess(game.network, game.objective, reaction, _SHARE, without_pauses=free, late=late)
     if found is not None:
         with suppress(LimitHit, NotProven):
             return prove(game.network, game.objective, found[0], reaction, options=options, closed=True)

@@ -20,6 +20,7 @@ from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT, verify
 from pursue_gen.proof.live import Commanded, commanded
 from pursue_gen.solving.distances import time_to_help
+from pursue_gen.solving.due_moves import patrols
 from pursue_gen.solving.efforts import EFFORTS, Effort
 from pursue_gen.solving.found import Found, stats_of_all
 from pursue_gen.solving.group_games import (
@@ -112,6 +113,8 @@ class _Search:
         limits = replace(options.limits, work=effort.work, states=effort.states)
         self.budget = Budget(limits, options.progress, options.engine, whole=True)
         self._robots = commanded_agents(network)
+        visited = patrols(network)
+        self._visits = frozenset(place for place in objective.bad if place[0] in visited)
         self._games = GroupGames(network, objective)
         self._known = known
         self._tried: Set[_Game] = set()
@@ -173,8 +176,11 @@ class _Search:
         timed = any(place.invariant for place in self._network.automaton(promise[0]).locations)
         if self._effort.nobody and not timed and self._is_won(Group(NOBODY, (promise,))):
             yield NOBODY
-        load = {name: sum(len(group.bad) for group in groups if name in group.team) for name in able}
-        nearest = sorted(able, key=lambda name: (load[name], time_to_help(self._network, name, promise)))
+        own = {name: [place for group in groups if name in group.team for place in group.bad] for name in able}
+        rounds = {name: sum(place in self._visits for place in own[name]) * (promise in self._visits) for name in able}
+        nearest = sorted(
+            able, key=lambda name: (rounds[name], len(own[name]), time_to_help(self._network, name, promise))
+        )
         alone = [frozenset([name]) for name in nearest]
         yield from alone or [NOBODY]
         if not any(self._is_won(Group(team, (promise,))) for team in alone):

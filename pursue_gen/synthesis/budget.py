@@ -6,7 +6,7 @@ import copy
 import math
 from dataclasses import replace
 from fractions import Fraction
-from typing import Optional, Tuple
+from typing import AbstractSet, Optional, Tuple
 
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.synthesis.limits import NOTHING_YET, SOLVING, Limits, Listener, limit_reached
@@ -85,7 +85,7 @@ class Budget:
         reaction: Fraction,
         share: float,
         without_pauses: bool = False,
-        late: bool = False,
+        late: AbstractSet[str] = frozenset(),
     ) -> Optional[Tuple[Strategy, Stats]]:
         """What `solve.guess` finds with that share of what is left, and what it took."""
         limits = self.part(share)

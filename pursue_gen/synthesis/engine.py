@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar, Optional, Tuple
+from typing import AbstractSet, ClassVar, Optional, Tuple
 
 from pursue_gen.synthesis.game import Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
@@ -71,13 +71,17 @@ class Engine(ABC):
         return self
 
     def guess(
-        self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None, late: bool = False
+        self,
+        game: Game,
+        limits: Limits = NO_LIMITS,
+        progress: Optional[Listener] = None,
+        late: AbstractSet[str] = frozenset(),
     ) -> Outcome:
         """Try simple policies in a safety game that it `holds`: each robot does one duty after the other, by itself.
 
         `won` if one keeps from all that is to be avoided; else nothing is known of the game. Zones in which to wait may
-        overlap, and those of commands, too. `late`: patrols wait until they are due. `progress` and what it raises: as
-        `solve`. An engine need not know any policy.
+        overlap, and those of commands, too. `late`: the automata of patrols; policies by which these wait until they
+        are due. `progress` and what it raises: as `solve`. An engine need not know any policy.
         """
         return NOT_GUESSED
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from typing import Callable, Mapping, Optional, Tuple
+from typing import AbstractSet, Callable, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.outcomes import Unavailable
@@ -127,12 +127,12 @@ def guess(
     progress: Optional[Listener] = None,
     whole: bool = False,
     without_pauses: bool = False,
-    late: bool = False,
+    late: AbstractSet[str] = frozenset(),
 ) -> Tuple[Optional[Strategy], Stats]:
     """A strategy for a safety game by a simple policy (see `Engine.guess`), None: none of those that are known wins.
 
-    `late`: one by which patrols wait until they are due. Other arguments, and what it raises, as for `solve`. An engine
-    that does not guess finds none.
+    `late`: the automata of patrols; by one by which these wait until they are due. Other arguments, and what it raises,
+    as for `solve`. An engine that does not guess finds none.
     """
     chosen, game, gone = _compiled(network, objective, reaction, engine, whole, without_pauses)
     outcome = chosen.guess(game, limits, progress, late)

@@ -108,3 +108,29 @@ def test_the_nearest_robot_keeps_a_promise_that_each_can() -> None:
         ("bot1", "doing_serve2_in_hall2"),
         ("bot2", "doing_serve1_in_hall1"),
     }
+
+
+ROUNDS = """
+poi "hall1"
+poi "hall2"
+poi "hall3"
+connect hall1 and hall2 distance 3
+connect hall2 and hall3 distance 3
+event "call1"
+event "call2"
+event "serve1" location hall3 duration 1
+event "serve2" location hall3 duration 2
+agent "bot1" controllable mobile 1 location hall1
+agent "bot2" controllable mobile 1 location hall3 can_do serve1, serve2
+agent "people" location hall1 can_do call1, call2
+objective: patrol hall1, hall2 every 40 by any robot
+objective: if call1 then serve1 within 40
+objective: if call2 then serve2 within 40
+"""
+
+
+def test_who_sees_to_one_place_of_a_patrol_stays_there_and_another_robot_sees_to_the_next() -> None:
+    found = won_in_shares(*game(ROUNDS), REACTION, SolveOptions(), EFFORTS[1:2])
+    assert found is not None
+    commands = (command for block in found.strategy.blocks for command in block.commands)
+    assert {command.moves[0].automaton for command in commands} == {"bot2"}

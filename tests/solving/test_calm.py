@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import List, Tuple
@@ -26,12 +27,15 @@ from pursue_gen.solving.due_moves import duties, only_due, patrols
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import DEFAULT
+from pursue_gen.solving.shares import won_in_shares
 from pursue_gen.solving.solution import Solution, solution
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.native import engine as native
+from pursue_gen.synthesis.strategy import with_automata_of
 from pursue_gen.tga import scenario_objective, translate
 from pursue_runtime.state import SystemState
+from tests.patrols import game_of
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
@@ -159,6 +163,24 @@ def test_who_waits_with_a_patrol_goes_to_a_call_at_once() -> None:
     (late,) = (answer.worst for answer in answers(scenario, some) if isinstance(answer.promise, Respond))
     # Where it has set off it goes to both ends first: of 85 it would take most if calls came after what is put off.
     assert late <= 30
+
+
+def test_a_patrol_waits_which_others_may_begin_as_well() -> None:
+    """In a share where the porter is hidden, as whatever he does."""
+    text = BOTH_ENDS.replace("every 30 by guard", "every 60 by any robot").replace("agent", """poi "far"
+connect west and far distance 9
+event "call"
+event "help" location far duration 1
+agent "porter" controllable mobile 1 location far can_do help
+agent""", 1)
+    text += 'agent "guest" location hall can_do call\nobjective: if call then help within 20\n'
+    network, objective = game_of(text)
+    found = won_in_shares(network, objective, DEFAULT.reaction, SolveOptions())
+    assert found is not None
+    some = Solution(network, objective, found.strategy, DEFAULT.reaction)
+    watched = replace(some, network=with_automata_of(network, found.strategy))
+    driving = departures(parse(text, "calm.pur"), calm(watched, SolveOptions()))
+    assert len(driving) <= 1.2 * 2 * 400 / 50
 
 
 def test_every_move_of_a_patrol_leads_nearer_to_a_place_that_is_due() -> None:

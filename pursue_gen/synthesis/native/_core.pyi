@@ -1,6 +1,6 @@
 """What the native engine (module.cpp) offers."""
 
-from typing import Any, Callable, Dict, List, Optional, Tuple
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 class LimitReached(Exception): ...
 
@@ -23,6 +23,6 @@ def guess(
     work: int = 0,
     wall: bool = False,
     progress: Optional[Callable[[int, int, float, int], None]] = None,
-    late: bool = False,
+    late: Sequence[int] = (),
 ) -> Dict[str, Any]: ...
 def minimal(dim: int, matrix: Tuple[int, ...]) -> List[Tuple[int, int, int]]: ...

@@ -18,10 +18,12 @@ class Dispatch {
     // `joints`: of the game; what is decided are their numbers.
     Dispatch(const Game& game, Joints& joints, const Guess& guess)
         : game_(game), joints_(joints), guess_(guess), duties_(game), tasks_(game, duties_, guess),
-          count_(static_cast<int>(game.automata.size())) {}
+          count_(static_cast<int>(game.automata.size())), patrols_(game.automata.size()) {
+        for (const int a : guess.patrols) patrols_[a] = true;
+    }
 
     std::size_t robots() const { return duties_.robots().size(); }
-    bool is_patrol(int a) const { return duties_.is_patrol(a); }
+    bool is_patrol(int a) const { return patrols_[a]; }
 
     // Which duty each robot is at, -1: none, after a move from d; before, it was at those of `memory`. More than the numbers
     // of automata once: it is a patrol that is put off, and the robot goes to a call first; several times: to that patrol next.
@@ -135,7 +137,7 @@ class Dispatch {
     // Whether a robot puts off a patrol that is next: nobody calls, and its last duty was no call.
     bool is_put_off(const Discrete& d, std::size_t r, int duty, const std::vector<int>& memory, int last) const {
         const bool begins = last < 0 ? guess_.sets_off : !is_patrol(last % count_);
-        return guess_.reserve > 0 && is_patrol(duty) && !begins && !is_called(d, r, memory);
+        return is_patrol(duty) && !begins && !is_called(d, r, memory);
     }
 
     // From when on a robot goes round its patrols, `first` to begin with: when one of them has no more time than the way
@@ -157,13 +159,13 @@ class Dispatch {
                 const int next = wants(now, enabled, r, a, way);
                 if (next < 0) return out;
                 now = ended(joints_[next].target(now), robot);
-                time += duties_.cost(duties_.at_location(robot, now[robot])) + 1;
+                time += duties_.cost(duties_.at_location(robot, now[robot])) % Duties::DETOUR + 1;
                 round.erase(std::remove_if(round.begin() + 1, round.end(), [&](int b) { return !duties_.is_open(now, b); }), round.end());
             }
             if (duties_.is_open(now, a)) return out;
             const Bound& deadline = game_.automata[a].invariants[d[a]].front();
-            const wide_t period = deadline.raw >> 1, latest = period - period * guess_.reserve / 100 - time;
-            out.push_back({0, deadline.i, 2 * -std::max<wide_t>(latest, 0) + 1});
+            const std::int64_t period = deadline.raw >> 1, latest = period - period * guess_.reserve / 100 - time;
+            out.push_back({0, deadline.i, static_cast<wide_t>(2 * -std::max<std::int64_t>(latest, 0) + 1)});
             round.erase(round.begin());
         }
         return out;
@@ -298,6 +300,7 @@ class Dispatch {
     Duties duties_;
     Tasks tasks_;
     const int count_;  // of automata
+    std::vector<bool> patrols_;
 };
 
 }  // namespace pursue

@@ -14,6 +14,7 @@ namespace pursue {
 class Duties {
   public:
     static constexpr std::int64_t NEVER = std::numeric_limits<std::int64_t>::max();
+    static constexpr std::int64_t DETOUR = std::int64_t{1} << 40;  // longer than any way
 
     explicit Duties(const Game& game) : game_(game) {
         const int count = static_cast<int>(game.automata.size());
@@ -24,7 +25,6 @@ class Duties {
             });
             if (watches(game, a)) watching_.push_back(a);
             else if (acts) robots_.push_back(a);
-            patrols_.push_back(watches(game, a) && begun_by_robots(a));
         }
         for (int a = 0; a < count; ++a) {
             for (const Edge& edge : game.automata[a].edges) {
@@ -139,9 +139,6 @@ class Duties {
         return locations;
     }
 
-    // Whether robots see to the duty of automaton a by going to and fro: they alone begin it.
-    bool is_patrol(int a) const { return patrols_[a]; }
-
     bool is_timed(int a, int location) const { return !game_.automata[a].invariants[location].empty(); }
 
     // Where a robot may stay.
@@ -172,23 +169,6 @@ class Duties {
     }
 
   private:
-    bool begun_by_robots(int a) const {
-        const auto begins = [&](const Edge& sender) {
-            const auto& edges = game_.automata[a].edges;
-            return sender.channel >= 0 && sender.sends && std::any_of(edges.begin(), edges.end(), [&](const Edge& e) {
-                return e.channel == sender.channel && !is_timed(a, e.source) && is_timed(a, e.target);
-            });
-        };
-        bool any = false;
-        for (const Automaton& automaton : game_.automata)
-            for (const Edge& edge : automaton.edges)
-                if (begins(edge)) {
-                    if (!edge.controllable) return false;
-                    any = true;
-                }
-        return any;
-    }
-
     using Entry = std::tuple<std::int64_t, int, int>;  // cost, operator, fact
 
     struct Operator {
@@ -257,7 +237,6 @@ class Duties {
 
     const Game& game_;
     std::vector<int> robots_, watching_;
-    std::vector<bool> patrols_;
 
     int facts_ = 0;
     std::map<std::pair<int, int>, int> numbers_;  // of facts: an automaton or (behind them) a variable, and its value
@@ -265,8 +244,6 @@ class Duties {
     std::vector<std::vector<int>> met_by_;        // per fact the preconditions that it meets
     std::vector<int> preconditions_;              // per precondition the operator that has it
     std::vector<Operator> operators_;
-
-    static constexpr std::int64_t DETOUR = std::int64_t{1} << 40;  // longer than any way
 
     std::vector<std::int64_t> detours_;           // per fact what it costs besides the way
     std::vector<std::int64_t> costs_, sums_;

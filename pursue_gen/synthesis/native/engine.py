@@ -5,7 +5,7 @@ from __future__ import annotations
 from array import array
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Callable, ClassVar, Dict, List, Optional, Tuple
+from typing import AbstractSet, Any, Callable, ClassVar, Dict, List, Optional, Tuple
 
 from pursue_gen.synthesis.engine import NOT_GUESSED, Counts, Engine, Outcome
 from pursue_gen.synthesis.game import Action, Game, RawBlock
@@ -62,12 +62,19 @@ class NativeEngine(Engine):
         return replace(self, small_budget=max(self.small_budget, work))
 
     def guess(
-        self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None, late: bool = False
+        self,
+        game: Game,
+        limits: Limits = NO_LIMITS,
+        progress: Optional[Listener] = None,
+        late: AbstractSet[str] = frozenset(),
     ) -> Outcome:
         """Try simple policies, see `Engine`."""
         if game.kind is not Kind.SAFETY:
             return NOT_GUESSED
-        return self._run(game, limits, progress, partial(_core.guess, late=late))
+        put_off = [k for k, automaton in enumerate(game.automata) if automaton.name in late]
+        if late and not put_off:
+            return NOT_GUESSED
+        return self._run(game, limits, progress, partial(_core.guess, late=put_off))
 
     def solve(
         self,

@@ -329,7 +329,7 @@ class Forward {
                 table[a][location][x] = std::max(table[a][location][x], bound);
             };
             const bool duty = watches(game_, static_cast<int>(a));
-            const bool waits = guess_.reserve > 0 && duty && dispatch_.is_patrol(static_cast<int>(a));
+            const bool waits = duty && dispatch_.is_patrol(static_cast<int>(a));
             for (std::size_t l = 0; l < places; ++l)
                 for (const Bound& b : automaton.invariants[l]) {
                     if (duty) note(lower_, static_cast<int>(l), b.i, b.raw >> 1);
@@ -373,8 +373,8 @@ class Forward {
 
 // The first policy that wins, or none.
 template <class Z>
-std::unique_ptr<Forward<Z>> winning_guess(const Game& game, LimitMonitor& monitor, bool late) {
-    for (const Guess& each : late ? late_guesses() : GUESSES) {
+std::unique_ptr<Forward<Z>> winning_guess(const Game& game, LimitMonitor& monitor, const std::vector<int>& late) {
+    for (const Guess& each : late.empty() ? GUESSES : late_guesses(late)) {
         auto forward = std::make_unique<Forward<Z>>(game, monitor, each);
         if (!each.shared_out && forward->robots() < 2) continue;  // the same as one that was tried
         if (forward->wins()) return forward;

@@ -145,7 +145,7 @@ py::dict solve_with(const Game& game, const Limits& limits, double small_budget,
 }
 
 template <class Z>
-py::dict guess_with(const Game& game, const Limits& limits, bool late) {
+py::dict guess_with(const Game& game, const Limits& limits, const std::vector<int>& late) {
     LimitMonitor monitor(limits);
     std::map<Discrete, std::vector<Piece<Z>>> plan;
     std::unique_ptr<Forward<Z>> winning;
@@ -233,7 +233,7 @@ py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size
 }
 
 py::dict guess(const py::dict& in, double seconds, std::size_t states, std::size_t memory, std::uint64_t work, bool wall,
-               const py::object& progress, bool late) {
+               const py::object& progress, const std::vector<int>& late) {
     const GivesBack memory_of_game;
     const Game game = read_game(in);
     const Limits limits = limits_of(seconds, states, memory, work, wall, progress);
@@ -276,7 +276,8 @@ PYBIND11_MODULE(_core, module) {
                "is, before searches take turns. `soonest`: see Engine.solve.");
     module.def("guess", &guess, py::arg("game"), py::arg("seconds") = 0.0, py::arg("states") = 0,
                py::arg("memory_mib") = 0, py::arg("work") = 0, py::arg("wall") = false, py::arg("progress") = py::none(),
-               py::arg("late") = false,
-               "Tries simple policies in a compiled safety game, see Engine.guess. Limits as for `solve`.");
+               py::arg("late") = std::vector<int>{},
+               "Tries simple policies in a compiled safety game, see Engine.guess: where `late` names automata, those by which\n"
+               "these duties wait until they are due. Limits as for `solve`.");
     module.def("minimal", &minimal_bounds, py::arg("dim"), py::arg("matrix"), "See strategy_from.minimal.");
 }

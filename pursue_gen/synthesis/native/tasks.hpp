@@ -18,7 +18,8 @@ struct Guess {
     std::size_t zones = 1;   // more zones of one state become one, which only adds plays
     bool apart = true;       // but only those that the same agent's moves lead to: then its pause has just begun
     bool by_time = false;    // duties are shared out by how long they take; who has more to do has the right of way
-    int reserve = 0;         // patrols wait until this part of their period, in hundredths, is left beside the way; 0: never
+    std::vector<int> patrols{};  // duties that wait until they are due
+    int reserve = 0;         // the part of their period, in hundredths, that is left then beside the way
     bool sets_off = false;   // but the first one is begun at once
 };
 
@@ -34,10 +35,11 @@ inline const std::vector<Guess> GUESSES = {
 };
 
 // Likewise, where patrols wait until they are due, as late as is won.
-inline std::vector<Guess> late_guesses() {
+inline std::vector<Guess> late_guesses(const std::vector<int>& patrols) {
     std::vector<Guess> out;
-    for (const int reserve : {5, 15, 30, 60})
+    for (const int reserve : {5, 10, 20, 30, 45, 60})
         for (Guess guess : GUESSES) {
+            guess.patrols = patrols;
             guess.reserve = reserve;
             if (guess.next == Next::in_turn && guess.shared_out && guess.zones == 1)
                 for (const bool sets_off : {false, true}) {
