@@ -13,6 +13,7 @@ from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Network
 from pursue_gen.tga.part import part_of
 from pursue_gen.tga.scale import common_denominator
 from pursue_gen.tga.watchers import Watcher
+from pursue_gen.zones.dbm import raw
 
 _MOST = 100_000
 """So many discrete states are looked at."""
@@ -24,7 +25,7 @@ def why_it_may_miss(network: Network, watcher: Watcher, automata: AbstractSet[st
     `automata` and `variables` are seen, the watcher's own among them; the others may be anywhere (see `tga.hidden`).
     """
     watched, narrower = network.automaton(watcher.objective), network.automaton(watcher.name)
-    fault = _why_it_is_none(watched, narrower) or ("a play begins in the middle" if network.start else "")
+    fault = _why_it_is_none(watched, narrower)
     if fault:
         return fault
     loose = replace(watched, edges=tuple(_with_any(watched, variables)))
@@ -41,6 +42,9 @@ def why_it_may_miss(network: Network, watcher: Watcher, automata: AbstractSet[st
     found, waiting = {arena.initial}, [arena.initial]
     if is_missed(arena.initial):
         return "the objective is at risk before it is"
+    longer = arena.start.m[since * arena.start.dim + own_since] > raw(0, strict=False)
+    if arena.initial[0][theirs] == AT_RISK and longer:  # in the middle of a play
+        return "the objective may have been at risk for longer"
     while waiting:
         state = waiting.pop()
         for move in arena.situation(state).moves:

@@ -18,23 +18,31 @@ from pursue_gen.proof.checker import LIMIT
 from pursue_gen.proof.worst_case import counting_clock, worst_case
 from pursue_gen.replanning.request import Request, read_request
 from pursue_gen.replanning.start import around, network_from, passed_bounds, start_clocks
+from pursue_gen.replanning.tours import followers, tours_from_here
+from pursue_gen.solving.due_moves import patrols
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import played
 from pursue_gen.solving.shares import can_be_shared, won_in_shares
+from pursue_gen.solving.tours import PATROL
+from pursue_gen.solving.tours_again import is_too_much
 from pursue_gen.solving.without_pauses import verdict_of, won_without_pauses
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits, careful_memory
 from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.pauses import pauses
 from pursue_runtime.sentences import marked, quoted
 
 _LITTLE = 100_000_000
 """The work of a search that is not for the game as it is alone: some five seconds."""
+
+
+_FEW = 2_000
+"""Where many places are patrolled only so many states are looked at if states are counted: each takes long."""
 
 
 _MOMENTS = ((1, 10), (1, 2), (0, 10), (0, 2), (0, Fraction(1, 2)))
@@ -65,16 +73,27 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
     reason = _reason_lost(network, objective, request.scenario)
     if reason:
         return _lost(reason)
+    own = followers(game, request)
     start = limits.now()
     options = SolveOptions(limits)
     try:
-        shared = _won_in_shares(network, objective, request.rules.reaction, options)
-        if shared is not None:
-            return _won(shared, network, request, None)
-        free = won_without_pauses(network, objective, request.rules.reaction, _LITTLE, options, states or LIMIT)
-        if free is not None:
-            return _won(free.strategy, network, request, None if states else objective)
-        verdict = _verdict(network, objective, request.rules.reaction, limits.since(start))
+        on = tours_from_here(game, objective, own, request, options)
+        if on is not None:
+            return _won(*on, request, None)
+        clocks = start_clocks(network, request)
+        if is_too_much(network, objective, request.rules.reaction, clocks, request.excused):
+            return _lost(_cannot_be_met(game, request))
+        if _patrols_many(game, objective):  # nothing in between does better than tours
+            most = replace(limits, states=min(states, _FEW))
+            verdict = solve(network, objective, request.rules.reaction, limits=most.since(start))
+        else:
+            shared = _won_in_shares(network, objective, request.rules.reaction, options)
+            if shared is not None:
+                return _won(shared, network, request, None)
+            free = won_without_pauses(network, objective, request.rules.reaction, _LITTLE, options, states or LIMIT)
+            if free is not None:
+                return _won(free.strategy, network, request, None if states else objective)
+            verdict = _verdict(network, objective, request.rules.reaction, limits.since(start))
         if verdict.strategy is None:
             return _lost(_cannot_be_met(game, request))
         left = SolveOptions(limits.since(start))
@@ -99,6 +118,12 @@ def _won_in_shares(
     little = replace(options, limits=replace(options.limits, work=_LITTLE))
     found = won_in_shares(network, objective, reaction, little)
     return None if found is None else found.strategy
+
+
+def _patrols_many(game: Network, objective: Objective) -> bool:
+    """True where patrols of so many places are asked for, and nothing else, that tours are looked for first."""
+    names = {name for name, _ in objective.bad}
+    return objective.kind is Kind.SAFETY and len(names) >= PATROL and names <= patrols(game)
 
 
 def _verdict(network: Network, objective: Objective, reaction: Fraction, limits: Limits) -> Verdict:

@@ -25,7 +25,8 @@ class Request:
 
     Clocks are in time units, `ahead` of which pass before the plan begins. Nothing is expected of the agents that are
     `excused`, nobody is sent along the ways in `blocked`, and who is `turning` may be back at any time. It may take so
-    many `seconds`, 0: any number.
+    many `seconds`, 0: any number. `follows`: the watchers and tours of the workspace's plan, in its lines; their
+    automata are in the state.
     """
 
     scenario: Scenario
@@ -40,6 +41,7 @@ class Request:
     blocked: FrozenSet[Tuple[str, str]]
     turning: FrozenSet[str]
     seconds: float
+    follows: Tuple[str, ...] = ()
 
 
 def read_request(data: object) -> Request:
@@ -73,6 +75,7 @@ def read_request(data: object) -> Request:
         blocked=_ways(request.get("blocked", ()), scenario),
         turning=_agents(request.get("turning", ()), "turning", scenario),
         seconds=float(seconds),
+        follows=_lines(game.get("follows", ())),
     )
 
 
@@ -99,6 +102,12 @@ def _numbers(data: object, scenario: Scenario) -> FrozenSet[int]:
     if not isinstance(data, (list, tuple)) or any(number not in scenario.optional for number in data):
         raise wrong(f"given_up is {_shown(data)}", f"a list of numbers behind optional: {scenario.optional}")
     return frozenset(data)
+
+
+def _lines(data: object) -> Tuple[str, ...]:
+    if not isinstance(data, (list, tuple)) or not all(isinstance(line, str) for line in data):
+        raise wrong(f"follows is {_shown(data)}", "a list of lines of a plan, [] for none")
+    return tuple(data)
 
 
 def _agents(data: object, name: str, scenario: Scenario) -> FrozenSet[str]:

@@ -21,12 +21,13 @@ _FINEST = 10
 """The grid of clock values has at least so many points in a time unit."""
 
 
-def network_from(network: Network, request: Request) -> Network:
+def network_from(network: Network, request: Request, told_apart: bool = False) -> Network:
     """The network in the state of the request, `ahead` time units later, without the moves that cannot be relied on.
 
     Whoever is excused gets no command where it is and ends what it does at any time or never; whoever is there longer
-    than the model allows may stay; who is turning may be back too early; nobody is sent along a blocked way. Raises
-    PursueError (exit status 2) for a place that the network does not have.
+    than the model allows may stay; who is turning may be back too early; nobody is sent along a blocked way.
+    `told_apart`: also clocks that are above all that the network compares them with. Raises PursueError (exit status 2)
+    for a place that the network does not have.
     """
     locations, values, clocks = _place(network, request)
     agents = {agent.name for agent in request.scenario.agents}
@@ -49,7 +50,8 @@ def network_from(network: Network, request: Request) -> Network:
     there = replace(network, automata=tuple(automata), variables=tuple(values.items()))
     reaction = request.rules.reaction
     grid = least_common_multiple((_FINEST, common_denominator([reaction, *there.times])))
-    return replace(there, start=region(clocks, _beyond(there, ceil(reaction)), grid))
+    beyond = {name: value + 1 for name, value in clocks.items()} if told_apart else _beyond(there, ceil(reaction))
+    return replace(there, start=region(clocks, beyond, grid))
 
 
 def start_clocks(network: Network, request: Request) -> Dict[str, Fraction]:

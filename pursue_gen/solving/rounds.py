@@ -22,6 +22,9 @@ _STEPS = 400_000
 _GIVEN = (1, 2, 3)
 """So many visits in a row may go from one robot to another."""
 
+_TREES = 20
+"""So many spanning trees show whether visits are too late."""
+
 _ORDERS = 24
 """So many ways to give the parts of the walk to the robots are tried."""
 
@@ -101,6 +104,34 @@ def least_wait(robots: Sequence[Robot], visits: Sequence[Visit]) -> Time:
         near = {each: min(time, _least_time(robots, place, each)) for each, time in near.items()}
     kept = sorted(branches)[: max(0, len(branches) + 1 - len(robots))]
     return max(0.0, sum(kept) / len(robots) - max(robot.stay for robot in robots))
+
+
+def is_too_late(
+    robots: Sequence[Robot], visits: Sequence[Visit], first: Sequence[Mapping[str, Time]], left: Sequence[Time]
+) -> bool:
+    """True if not all of these visits can be made in the times that are left, whoever goes where.
+
+    `first`: how long each robot takes at least to each place from where it is. Those that have to be made within some
+    time are made on ways of the robots, which are together no shorter than a least spanning tree of their places, and
+    of one root for where the robots are.
+    """
+    root: Dict[int, Time] = {}
+    for k, visit in enumerate(visits):
+        if left[k] < _NEVER:
+            root[k] = min((first[robot].get(visit.place, _NEVER) for robot in visit.robots), default=_NEVER)
+    if any(time > left[k] for k, time in root.items()):
+        return True
+    ends = sorted({left[k] for k in root})
+    for end in ends[:: -(-len(ends) // _TREES) or 1]:
+        near, length = {k: time for k, time in root.items() if left[k] <= end}, 0.0
+        while near:
+            k = min(near, key=lambda each: near[each])
+            length += near.pop(k)
+            for other in near:
+                near[other] = min(near[other], _least_time(robots, visits[k].place, visits[other].place))
+        if length > end * len(robots):
+            return True
+    return False
 
 
 def _least_time(robots: Sequence[Robot], a: str, b: str) -> Time:

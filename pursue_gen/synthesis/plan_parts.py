@@ -53,10 +53,8 @@ def left_out_lines(strategy: Strategy, network: Network) -> List[str]:
     if strategy.passages:
         return [f" -- Passage: {' '.join((each.place, *each.robots))}" for each in strategy.passages]
     if strategy.shares:
-        watchers = [f" -- Watcher: {' '.join((each.objective, *each.team))}" for each in strategy.watchers]
-        tours = [f" -- Tour: {' '.join((t.robot, str(t.again + 1), *t.stops))}" for t in strategy.tours]
         shares = [f" -- Share: {' '.join(map('.'.join, avoided))}" for avoided in strategy.shares]
-        return [*watchers, *tours, *shares, *clocks]
+        return [*follower_lines(strategy), *shares, *clocks]
     if strategy.stages:
         variables = dict(network.variables)
         return [
@@ -68,6 +66,13 @@ def left_out_lines(strategy: Strategy, network: Network) -> List[str]:
     every = (*(automaton.name for automaton in network.automata), *(name for name, _ in network.variables))
     left = [name for name in every if name not in named]
     return [*([f" -- Left out: {' '.join(left)}"] if left else []), *clocks]
+
+
+def follower_lines(strategy: Strategy) -> List[str]:
+    """The lines with the watchers and tours of a strategy."""
+    watchers = [f" -- Watcher: {' '.join((each.objective, *each.team))}" for each in strategy.watchers]
+    tours = [f" -- Tour: {' '.join((t.robot, str(t.again + 1), *t.stops))}" for t in strategy.tours]
+    return [*watchers, *tours]
 
 
 def read_stages(text: str, network: Network, file: str) -> Tuple[Tuple[Place, ...], ...]:

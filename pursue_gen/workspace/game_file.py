@@ -8,13 +8,16 @@ from typing import Dict
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
+from pursue_gen.synthesis.plan_parts import follower_lines
+from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.workspace.context import Options
 
 
-def render(scenario: Scenario, options: Options, plan: str, generator: str) -> str:
+def render(scenario: Scenario, options: Options, strategy: Strategy, plan: str, generator: str) -> str:
     """The text of game.yaml: the scenario word for word, which game is played, by which plan, who gets which commands.
 
-    The plan is not in it, but its digest, and what to ask the solver for to have it again.
+    The plan is not in it, but its digest, and what to ask the solver for to have it again; and its tours, with which
+    robots may go on.
     """
     head = f"The game of {scenario.name}, written by pursue-gen {generator}: from this a new plan is made under way."
     slack = dict(sorted(options.slack.items()))
@@ -34,5 +37,7 @@ def render(scenario: Scenario, options: Options, plan: str, generator: str) -> s
     given_up = sorted({one.objective.optional for one in scenario.given_up})
     if given_up:
         data["given_up"] = inline(given_up)
+    if strategy.tours:
+        data["follows"] = follower_lines(strategy)
     data["scenario"] = scenario.text
     return yaml_text(data, [head])

@@ -74,7 +74,7 @@ def generate(
         "poses": poses_text(scenario, where),
         "model": model_file.render(network, objective, scenario, options.reaction, __version__).encode(),
         "cover": strategy_file.render_cover(strategy, scenario.name, __version__).encode(),
-        "game": game_file.render(scenario, options, plan, __version__).encode(),
+        "game": game_file.render(scenario, options, strategy, plan, __version__).encode(),
         "expected": _expected(network, objective, scenario, controllers),
         "ui": ui_file.render(
             scenario, network, where, options, values["controllers"], values["reported"], __version__,

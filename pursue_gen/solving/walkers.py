@@ -1,0 +1,155 @@
+"""Who walks on patrols, on which ways and how fast, and the places to be visited: what rounds and tours are made of."""
+
+from __future__ import annotations
+
+import heapq
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Tuple
+
+from pursue_gen.language.network_names import LOSE
+from pursue_gen.solving.due_moves import Duty, duties, patrols
+from pursue_gen.solving.rounds import Robot, Visit
+from pursue_gen.solving.subgoals import commanded_agents
+from pursue_gen.tga.network import Automaton, Edge, Guard, Kind, Network, Objective
+from pursue_gen.tga.scale import common_denominator, least_common_multiple
+from pursue_gen.tga.tours import ways_of
+
+_UNITS = 10
+"""A command is due within a tenth of a time unit, or less: behind a strict bound there is no first instant."""
+
+
+@dataclass(frozen=True)
+class Way:
+    """A movement that can be commanded: its edge, the rest before it, how long it lasts at least and at most, and the
+    edge of its end where that is commanded, too."""
+
+    edge: Edge
+    rest: Fraction
+    least: Fraction
+    lasts: Fraction
+    end: Optional[Edge]
+
+
+@dataclass(frozen=True)
+class Walker:
+    """A robot: its ways by place and next place, and as `rounds` knows it; of each way around where it leads next."""
+
+    automaton: Automaton
+    clock: str
+    ways: Mapping[str, Mapping[str, Way]]
+    robot: Robot
+    following: Mapping[Tuple[str, str], str]
+
+    def stops(self, places: Sequence[str]) -> List[str]:
+        """All places on the way from one of these to the next, without the first of them."""
+        found: List[str] = []
+        for a, b in zip(places, places[1:]):
+            while a != b:
+                a = self.following[a, b]
+                found.append(a)
+        return found
+
+
+@dataclass(frozen=True)
+class Patrol:
+    """What tours are to keep: who walks them, the duties, and as `rounds` has these; for how long a command is due."""
+
+    walkers: Tuple[Walker, ...]
+    duties: Tuple[Duty, ...]
+    visits: Tuple[Visit, ...]
+    unit: Fraction
+
+
+def patrol_of(
+    network: Network,
+    objective: Objective,
+    reaction: Fraction,
+    prompt: bool = False,
+    excused: AbstractSet[str] = frozenset(),
+) -> Optional[Patrol]:
+    """The patrol that an objective asks for; None where it asks for something else, or a robot does not move as it is
+    told, at any time. `prompt`: commands are given at the first instant; `excused`: robots that are not relied on."""
+    bad = dict.fromkeys(name for name, _ in objective.bad)
+    known = duties(network, objective, patrols(network)) if objective.kind is Kind.SAFETY else ()
+    if not known or len(known) != len(bad) or any(place != LOSE for _, place in objective.bad):
+        return None
+    if any(len(places) != 1 for duty in known for places in duty.visits.values()) or _in_order(network, known):
+        return None
+    unit = Fraction(1, least_common_multiple((_UNITS, common_denominator([reaction, *network.times]))))
+    late = reaction if prompt else reaction + unit
+    robots = [network.automaton(name) for name in commanded_agents(network) if name not in excused]
+    walkers = [_walker(robot, late, bool(network.start)) for robot in robots]
+    able = [walker for walker in walkers if walker is not None]
+    if len(able) < len(walkers) or not able:
+        return None
+    visits: List[Visit] = []
+    for duty in known:
+        where = {k: duty.visits[each.automaton.name][0] for k, each in enumerate(able)
+                 if each.automaton.name in duty.visits}  # fmt: skip
+        if len(set(where.values())) != 1:
+            return None
+        visits.append(Visit(next(iter(where.values())), frozenset(where), float(duty.deadline)))
+    return Patrol(tuple(able), known, tuple(visits), unit)
+
+
+def _in_order(network: Network, known: Sequence[Duty]) -> bool:
+    """True if a visit counts at some times only."""
+    automata = (network.automaton(duty.name) for duty in known)
+    return any(edge.assign for automaton in automata for edge in automaton.edges)
+
+
+def _walker(robot: Automaton, late: Fraction, under_way: bool) -> Optional[Walker]:
+    """The robot with the ways that depend on nothing but its rest; None where there are none, or it starts on one and
+    is not `under_way` in the middle of a play."""
+    clocks = {bound.clock for place in robot.locations for bound in place.invariant}
+    if len(clocks) != 1:
+        return None
+    bounds = {place.name: place.invariant for place in robot.locations}
+    (clock,) = clocks
+    ways: Dict[str, Dict[str, Way]] = {}
+    for place, led in ways_of(robot).items():
+        for following, edge in led.items():
+            ends = [other for other in robot.edges if other.source == edge.target and other.target == following]
+            if any(each.guard.integers or clock not in each.resets for each in (edge, *ends)):
+                continue
+            if len(ends) != 1 or len(bounds[edge.target]) != 1:
+                continue
+            rest, least = (_since(each.guard, clock) for each in (edge, *ends))
+            end = ends[0] if ends[0].controllable else None
+            lasts = Fraction(bounds[edge.target][0].bound) if end is None else least + late
+            ways.setdefault(place, {})[following] = Way(edge, rest, least, lasts, end)
+    if not ways or (bounds[robot.initial] and not under_way):
+        return None
+    steps = {a: {b: float(way.rest + late + way.lasts) for b, way in led.items()} for a, led in ways.items()}
+    times, following_of = _all_ways(steps)
+    stay = min(way.rest for led in ways.values() for way in led.values()) + late
+    return Walker(robot, clock, ways, Robot(robot.initial, times, float(stay)), following_of)
+
+
+def _since(guard: Guard, clock: str) -> Fraction:
+    """From when on a guard holds."""
+    bounds = (Fraction(bound.bound) for bound in guard.clocks if bound.clock == clock and bound.op in (">", ">="))
+    return max(bounds, default=Fraction(0))
+
+
+def _all_ways(
+    steps: Mapping[str, Mapping[str, float]]
+) -> Tuple[Dict[str, Dict[str, float]], Dict[Tuple[str, str], str]]:
+    """How long it takes from each place to each other one (Dijkstra), and where one goes first."""
+    times: Dict[str, Dict[str, float]] = {}
+    following: Dict[Tuple[str, str], str] = {}
+    for start in steps:
+        known: Dict[str, float] = {}
+        queue: List[Tuple[float, str, str]] = [(0.0, start, "")]
+        while queue:
+            time, place, first = heapq.heappop(queue)
+            if place in known:
+                continue
+            known[place] = time
+            following[start, place] = first
+            for other, step in steps.get(place, {}).items():
+                if other not in known:
+                    heapq.heappush(queue, (time + step, other, first or other))
+        times[start] = known
+    return times, following
