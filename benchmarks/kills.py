@@ -17,11 +17,13 @@ import datetime
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import xmlrpc.client
 from concurrent.futures import ThreadPoolExecutor
@@ -144,6 +146,38 @@ def play(there: World, workspace: Path, kills: Sequence[Kill], bag: Path, unit: 
     there.stop(*(name for name in ("roslaunch", "finish") if name in there.running))
 
 
+_worlds: Set[World] = set()
+"""Those of the missions that are under way."""
+
+_ends = threading.Event()
+"""Set when no mission is to go on."""
+
+
+@contextlib.contextmanager
+def _open(there: World) -> Iterator[None]:
+    """A world is there whose processes have to end with this program. Raises SystemExit where that ends already."""
+    _worlds.add(there)
+    try:
+        if _ends.is_set():
+            raise SystemExit(1)
+        yield
+    finally:
+        _worlds.discard(there)
+
+
+@contextlib.contextmanager
+def _ending_all() -> Iterator[None]:
+    """Whatever goes wrong, a signal too, ends the processes of all missions: their threads would wait for them."""
+    _ends.clear()
+    try:
+        yield
+    except BaseException:
+        _ends.set()
+        for there in list(_worlds):
+            there.stop()
+        raise
+
+
 def judge(bag: Path, second: Path, journals: Iterable[Path], game: Game) -> Tuple[str, str, Tuple[str, ...]]:
     """Return a word of OUTCOMES and why, and what both recorders have missed: from what either of them has, the words
     that the observer has heard, and the workspace's strategy alone."""
@@ -185,7 +219,7 @@ def mission(
     nodes = ["observer", "UI", "simulator", *(folder.name for folder in (workspace / "src").glob("controller*"))]
     ends = bool(game.objective.goal)
     kills = draw(seed, number, sorted(nodes), (40.0 if scenario in OTHERS else 20.0) * unit)
-    with tempfile.TemporaryDirectory(prefix="kills_") as home, world(Path(home)) as there:
+    with tempfile.TemporaryDirectory(prefix="kills_") as home, world(Path(home)) as there, _open(there):
         bag, second = Path(home) / "mission.bag", Path(home) / "second.bag"
         start_second(there, second, game)
         play(there, workspace, kills, bag, unit, number, ends)
@@ -207,15 +241,16 @@ def measure(
     with tempfile.TemporaryDirectory(prefix="kills_ws_") as home, ThreadPoolExecutor(jobs) as pool:
         workspaces = []
         for name in names:
-            short = name.replace("/", "_")
+            short = re.sub(r"\W+", "_", name)
             workspace = generated(text_of(name), short, Path(home) / short, RULES)
             workspaces.append((name, workspace, game_of(from_workspace(workspace))))
-        for each in pool.map(lambda number: mission(number, seed, workspaces, unit, keep), numbers):
-            kills = ", ".join(each.kills)
-            print(f"{each.number:4} {each.scenario:30} {each.outcome:8} {each.why} [{kills}]", flush=True)
-            for what in each.missed:
-                print(f"     both recorders have missed: {what}", flush=True)
-            yield each
+        with _ending_all():
+            for each in pool.map(lambda number: mission(number, seed, workspaces, unit, keep), numbers):
+                kills = ", ".join(each.kills)
+                print(f"{each.number:4} {each.scenario:30} {each.outcome:8} {each.why} [{kills}]", flush=True)
+                for what in each.missed:
+                    print(f"     both recorders have missed: {what}", flush=True)
+                yield each
 
 
 def options() -> argparse.ArgumentParser:
@@ -235,12 +270,18 @@ def options() -> argparse.ArgumentParser:
     return parser
 
 
+def _leave(*_: object) -> None:
+    """SIGTERM: leave no process behind; what comes after the first one does not disturb that."""
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    sys.exit(1)
+
+
 def main() -> int:
     """Play, judge, print, and write; the exit status is 1 where a mission was wrong or had no end."""
     from pursue_gen.files import write_texts
 
     given = options().parse_args()
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that no process stays behind
+    signal.signal(signal.SIGTERM, _leave)
     kept = given.out / "benchmarks" / "kills.json" if given.out else None
     before = json.loads(kept.read_text(encoding="utf-8")) if kept and given.first else None
     part = {"first": given.first, "date": given.date, "commit": version()}

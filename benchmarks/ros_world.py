@@ -14,7 +14,7 @@ import sys
 import time
 import xmlrpc.client
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Mapping, Optional
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Set
 
 from pursue_gen.language import parse
 from pursue_gen.solving.rules import Rules
@@ -109,19 +109,25 @@ class World:
         self.start(script, [sys.executable, str(program), *arguments], PYTHONPATH=path)
 
     def stop(self, *names: str) -> None:
-        """Ends these processes, politely at first; all of them where none is named."""
-        chosen = [name for name in reversed(list(self.running)) if not names or name in names]
+        """Ends these processes, politely at first, and what they have started, in sessions of its own too, as roslaunch
+        starts nodes; all of them where none is named."""
+        running = dict(self.running)  # another thread may stop some, too
+        chosen = [name for name in reversed(list(running)) if not names or name in names]
         for sign, patience in ((signal.SIGINT, 5.0), (signal.SIGKILL, 5.0)):
-            alive = [self.running[name] for name in chosen if self.running[name].poll() is None]
+            alive = [running[name] for name in chosen if running[name].poll() is None]
+            below = _started_by({process.pid for process in alive}) if sign == signal.SIGKILL else []
             for process in alive:
                 with contextlib.suppress(ProcessLookupError):
                     os.killpg(process.pid, sign)
+            for number in below:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(number, sign)
             deadline = time.monotonic() + patience
             for process in alive:
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     process.wait(max(0.1, deadline - time.monotonic()))
         for name in chosen:
-            del self.running[name]
+            self.running.pop(name, None)
 
     def _environment(self) -> Dict[str, str]:
         return {**os.environ, **self.variables}
@@ -168,6 +174,21 @@ def free_port() -> int:
 def _stat(process: int) -> List[str]:
     """What the system tells of a process, from its state on (proc(5), `stat`)."""
     return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+
+
+def _started_by(processes: Set[int]) -> List[int]:
+    """The processes that these have started, and those that these have started in turn, and so on."""
+    parents: Dict[int, int] = {}
+    for folder in Path("/proc").iterdir():
+        if folder.name.isdecimal():
+            with contextlib.suppress(OSError, IndexError):
+                parents[int(folder.name)] = int(_stat(int(folder.name))[1])
+    found: List[int] = []
+    while True:
+        more = [each for each, parent in parents.items() if parent in processes or parent in found]
+        if len(more) == len(found):
+            return found
+        found = more
 
 
 def cpu_seconds(process: "subprocess.Popen[bytes]") -> float:

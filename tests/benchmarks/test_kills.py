@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
+import shutil
+import signal
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Dict, List, Sequence, Tuple
@@ -14,12 +17,13 @@ from benchmarks import kills
 from benchmarks.kills import draw, judge, outcome, text_of
 from benchmarks.kills_page import OTHERS, OUTCOMES, RULES, Mission, mismatch, page, results, together
 from benchmarks.lab_scenarios import lab_scenario
-from benchmarks.ros_world import ROOT
+from benchmarks.ros_world import ROOT, World
 from pursue_gen.language import parse
 from pursue_gen.replay import Findings
 from pursue_gen.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
 from pursue_gen.solving.solution import solve_scenario
 from tests.replay.recordings import PLAY, game, mission, write_bag, write_journal
+from tests.waiting import until
 
 NODES = ("UI", "controller_bot1", "observer", "simulator")
 
@@ -216,3 +220,42 @@ def test_a_scenario_is_named_by_its_file_its_seed_or_its_size() -> None:
     for unknown in ("lab/first", "thesis/scenario_9", "corridor"):
         with pytest.raises(SystemExit, match=f"there is no scenario {unknown}: name a file of scenarios/, lab/SEED or"):
             text_of(unknown)
+
+
+@pytest.mark.skipif(not shutil.which("roscore"), reason="needs ROS 1: roscore is not on PATH")
+def test_what_a_process_has_started_ends_with_it_though_it_has_a_session_of_its_own(tmp_path: Path) -> None:
+    """As the nodes of a roslaunch that does not end them in time."""
+    there = World(tmp_path)
+    there.start("launch", ["bash", "-c", "trap '' INT; setsid sleep 1000 & echo $!; wait; wait"])
+    node = int(until(lambda: there.log("launch").strip(), "the process says which one it has started"))
+    there.stop()
+    until(lambda: not runs(node), "what it has started ends")
+
+
+def runs(process: int) -> bool:
+    """True for a process that has not ended; nobody may have waited for its end yet."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+@pytest.mark.skipif(not shutil.which("roscore"), reason="needs ROS 1: roscore is not on PATH")
+def test_a_signal_ends_the_missions_that_are_under_way(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    there = World(tmp_path)
+
+    def waiting(number: int, *_: object) -> Mission:
+        with kills._open(there):
+            launch = there.start("launch", ["sleep", "1000"])
+            os.kill(os.getpid(), signal.SIGTERM)
+            launch.wait(60.0)
+        raise AssertionError("nobody asks for this mission any more")
+
+    monkeypatch.setattr(kills, "mission", waiting)
+    before = signal.signal(signal.SIGTERM, kills._leave)
+    try:
+        with pytest.raises(SystemExit):
+            list(kills.measure([0, 1, 2], 1, 1, 0.5, ()))
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert not there.running
