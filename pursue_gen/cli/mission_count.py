@@ -1,41 +1,54 @@
-"""How many missions have been played, on one line of a terminal that is redrawn in place."""
+"""How many missions have been played: on one line of a terminal that is redrawn in place; elsewhere a line every ten
+seconds. It goes on while one mission takes long, as where a new plan is looked for."""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import sys
+import threading
 import time
-from typing import Callable, Iterator
+from typing import Callable, Iterator, List
 
-_REDRAW = 0.2
-"""Seconds from one drawing to the next."""
+_REDRAW, _INTERVAL = 0.5, 10.0
+"""Seconds from one drawing to the next, and from one line to the next where nothing can be redrawn."""
 
 
 @contextlib.contextmanager
 def counting(all_: int, quiet: bool = False) -> Iterator[Callable[[int], None]]:
     """A listener for how many of all missions are done; its line on stderr is erased at the end, however that comes.
 
-    Nothing is drawn if `quiet`, or where stderr is no terminal that can do it.
+    Nothing is drawn if `quiet`.
     """
-    out = sys.stderr
-    if quiet or os.environ.get("TERM", "dumb") == "dumb" or not out.isatty():
+    if quiet:
         yield lambda done: None
         return
-    start = time.monotonic()
-    drawn = [start]
+    out, start, known, over = sys.stderr, time.monotonic(), [0], threading.Event()
+    redrawn = os.environ.get("TERM", "dumb") != "dumb" and out.isatty()
+    drawn: List[bool] = []
 
-    def update(done: int) -> None:
-        now = time.monotonic()
-        if now >= drawn[-1] + _REDRAW:
-            drawn[:] = [now]
-            pace = f", {60 * done / (now - start):,.0f} a minute" if done > 1 else ""
-            out.write(f"\rsimulating: {done:,} of {all_:,} missions{pace}, {now - start:.0f} s\033[K")
+    def draw() -> None:
+        while not over.wait(_REDRAW if redrawn else _INTERVAL):
+            text = _in_words(known[0], all_, time.monotonic() - start)
+            out.write(f"\r{text}\033[K" if redrawn else f"{text}\n")
             out.flush()
+            drawn[:] = [redrawn]
 
+    drawer = threading.Thread(target=draw, daemon=True)
+    drawer.start()
     try:
-        yield update
+        yield lambda done: known.__setitem__(0, done)
     finally:
-        if drawn != [start]:
+        over.set()
+        drawer.join()
+        if any(drawn):
             out.write("\r\033[K")
             out.flush()
+
+
+def _in_words(done: int, all_: int, seconds: float) -> str:
+    from pursue_gen.simulation.planner import SEARCHES
+
+    pace = f", {60 * done / seconds:,.0f} a minute" if done > 1 else ""
+    what = ", a new plan is looked for" if SEARCHES.is_set() else ""
+    return f"simulating: {done:,} of {all_:,} missions{pace}, {seconds:.0f} s{what}"

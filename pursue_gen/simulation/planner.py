@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import threading
 from typing import Any, Callable, Dict, Optional
 
 from pursue_gen.simulation.event_queue import EventQueue
@@ -14,6 +15,10 @@ MIN_TIME, MAX_TIME = 0.2, 3.0
 
 STATES = 12_000
 """The states that the planner may take (see `replan`): a search ends at the same point on every machine."""
+
+
+SEARCHES = threading.Event()
+"""Set while a plan is looked for in this process, which may take long: for whoever shows what it does."""
 
 
 class SimulatedPlanner:
@@ -50,4 +55,8 @@ class SimulatedPlanner:
         from pursue_gen.replanning import replan
 
         what = {key: value for key, value in request._asdict().items() if key not in ("number", "stamp")}
-        return dict(replan({"format": 1, "game": self._stage.request, **what}, STATES))
+        SEARCHES.set()
+        try:
+            return dict(replan({"format": 1, "game": self._stage.request, **what}, STATES))
+        finally:
+            SEARCHES.clear()
