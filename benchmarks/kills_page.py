@@ -19,7 +19,7 @@ OTHERS = {
     "lab/17": "promises in three shares",
     "lab/16": "promises in three shares; the patrol by any robot has a watcher for each robot",
     "corridor/4": "four robots with an order of passage",
-    "patrol, period given/12": "two robots with tours, each of three rooms",
+    "patrol, period given/12": "promises in two shares, each with a tour of three rooms",
     "square/8": "eight robots with an order of passage",
     "callers/3": "a policy for three callers",
 }

@@ -208,7 +208,8 @@ def test_the_page_counts_each_outcome_and_names_the_reasons_of_stops() -> None:
 def test_the_strategies_of_the_others_are_what_the_page_says(name: str) -> None:
     scenario = parse(text_of(name), "story.pur", "story")
     strategy = solve_scenario(scenario, RULES).strategy
-    for word, parts in (("shares", strategy.shares), ("order of passage", strategy.passages)):
+    kinds = ("shares", strategy.shares), ("order of passage", strategy.passages), ("tour", strategy.tours)
+    for word, parts in kinds:
         assert (word in OTHERS[name]) == bool(parts)
     assert f"- {name}: {OTHERS[name]}." in page(made(0, [Mission(0, name, "goal", "", ())]))
 
