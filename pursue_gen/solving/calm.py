@@ -32,8 +32,8 @@ _RESERVES = tuple(Fraction(tenths, 10) for tenths in (1, 2, 3, 4, 6, 10))
 _WORK, _STATES = 20_000_000, 20_000
 """The work of all games in which robots set off for what is due, and the discrete states of each."""
 
-_SHARE = 0.3
-"""The part of what is left that one of them gets."""
+_SHARE, _POLICIES = 0.3, 0.1
+"""The part of what is left that one of them gets, and that all policies of a game get."""
 
 _LOOKS, _SYMBOLIC = 12, 6_000
 """So many strategies with fewer commands are looked at for a game, with so many symbolic states each."""
@@ -98,7 +98,7 @@ def _put_off(game: _Game, reaction: Fraction, budget: Budget, options: SolveOpti
     if budget.used_up or not late:
         return None
     free = bool(game.strategy.left_out_clocks)
-    found = budget.guess(game.network, game.objective, reaction, _SHARE, without_pauses=free, late=late)
+    found = budget.guess(game.network, game.objective, reaction, _POLICIES, without_pauses=free, late=late)
     if found is not None:
         with suppress(LimitHit, NotProven):
             return prove(game.network, game.objective, found[0], reaction, options=options, closed=True)

@@ -37,7 +37,7 @@ inline const std::vector<Guess> GUESSES = {
 // Likewise, where patrols wait until they are due, as late as is won.
 inline std::vector<Guess> late_guesses(const std::vector<int>& patrols) {
     std::vector<Guess> out;
-    for (const int reserve : {5, 10, 20, 30, 45, 60})
+    for (const int reserve : {5, 10, 15, 20, 25, 30, 45, 60})
         for (Guess guess : GUESSES) {
             guess.patrols = patrols;
             guess.reserve = reserve;
