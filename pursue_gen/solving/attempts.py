@@ -21,18 +21,18 @@ from pursue_gen.tga.network import Network, Objective
 
 @dataclass(frozen=True)
 class _Attempt:
-    """How hard shares are looked for, and the work for policies, for promises that one robot cannot keep together, and
-    whether one or two promises are looked for that are lost. 0, (): that is not tried."""
+    """How hard shares are looked for, and the work for policies, for promises that one robot cannot keep together (for
+    all games, and for one), and whether one or two promises are looked for that are lost. 0, (): that is not tried."""
 
     shares: Sequence[Effort] = ()
     policy: int = 0
-    one_robot: int = 0
+    one_robot: Sequence[int] = ()
     lost: bool = False
 
 
 _SHARED = (
-    _Attempt(EFFORTS[:2], one_robot=10_000_000),
-    _Attempt(EFFORTS[2:3], policy=100_000, one_robot=80_000_000),
+    _Attempt(EFFORTS[:2], one_robot=(20_000_000, 2_500_000)),
+    _Attempt(EFFORTS[2:3], policy=100_000, one_robot=(200_000_000, 100_000_000)),
     _Attempt(EFFORTS[3:5], policy=500_000, lost=True),
     _Attempt(EFFORTS[5:]),
 )
@@ -55,7 +55,7 @@ def decided_by_attempts(
         if found is None and each.policy:
             found = won_by_policy(network, objective, reaction, each.policy, options.since(start))
         if found is None and each.one_robot:
-            lost = lost_for_one(network, objective, reaction, options.since(start), each.one_robot)
+            lost = lost_for_one(network, objective, reaction, options.since(start), *each.one_robot)
         if found is None and not lost and each.lost:
             lost = lost_promises(network, objective, reaction, options.since(start))
         if found is not None or lost:

@@ -1,4 +1,4 @@
-"""Games in which the controller may do more: what is lost there is lost.
+"""Games in which the controller may do more, or the environment less: what is lost there is lost.
 
 A rule says when something may begin. Where only the controller begins it, and what is wanted does not hear of it, a
 game without the rule is no harder for the controller, and often much smaller: who does such things matters no more.
@@ -8,13 +8,18 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import replace
-from typing import AbstractSet, Collection, Dict, Iterator, List, Set, Tuple
+from itertools import chain
+from typing import AbstractSet, Collection, Dict, Iterator, List, Sequence, Set, Tuple
 
 from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Test, is_end
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Network, Test, is_end
 from pursue_gen.tga.part import part_of
+from pursue_gen.tga.pauses import pauses
 from pursue_runtime.locations import is_movement
+
+_MOMENTS = (1, 2)
+"""So many time units after a robot has come to a place somebody calls: no sooner, as a robot rests for one itself."""
 
 
 def without_turns(game: Network, watching: Collection[str]) -> Network:
@@ -87,6 +92,41 @@ def _hurried(game: Network, name: str, way: Collection[Edge]) -> Network:
     )
     changed = replace(agent, locations=tuple(places))
     return replace(game, automata=tuple(changed if each is agent else each for each in game.automata))
+
+
+def punctual(game: Network, robot: str) -> Network:
+    """The network in which everything ends as late as it may, and who rests between calls (see `pauses`) calls only so
+    many time units after a robot has come to a place: the environment has fewer moves at fewer times, but waits for the
+    robot again and again."""
+    clocks = frozenset(pauses(game))
+    automaton = game.automaton(robot)
+    bounded = {place.name for place in automaton.locations if place.invariant}
+    own = {bound.clock for place in automaton.locations for bound in place.invariant}
+    arrived = {Test(*each) for edge in automaton.edges if edge.target not in bounded for each in edge.assign}
+    if len(own) != 1 or not arrived:
+        return game
+    (clock,) = own
+    at_a_place = tuple(sorted(arrived, key=lambda test: (test.variable, test.value)))
+
+    def late(edge: Edge, bounds: Sequence[ClockBound]) -> Edge:
+        listens = edge.sync is not None and not edge.sync.sends
+        if edge.controllable or listens or edge.guard.integers or len(bounds) != 1 or bounds[0].op != "<=":
+            return edge
+        if any(test.clock != bounds[0].clock or test.op not in (">", ">=") for test in edge.guard.clocks):
+            return edge
+        return replace(edge, guard=Guard((ClockBound(bounds[0].clock, ">=", bounds[0].bound),)))
+
+    def calls(edge: Edge) -> Iterator[Edge]:
+        for moment in _MOMENTS if any(test.clock in clocks for test in edge.guard.clocks) else ():
+            then = (*edge.guard.clocks, ClockBound(clock, ">=", moment), ClockBound(clock, "<=", moment))
+            yield replace(edge, guard=Guard(then, (*edge.guard.integers, at_a_place)))
+
+    def less(automaton: Automaton) -> Automaton:
+        bounds = {place.name: place.invariant for place in automaton.locations}
+        edges = (tuple(calls(edge)) or (late(edge, bounds[edge.source]),) for edge in automaton.edges)
+        return replace(automaton, edges=tuple(chain.from_iterable(edges)))
+
+    return replace(game, automata=tuple(map(less, game.automata)))
 
 
 def standing(game: Network) -> Network:

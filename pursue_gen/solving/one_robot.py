@@ -10,7 +10,7 @@ from itertools import combinations
 from typing import Tuple
 
 from pursue_gen.outcomes import LimitHit
-from pursue_gen.solving.freer import with_one_walk, without_others
+from pursue_gen.solving.freer import punctual, standing, with_one_walk, without_others
 from pursue_gen.solving.lost_promises import only_promises, watched
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.subgoals import commanded_agents
@@ -20,21 +20,23 @@ from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.tga.pauses import acting_at_most
 
-_WORK = 200_000_000
-"""The work that is spent on all games."""
+_WORK, _GAME = 200_000_000, 100_000_000
+"""The work that is spent on all games, and on one of them."""
 
 _STATE = 2_000
 """A discrete state of one of them costs as much as so much work."""
 
-_SHARE = 0.4
-"""The part of what is left that one of them gets."""
-
 
 def lost_for_one(
-    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions, work: int = _WORK
+    network: Network,
+    objective: Objective,
+    reaction: Fraction,
+    options: SolveOptions,
+    work: int = _WORK,
+    most: int = _GAME,
 ) -> Tuple[Objective, ...]:
     """Promises that only one robot can keep and that it cannot keep together, as few as are found; () where so much
-    work finds none."""
+    work, `most` of it for one game, finds none."""
     limits = replace(options.limits, work=work, states=work // _STATE)
     budget = Budget(limits, options.progress, options.engine)
     robots = commanded_agents(network)
@@ -46,18 +48,19 @@ def lost_for_one(
             for some in combinations(owned, size):
                 wanted = Objective(Kind.SAFETY, bad=some)
                 game = cone_of_influence(only_promises(alone, objective, wanted), wanted)
-                parts = (*with_one_walk(game, watched(wanted)), game)
-                if any(_is_lost(part, wanted, reaction, budget) for part in parts):
+                parts = [acting_at_most(walk, wanted, 1) for walk in with_one_walk(game, watched(wanted))]
+                parts += [cone_of_influence(punctual(standing(game), robot), wanted), acting_at_most(game, wanted, 1)]
+                if any(_is_lost(part, wanted, reaction, budget, most) for part in parts):
                     return (wanted,)
                 if budget.used_up:
                     return ()
     return ()
 
 
-def _is_lost(game: Network, wanted: Objective, reaction: Fraction, budget: Budget) -> bool:
-    """True if it is known to be lost: the environment need not call more than once."""
+def _is_lost(game: Network, wanted: Objective, reaction: Fraction, budget: Budget, most: int) -> bool:
+    """True if it is known to be lost. Few moves of the environment are enough as a rule: searches take turns."""
     try:
-        return not budget.verdict(acting_at_most(game, wanted, 1), wanted, reaction, _SHARE).won
+        return not budget.verdict(game, wanted, reaction, min(1.0, most / max(1.0, budget.work)), first=0).won
     except LimitHit:
         return False
 

@@ -63,6 +63,7 @@ class Budget:
         share: float = 1.0,
         soonest: bool = False,
         without_pauses: bool = False,
+        first: Optional[int] = None,
     ) -> Verdict:
         """The verdict of `solve`. Raises LimitHit where that share of what is left is too little."""
         limits = self.part(share)
@@ -70,7 +71,7 @@ class Budget:
             raise limit_reached("work" if self.work < 1 else "seconds", limits, NOTHING_YET)
         self.spend(_PER_EDGE * sum(len(automaton.edges) for automaton in network.automata))
         try:
-            how = self._engine, limits, self._progress, self._games_whole, soonest, without_pauses
+            how = self._engine, limits, self._progress, self._games_whole, soonest, without_pauses, first
             verdict = solve(network, objective, reaction, *how)
         except LimitHit:
             self.spend(limits.work)

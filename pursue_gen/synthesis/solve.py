@@ -87,14 +87,15 @@ def solve(
     whole: bool = False,
     soonest: bool = False,
     without_pauses: bool = False,
-    first: int = 0,
+    first: Optional[int] = None,
 ) -> Verdict:
     """Who wins the game on the network as it stands (see `tga.ends_reported` for the game with reported ends).
 
     What cannot matter is left out of the game first, and not named in the strategy (`cone`), unless `whole` is set.
     `soonest`: for a quick strategy, with more work (see `Engine.solve`). `without_pauses`: against an environment that
     takes none (see `tga.pauses`): what is won so is won, and the strategy names the clocks that it leaves out; what is
-    lost so may be won. `first`: the least work for the game as it is, before searches take turns (see `Engine`).
+    lost so may be won. `first`: the least work for the game as it is, before searches take turns (see `Engine`); None:
+    all that the limits give it, as searches in turn would use up more than half of that in vain.
 
     `reaction` is the delay of a command in time units, `engine` the name of one (see `choose`); `progress` is called
     a few times a second. Without a name the first engine that holds the game decides it. Raises PursueError for
@@ -102,7 +103,7 @@ def solve(
     and with 2 where it does not hold the game.
     """
     chosen, game, gone = _compiled(network, objective, reaction, engine, whole, without_pauses)
-    outcome = chosen.giving_first(first).solve(game, limits, progress, soonest)
+    outcome = chosen.giving_first(limits.work if first is None else first).solve(game, limits, progress, soonest)
     stats = _stats(chosen, outcome)
     if not outcome.won:
         return Verdict(False, None, stats, None)

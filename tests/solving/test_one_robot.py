@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+import re
 from typing import Tuple
 
 import pytest
+from hypothesis import HealthCheck, event, given, settings
+from hypothesis import strategies as st
 
+from benchmarks.lab_scenarios import Size, lab_scenario
 from pursue_gen.language import parse
+from pursue_gen.outcomes import LimitHit
+from pursue_gen.solving.freer import punctual, standing
 from pursue_gen.solving.one_robot import lost_for_one
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules, played
+from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind, Objective
+
+LITTLE = Limits(work=3_000_000, states=20_000)
 
 FLOOR = """
 poi "room1"
@@ -54,3 +64,50 @@ def test_two_promises_of_one_robot_that_exclude_each_other(text: str, lost: Tupl
     network, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
     found = lost_for_one(network, objective, Rules().reaction, SolveOptions())
     assert found == ((Objective(Kind.SAFETY, bad=tuple((name, "lose") for name in lost)),) if lost else ())
+
+
+DELIVERIES = """
+poi "a"
+poi "b"
+poi "c"
+poi "d"
+connect a and b distance 4
+connect b and c distance 12
+connect c and d distance 4
+event "order1"
+event "order2"
+event "drop1" location a duration 1
+event "drop2" location d duration 1
+agent "bot1" controllable mobile 1 location a can_do drop1, drop2
+agent "bot2" controllable mobile 1 location d
+agent "people1" location a can_do order1
+agent "people2" location d can_do order2
+objective: if order1 then drop1 within {}
+objective: if order2 then drop2 within 150
+"""
+
+
+@pytest.mark.parametrize("deadline, is_lost", [(40, True), (60, False)])
+def test_who_calls_again_and_again_keeps_a_robot_from_what_is_far(deadline: int, is_lost: bool) -> None:
+    """If each called once, all would be in time: one way takes some 25 time units."""
+    scenario = parse(DELIVERIES.format(deadline), "floor.pur", "floor")
+    network, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
+    assert bool(lost_for_one(network, objective, Rules().reaction, SolveOptions())) == is_lost
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@given(st.integers(0, 10**6), st.integers(10, 60), st.integers(1, 2))
+def test_what_a_punctual_environment_wins_is_lost(seed: int, deadline: int, people: int) -> None:
+    text = lab_scenario(seed, Size(places=3, robots=1, people=people, promises=2))
+    hurried = re.sub(r"(within|every) \d+", rf"\1 {deadline}", text)
+    scenario = parse(hurried, "floor.pur", "floor")
+    network, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
+    reaction = Rules().reaction
+    try:
+        games = (punctual(standing(network), "bot1"), network)
+        won = [solve(game, objective, reaction, limits=LITTLE).won for game in games]
+    except LimitHit:
+        event("too large")
+        return
+    event(f"punctual, whole: {won}")
+    assert won[0] or not won[1]

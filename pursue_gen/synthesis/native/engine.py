@@ -84,9 +84,8 @@ class NativeEngine(Engine):
         soonest: bool = False,
     ) -> Outcome:
         """Decide the game, see `Engine`."""
-        # With a limit on work many games are lost: searches in turn would use up more than half of it in vain.
-        small = max(self.small_budget, limits.work)
-        return self._run(game, limits, progress, partial(_core.solve, small_budget=small, soonest=soonest))
+        search = partial(_core.solve, small_budget=self.small_budget, soonest=soonest)
+        return self._run(game, limits, progress, search)
 
     @staticmethod
     def _run(
