@@ -32,6 +32,7 @@ from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.shares import can_be_shared
 from pursue_gen.solving.tours import PATROL, won_by_tours
+from pursue_gen.solving.tours_beside import won_beside_tours
 from pursue_gen.solving.without_pauses import lost_to_few_calls, verdict_with, won_without_pauses
 from pursue_gen.synthesis.cone import out_of_reach
 from pursue_gen.synthesis.enforced import enforced
@@ -198,6 +199,7 @@ def _with_little_work(
     if passed is not None:
         return Solution(passed[0], objective, passed[1], reaction)
     found = won_by_tours(game, objective, reaction, options) if len(promises(objective)) >= PATROL else None
+    found = found or won_beside_tours(game, objective, reaction, options)
     if found is not None:
         return found
     verdict = verdict_with(game, objective, reaction, min(work, _EASY) if rests or several else work, options)

@@ -14,7 +14,7 @@ import math
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Dict, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
 from pursue_gen.language.network_names import LOSE
 from pursue_gen.outcomes import LimitHit, NotProven
@@ -42,13 +42,7 @@ def won_by_tours(
     """A proven strategy with a tour for each robot, for an objective that asks for patrols alone; None where none is
     found."""
     start = options.limits.now()
-    patrol = None if network.start else patrol_of(network, objective, reaction)
-    some = None if patrol is None else rounds(
-        [walker.robot for walker in patrol.walkers], patrol.visits, float(1 - RESERVE)
-    )
-    if patrol is None or some is None or _worst(patrol, some) >= 1:
-        return None
-    strategy = _strategy(network, patrol, some)
+    strategy = tours_of(network, objective, reaction)
     if strategy is None:
         return None
     seconds = options.limits.now() - start
@@ -56,6 +50,19 @@ def won_by_tours(
         proven = prove(network, objective, strategy, reaction, options=options.since(start))
         return Found(proven, Stats("tours", len(strategy.blocks), 0, seconds, 0, 0))
     return None
+
+
+def tours_of(
+    network: Network, objective: Objective, reaction: Fraction, busy: AbstractSet[str] = frozenset()
+) -> Optional[Strategy]:
+    """The same, not proven yet. Robots that are `busy` have no tours, and may be anywhere."""
+    patrol = None if network.start else patrol_of(network, objective, reaction, excused=busy)
+    some = None if patrol is None else rounds(
+        [walker.robot for walker in patrol.walkers], patrol.visits, float(1 - RESERVE)
+    )
+    if patrol is None or some is None or _worst(patrol, some) >= 1:
+        return None
+    return _strategy(network, patrol, some, busy)
 
 
 def period_of_tours(network: Network, objective: Objective, reaction: Fraction) -> Optional[int]:
@@ -86,7 +93,9 @@ def _worst(patrol: Patrol, some: Sequence[Round]) -> float:
     return max(cost(each.robot, patrol.visits, mine).part for each, mine in zip(patrol.walkers, some))
 
 
-def _strategy(network: Network, patrol: Patrol, some: Sequence[Round]) -> Optional[Strategy]:
+def _strategy(
+    network: Network, patrol: Patrol, some: Sequence[Round], busy: AbstractSet[str] = frozenset()
+) -> Optional[Strategy]:
     """The strategy of these rounds, a share for each robot that has one."""
     tours = [_tour(walker, patrol, mine) for walker, mine in zip(patrol.walkers, some)]
     met = [set(tour.stops) if tour is not None else {walker.automaton.initial}
@@ -100,7 +109,8 @@ def _strategy(network: Network, patrol: Patrol, some: Sequence[Round]) -> Option
         if tour_automaton(network, tour) is None:
             return None
         theirs: Set[str] = set().union(*(places for other, places in enumerate(met) if other != number))
-        shared = (patrol.duties[k].name for k in mine if patrol.visits[k].place in theirs)
+        anybody = [not busy.isdisjoint(duty.visits) for duty in patrol.duties]
+        shared = (patrol.duties[k].name for k in mine if anybody[k] or patrol.visits[k].place in theirs)
         alone = (Watcher(name, (walker.automaton.name,)) for name in shared)
         own = [watcher for watcher in alone if watched_by(network, watcher) is not None]
         kept = (tour.name, *(watcher.name for watcher in own), *(patrol.duties[k].name for k in mine))

@@ -1,0 +1,93 @@
+"""Patrols of many places beside other promises: robots that nobody else needs go round them, each on a tour (see
+`tours`), and the others keep the rest, in a game of their own.
+
+Whether they are in each other's way is for the checker to say, which takes both apart as shares (see `proof.shares`).
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import replace
+from fractions import Fraction
+from typing import AbstractSet, Optional
+
+from pursue_gen.outcomes import LimitHit, NotProven
+from pursue_gen.solving.due_moves import patrols
+from pursue_gen.solving.found import Found
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.proving import prove
+from pursue_gen.solving.shares import won_in_shares
+from pursue_gen.solving.subgoals import commanded_agents
+from pursue_gen.solving.tours import PATROL, tours_of
+from pursue_gen.synthesis.solve import Stats
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.part import part_of
+
+_WORK = 20_000_000
+"""The work that may be spent on the other promises: about a second."""
+
+
+def won_beside_tours(
+    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
+) -> Optional[Found]:
+    """A proven strategy in which robots that no other promise needs go round the places of all patrols; None where
+    there are no such robots, or few places, or none is found with little work."""
+    start = options.limits.now()
+    known = patrols(network) if objective.kind is Kind.SAFETY and not network.start else frozenset()
+    visited = tuple(place for place in objective.bad if place[0] in known)
+    rest = Objective(Kind.SAFETY, bad=tuple(place for place in objective.bad if place[0] not in known))
+    if len(visited) < PATROL or not rest.bad:
+        return None
+    busy = _needed(network, rest)
+    tours = tours_of(network, replace(rest, bad=visited), reaction, busy)
+    if tours is None:
+        return None
+    game = _without(network, {tour.robot for tour in tours.tours}.union(name for name, _ in visited))
+    others = won_in_shares(game, rest, reaction, replace(options, limits=replace(options.limits, work=_WORK)))
+    if others is None:
+        return None
+    both = _together(tours, others.strategy)
+    seconds = options.limits.now() - start
+    with suppress(NotProven, LimitHit):
+        proven = prove(network, objective, both, reaction, options=options.since(start))
+        return Found(proven, Stats("tours", len(both.blocks), 0, seconds, 0, 0))
+    return None
+
+
+def _needed(network: Network, rest: Objective) -> AbstractSet[str]:
+    """The robots that can do something which the automata of these promises hear."""
+    names = {name for name, _ in rest.bad}
+    heard = {
+        edge.sync.channel
+        for automaton in network.automata
+        if automaton.name in names
+        for edge in automaton.edges
+        if edge.sync is not None
+    }
+    return {
+        name
+        for name in commanded_agents(network)
+        for edge in network.automaton(name).edges
+        if edge.sync is not None and edge.sync.channel in heard
+    }
+
+
+def _without(network: Network, gone: AbstractSet[str]) -> Network:
+    """The network without these automata, and what their edges alone set."""
+    kept = [automaton for automaton in network.automata if automaton.name not in gone]
+    theirs = {name for a in network.automata if a.name in gone for edge in a.edges for name, _ in edge.assign}
+    own = {name for automaton in kept for edge in automaton.edges for name, _ in edge.assign}
+    variables = {name for name, _ in network.variables if name in own or name not in theirs}
+    return part_of(network, {automaton.name for automaton in kept}, variables)
+
+
+def _together(tours: Strategy, others: Strategy) -> Strategy:
+    """The strategy with the shares of both."""
+    return replace(
+        tours,
+        blocks=(*tours.blocks, *others.blocks),
+        shares=(*tours.shares, *others.shares),
+        watchers=(*tours.watchers, *others.watchers),
+        left_out_clocks=others.left_out_clocks,
+    )
