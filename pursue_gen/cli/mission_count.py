@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import signal
 import sys
 import threading
 import time
@@ -35,7 +36,12 @@ def counting(all_: int, quiet: bool = False) -> Iterator[Callable[[int], None]]:
             drawn[:] = [redrawn]
 
     drawer = threading.Thread(target=draw, daemon=True)
-    drawer.start()
+    # Else a Ctrl-C that the main thread has blocked, as where it starts processes, would come by way of this one.
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        drawer.start()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
     try:
         yield lambda done: known.__setitem__(0, done)
     finally:

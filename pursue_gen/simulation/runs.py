@@ -138,6 +138,7 @@ def outcomes(case: Case, seeds: Sequence[int], jobs: int) -> Iterator[Outcome]:
         for job in range(jobs):
             ours, theirs = context.Pipe(duplex=False)
             worker = context.Process(target=_work, args=(case, shares[job::jobs], theirs), daemon=True)
+            workers.append(worker)  # before it starts: Ctrl-C may come at once
             # Ctrl-C is for the process that was started first; the others have that blocked from their birth.
             mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
             try:
@@ -146,13 +147,13 @@ def outcomes(case: Case, seeds: Sequence[int], jobs: int) -> Iterator[Outcome]:
                 signal.pthread_sigmask(signal.SIG_SETMASK, mask)
             theirs.close()
             ends.append(ours)
-            workers.append(worker)
         for number in range(len(shares)):
             yield from _received(ends[number % jobs])
     finally:
-        for worker in workers:
+        started = [worker for worker in workers if worker.pid is not None]
+        for worker in started:
             worker.terminate()
-        for worker in workers:
+        for worker in started:
             worker.join()
 
 

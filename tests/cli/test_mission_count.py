@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import io
+import os
+import signal
 import sys
+import threading
+from pathlib import Path
 
 import pytest
 
@@ -43,3 +47,19 @@ def test_with_json_nothing_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     with counting(5, quiet=True) as count:
         count(1)
     assert not out.getvalue()
+
+
+def test_ctrl_c_is_for_the_main_thread_alone() -> None:
+    """Else one that it has blocked while a process starts would come by way of the other."""
+    main = str(threading.get_native_id())
+    before = set(os.listdir("/proc/self/task"))
+    with counting(10):
+        others = set(os.listdir("/proc/self/task")) - before - {main}
+        blocked = [_blocked(Path("/proc/self/task", thread, "status").read_text()) for thread in others]
+    assert len(blocked) == 1 and blocked[0] >> (signal.SIGINT - 1) & 1
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+
+def _blocked(status: str) -> int:
+    line = next(line for line in status.splitlines() if line.startswith("SigBlk:"))
+    return int(line.split()[1], 16)

@@ -13,11 +13,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.language import load
+from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.workspace import Options
 from pursue_gen.workspace.game_file import render
 from tests.workspace.worlds import SCENARIOS, files
 
 FIRST = load(str(SCENARIOS / "thesis/scenario_1.pur"))
+NOTHING = Strategy(())
 
 
 def read(text: str) -> Dict[str, Any]:
@@ -44,20 +46,20 @@ def test_the_observer_has_the_game(shape: str) -> None:
 
 def test_the_rules_are_those_that_were_asked_for() -> None:
     options = Options(reach_obj="all", reaction=Fraction(1, 3), slack={"bot2": 4, "bot1": 2})
-    data = read(render(FIRST, options, "", "0"))
+    data = read(render(FIRST, options, NOTHING, "", "0"))
     assert data["rules"] == {"ends": "reported", "reaction": "1/3", "slack": {"bot1": 2, "bot2": 4}}
     assert data["reach_obj"] == "all"
 
 
 def test_what_the_solver_was_asked_for_is_there_for_those_who_solve_again() -> None:
-    assert read(render(FIRST, Options(optimize="none"), "", "0"))["plan"]["optimize"] == "none"
-    assert read(render(FIRST, Options(within=Fraction(41, 2)), "", "0"))["plan"]["within"] == 20.5
+    assert read(render(FIRST, Options(optimize="none"), NOTHING, "", "0"))["plan"]["optimize"] == "none"
+    assert read(render(FIRST, Options(within=Fraction(41, 2)), NOTHING, "", "0"))["plan"]["within"] == 20.5
 
 
 def test_every_scenario_is_in_its_file_word_for_word() -> None:
     for path in sorted(SCENARIOS.rglob("*.pur")):
         scenario = load(str(path))
-        text = render(scenario, Options(), "", "0")
+        text = render(scenario, Options(), NOTHING, "", "0")
         assert read(text)["scenario"] == scenario.text
         assert "\nscenario: |\n" in text, "line by line, as people read it"
 
@@ -67,4 +69,4 @@ ODD_LINES = ("  a", "", "\t", "b: c # d", '"\\', "  ", "- e", "é", "\x85", "...
 
 @given(st.text() | st.lists(st.sampled_from(ODD_LINES)).map("\n".join))
 def test_any_text_is_kept(text: str) -> None:
-    assert read(render(replace(FIRST, text=text), Options(), "", "0"))["scenario"] == text
+    assert read(render(replace(FIRST, text=text), Options(), NOTHING, "", "0"))["scenario"] == text
