@@ -33,8 +33,8 @@ class _Attempt:
 _SHARED = (
     _Attempt(EFFORTS[:2], one_robot=(40_000_000, 2_500_000)),
     _Attempt(EFFORTS[2:3], policy=100_000, one_robot=(200_000_000, 100_000_000)),
-    _Attempt(EFFORTS[3:5], lost=True),
-    _Attempt(EFFORTS[5:], policy=500_000),
+    _Attempt(EFFORTS[3:4], lost=True),
+    _Attempt(EFFORTS[4:], policy=500_000),
 )
 """For promises that several robots may keep."""
 
@@ -55,7 +55,7 @@ def decided_by_attempts(
         if found is None and each.policy:
             found = won_by_policy(network, objective, reaction, each.policy, options.since(start))
         if found is None and each.one_robot:
-            lost = lost_for_one(network, objective, reaction, options.since(start), *each.one_robot)
+            lost = lost_for_one(network, objective, reaction, options.since(start), each.one_robot)
         if found is None and not lost and each.lost:
             lost = lost_promises(network, objective, reaction, options.since(start))
         if found is not None or lost:

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import heapq
-from typing import Dict, Iterable, List, Mapping, Sequence, Tuple
+import math
+from typing import Dict, Iterable, List, Mapping, Sequence, Tuple, TypeVar
 
 from pursue_gen.language.numbers import Number
 from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.network import Automaton, Network
+from pursue_runtime.locations import is_movement
+
+Far = TypeVar("Far", Number, float)
 
 
-def distances_to(places: Iterable[str], back: Mapping[str, Sequence[Tuple[str, Number]]]) -> Dict[str, Number]:
+def distances_to(places: Iterable[str], back: Mapping[str, Sequence[Tuple[str, Far]]]) -> Dict[str, Far]:
     """The least time to one of these places, from each place from which ways lead there (Dijkstra 1959).
 
     `back`: for each place those before it, with the time from there.
     """
-    found: Dict[str, Number] = {}
-    waiting: List[Tuple[Number, str]] = [(0, place) for place in places]
+    found: Dict[str, Far] = {}
+    waiting: List[Tuple[Far, str]] = [(0, place) for place in places]
     heapq.heapify(waiting)
     while waiting:
         far, place = heapq.heappop(waiting)
@@ -28,18 +32,24 @@ def distances_to(places: Iterable[str], back: Mapping[str, Sequence[Tuple[str, N
 
 
 def times_to(places: Iterable[str], automaton: Automaton) -> Dict[str, Number]:
-    """The least time to one of these locations, from each from which edges lead there; each takes as long as its
-    source may be stayed in."""
-    longest = {each.name: max((bound.bound for bound in each.invariant), default=0) for each in automaton.locations}
+    """How long an agent takes at most to the nearest of these places, its rests included, from where it can come there.
+
+    It rests as long as a guard says, and is under way as long as it may; a way without an end leads nowhere.
+    """
+    longest = {each.name: max((bound.bound for bound in each.invariant), default=None) for each in automaton.locations}
     back: Dict[str, List[Tuple[str, Number]]] = {}
     for edge in automaton.edges:
-        back.setdefault(edge.target, []).append((edge.source, longest[edge.source]))
+        takes = longest[edge.source]
+        if takes is None and not is_movement(edge.source):
+            takes = max((bound.bound for bound in edge.guard.clocks if bound.op in (">", ">=")), default=0)
+        if takes is not None:
+            back.setdefault(edge.target, []).append((edge.source, takes))
     return distances_to(places, back)
 
 
-def time_to_help(network: Network, robot: str, promise: Place) -> Number:
-    """The least time in which the robot comes to where it does what the promise waits for, or is not where what is to
-    be avoided asks for it."""
+def time_to_help(network: Network, robot: str, promise: Place) -> float:
+    """How long the robot takes at most to where it does what the promise waits for, or is not where what is to be
+    avoided asks for it; infinite where it never comes there."""
     watching, automaton = network.automaton(promise[0]), network.automaton(robot)
     waiting = {place.name for place in watching.locations if place.invariant}
     edges = [edge for edge in watching.edges if not waiting or edge.source in waiting]
@@ -52,4 +62,4 @@ def time_to_help(network: Network, robot: str, promise: Place) -> Number:
         if (edge.sync is not None and edge.sync.channel in heard)
         or any(name in named and ((name, value) in asked) == bool(waiting) for name, value in edge.assign)
     }
-    return times_to(there, automaton).get(automaton.initial, 0)
+    return float(times_to(there, automaton).get(automaton.initial, math.inf))

@@ -16,7 +16,7 @@ from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Option
 
 from pursue_gen.language.network_names import AT_RISK, IDLE
 from pursue_gen.language.numbers import Number
-from pursue_gen.solving.distances import distances_to
+from pursue_gen.solving.distances import times_to
 from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Network, Objective, Test
 from pursue_runtime.locations import is_movement
@@ -117,7 +117,7 @@ def only_due(
     automata: List[Automaton] = []
     for automaton in network.automata:
         telling = any(automaton.name == duty.name for duty in called)
-        nearer = {duty.name: _distances(automaton, duty.visits.get(automaton.name, ())) for duty in known}
+        nearer = {duty.name: times_to(duty.visits.get(automaton.name, ()), automaton) for duty in known}
         edges: List[Edge] = []
         for edge in automaton.edges:
             some = [_telling(automaton.name, edge)] if telling else [edge]
@@ -161,17 +161,3 @@ def _for_duties(
             latest = Fraction(duty.deadline) * (1 - reserve) - Fraction(far[edge.source])
             due = ClockBound(duty.clock, ">=", max(0, math.floor(latest)))
             yield replace(edge, guard=Guard((*clocks, due), integers))
-
-
-def _distances(automaton: Automaton, places: Sequence[str]) -> Dict[str, Number]:
-    """How long an agent takes at most to the nearest of these places, its rests included, from where it can come there.
-    """
-    bounds = {place.name: place.invariant for place in automaton.locations}
-    ways: Dict[str, List[Tuple[str, Number]]] = {}
-    for edge in automaton.edges:
-        if is_movement(edge.target) and bounds[edge.target]:
-            rest = max((bound.bound for bound in edge.guard.clocks if bound.op in (">", ">=")), default=0)
-            for other in automaton.edges:
-                if other.source == edge.target != other.target:
-                    ways.setdefault(other.target, []).append((edge.source, rest + bounds[edge.target][0].bound))
-    return distances_to(places, ways)

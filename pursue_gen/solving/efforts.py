@@ -31,10 +31,7 @@ EFFORTS = (
     Effort(10_000_000, game=150_000, joins=False, nobody=True),
     Effort(30_000_000, game=1_000_000),
     Effort(80_000_000, game=4_000_000),
-    Effort(40_000_000),
-    Effort(200_000_000),
     Effort(60_000_000, thorough=True),
     Effort(60_000_000, thorough=True, free=False),
-    Effort(300_000_000, game=120_000_000, states=200_000, clocks=8),
 )
 """One after the other, until one wins: few groups that need more than the first are won with little work."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
-from typing import Tuple
+from typing import Sequence, Tuple
 
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.freer import punctual, standing, with_one_walk, without_others
@@ -20,7 +20,7 @@ from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.tga.pauses import acting_at_most
 
-_WORK, _GAME = 200_000_000, 100_000_000
+_WORK = 200_000_000, 100_000_000
 """The work that is spent on all games, and on one of them."""
 
 _STATE = 2_000
@@ -28,16 +28,12 @@ _STATE = 2_000
 
 
 def lost_for_one(
-    network: Network,
-    objective: Objective,
-    reaction: Fraction,
-    options: SolveOptions,
-    work: int = _WORK,
-    most: int = _GAME,
+    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions, work: Sequence[int] = _WORK
 ) -> Tuple[Objective, ...]:
     """Promises that only one robot can keep and that it cannot keep together, as few as are found; () where so much
-    work, `most` of it for one game, finds none."""
-    limits = replace(options.limits, work=work, states=work // _STATE)
+    work for all games, and for one of them, finds none."""
+    in_all, most = work
+    limits = replace(options.limits, work=in_all, states=in_all // _STATE)
     budget = Budget(limits, options.progress, options.engine)
     robots = commanded_agents(network)
     for robot in robots:

@@ -16,6 +16,9 @@ from typing import Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optiona
 Time = float
 _NEVER = float("inf")
 
+_ROUNDING = 1e-6
+"""Sums of so many times are not off by more: what is a hair too late is not said to be so."""
+
 _STEPS = 400_000
 """So many places of rounds are looked at."""
 
@@ -119,7 +122,7 @@ def is_too_late(
     for k, visit in enumerate(visits):
         if left[k] < _NEVER:
             root[k] = min((first[robot].get(visit.place, _NEVER) for robot in visit.robots), default=_NEVER)
-    if any(time > left[k] for k, time in root.items()):
+    if any(time > left[k] + _ROUNDING for k, time in root.items()):
         return True
     ends = sorted({left[k] for k in root})
     for end in ends[:: -(-len(ends) // _TREES) or 1]:
@@ -129,7 +132,7 @@ def is_too_late(
             length += near.pop(k)
             for other in near:
                 near[other] = min(near[other], _least_time(robots, visits[k].place, visits[other].place))
-        if length > end * len(robots):
+        if length > end * len(robots) + _ROUNDING:
             return True
     return False
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import heapq
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.language.network_names import LOSE
+from pursue_gen.solving.distances import distances_to
 from pursue_gen.solving.due_moves import Duty, duties, patrols
 from pursue_gen.solving.rounds import Robot, Visit
 from pursue_gen.solving.subgoals import commanded_agents
@@ -136,20 +136,17 @@ def _since(guard: Guard, clock: str) -> Fraction:
 def _all_ways(
     steps: Mapping[str, Mapping[str, float]]
 ) -> Tuple[Dict[str, Dict[str, float]], Dict[Tuple[str, str], str]]:
-    """How long it takes from each place to each other one (Dijkstra), and where one goes first."""
-    times: Dict[str, Dict[str, float]] = {}
+    """How long it takes from each place to each other one, and where one goes first."""
+    back: Dict[str, List[Tuple[str, float]]] = {}
+    for start, led in steps.items():
+        for place, takes in led.items():
+            back.setdefault(place, []).append((start, takes))
+    times: Dict[str, Dict[str, float]] = {start: {} for start in steps}
     following: Dict[Tuple[str, str], str] = {}
-    for start in steps:
-        known: Dict[str, float] = {}
-        queue: List[Tuple[float, str, str]] = [(0.0, start, "")]
-        while queue:
-            time, place, first = heapq.heappop(queue)
-            if place in known:
-                continue
-            known[place] = time
-            following[start, place] = first
-            for other, step in steps.get(place, {}).items():
-                if other not in known:
-                    heapq.heappush(queue, (time + step, other, first or other))
-        times[start] = known
+    for place in dict.fromkeys((*steps, *back)):
+        far = distances_to([place], back)
+        for start in steps:
+            if start in far:
+                ways = ((takes + far[first], first) for first, takes in steps[start].items() if first in far)
+                times[start][place], following[start, place] = far[start], min(ways)[1] if start != place else ""
     return times, following

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import AbstractSet, ClassVar, Optional, Tuple
+from typing import ClassVar, Collection, Optional, Tuple
 
 from pursue_gen.synthesis.game import Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
@@ -71,11 +71,7 @@ class Engine(ABC):
         return self
 
     def guess(
-        self,
-        game: Game,
-        limits: Limits = NO_LIMITS,
-        progress: Optional[Listener] = None,
-        late: AbstractSet[str] = frozenset(),
+        self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None, late: Collection[str] = ()
     ) -> Outcome:
         """Try simple policies in a safety game that it `holds`: each robot does one duty after the other, by itself.
 

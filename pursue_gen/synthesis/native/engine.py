@@ -5,7 +5,7 @@ from __future__ import annotations
 from array import array
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import AbstractSet, Any, Callable, ClassVar, Dict, List, Optional, Tuple
+from typing import Any, Callable, ClassVar, Collection, Dict, List, Optional, Tuple
 
 from pursue_gen.synthesis.engine import NOT_GUESSED, Counts, Engine, Outcome
 from pursue_gen.synthesis.game import Action, Game, RawBlock
@@ -62,11 +62,7 @@ class NativeEngine(Engine):
         return replace(self, small_budget=max(self.small_budget, work))
 
     def guess(
-        self,
-        game: Game,
-        limits: Limits = NO_LIMITS,
-        progress: Optional[Listener] = None,
-        late: AbstractSet[str] = frozenset(),
+        self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None, late: Collection[str] = ()
     ) -> Outcome:
         """Try simple policies, see `Engine`."""
         if game.kind is not Kind.SAFETY:
