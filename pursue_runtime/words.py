@@ -16,7 +16,7 @@ START, PING, STOP, FINISH = "_start_", "_ping_", "_stop_", "Finish!"
 PLANNED = "_plan_"
 ORDERED = "_order_"
 REPORTED = "_reported_"
-FAILED, BLOCKED, FREE = "_failed_", "_blocked_", "_free_"
+FAILED, STUCK, BLOCKED, FREE = "_failed_", "_stuck_", "_blocked_", "_free_"
 HELD, RESUME, DISPLACED, BACK = "_held_", "_resume_", "_displaced_", "_back_"
 
 MAX_TEXT_LENGTH = 300
@@ -75,7 +75,7 @@ class RobotReport(NamedTuple):
 
 
 _REPORT = re.compile(
-    rf"\s*(\w+):({'|'.join((FAILED, BLOCKED, FREE, HELD, RESUME, DISPLACED, BACK))})"
+    rf"\s*(\w+):({'|'.join((FAILED, STUCK, BLOCKED, FREE, HELD, RESUME, DISPLACED, BACK))})"
     rf"(?:#{_NUMBER})?(?:\s+(\S.*))?\s*",
     re.ASCII,
 )

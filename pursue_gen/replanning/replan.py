@@ -199,7 +199,9 @@ def _cannot_be_met(game: Network, request: Request) -> str:
             return f"{what} cannot be met any more: its time is over"
     absent = [name for name in agents if name in request.excused or name in over]
     without = [f"without relying on {' and '.join(map(marked, absent))}"] if absent else []
-    without += [f"without the way between {marked(a)} and {marked(b)}" for a, b in sorted(request.blocked) if a < b]
+    for a, b, *alone in sorted(request.blocked):
+        for_whom = "".join(f" for {marked(name)}" for name in alone)
+        without.append(f"without the way between {marked(a)} and {marked(b)}{for_whom}")
     return " ".join([f"{_objectives(request.scenario)} cannot be guaranteed from here", " and ".join(without)]).strip()
 
 

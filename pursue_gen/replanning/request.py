@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any, Dict, FrozenSet, Mapping, Tuple
+from typing import Any, Dict, FrozenSet, List, Mapping, Tuple
 
 from pursue_gen.diagnostics import PursueError, Severity, error
 from pursue_gen.language.checks import check_reading
@@ -24,9 +24,9 @@ class Request:
     """A plan is wanted for this scenario, from this place, by controllers of that shape (see `partition`).
 
     Clocks are in time units, `ahead` of which pass before the plan begins. Nothing is expected of the agents that are
-    `excused`, nobody is sent along the ways in `blocked`, and who is `turning` may be back at any time. It may take so
-    many `seconds`, 0: any number. `follows`: the watchers and tours of the workspace's plan, in its lines; their
-    automata are in the state.
+    `excused`, nobody is sent along the ways in `blocked` (in alphabetical order; the agent behind a way, if there is
+    one, alone is not), and who is `turning` may be back at any time. It may take so many `seconds`, 0: any number.
+    `follows`: the watchers and tours of the workspace's plan, in its lines; their automata are in the state.
     """
 
     scenario: Scenario
@@ -38,7 +38,7 @@ class Request:
     clocks: Mapping[str, Fraction]
     ahead: Fraction
     excused: FrozenSet[str]
-    blocked: FrozenSet[Tuple[str, str]]
+    blocked: FrozenSet[Tuple[str, ...]]
     turning: FrozenSet[str]
     seconds: float
     follows: Tuple[str, ...] = ()
@@ -119,13 +119,17 @@ def _agents(data: object, name: str, scenario: Scenario) -> FrozenSet[str]:
     return frozenset(data)
 
 
-def _ways(data: object, scenario: Scenario) -> FrozenSet[Tuple[str, str]]:
-    """The ways, each in both directions."""
-    known = [pair for way in scenario.connections for pair in ((way.a, way.b), (way.b, way.a))]
-    lists = (list, tuple)
-    if not isinstance(data, lists) or not all(isinstance(way, lists) and tuple(way) in known for way in data):
-        raise wrong(f"blocked is {_shown(data)}", "a list of pairs of places that are connected, [] for none")
-    return frozenset(pair for a, b in data for pair in ((a, b), (b, a)))
+def _ways(data: object, scenario: Scenario) -> FrozenSet[Tuple[str, ...]]:
+    known = {tuple(sorted((way.a, way.b))) for way in scenario.connections}
+    behind = {(), *((agent.name,) for agent in scenario.agents)}
+    found: List[Tuple[str, ...]] = []
+    for way in data if isinstance(data, (list, tuple)) else [None]:
+        names = way if isinstance(way, (list, tuple)) and all(isinstance(name, str) for name in way) else ()
+        if tuple(sorted(names[:2])) not in known or tuple(names[2:]) not in behind:
+            expected = "a list of pairs of places that are connected, some with an agent behind them; [] for none"
+            raise wrong(f"blocked is {_shown(data)}", expected)
+        found.append((*sorted(names[:2]), *names[2:]))
+    return frozenset(found)
 
 
 def _rules(data: Mapping[str, Any]) -> Rules:

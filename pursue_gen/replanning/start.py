@@ -31,7 +31,6 @@ def network_from(network: Network, request: Request, told_apart: bool = False) -
     """
     locations, values, clocks = _place(network, request)
     agents = {agent.name for agent in request.scenario.agents}
-    blocked = {going(*way) for way in request.blocked}
     automata = []
     for automaton in network.automata:
         automaton = without_broken(automaton, values)
@@ -43,7 +42,7 @@ def network_from(network: Network, request: Request, told_apart: bool = False) -
             moved = _unbounded(moved, here)
         if automaton.name in request.turning:
             moved = _idle(moved, here, clocks)
-        automata.append(_without_ways(moved, blocked) if automaton.name in agents else moved)
+        automata.append(_without_ways(moved, request) if automaton.name in agents else moved)
     positions = (agent_position(name) for name in request.excused if _shares(network, name))
     absent = {(position, values[position]) for position in positions}
     automata = [_without_company(automaton, absent) for automaton in automata]
@@ -123,8 +122,10 @@ def _unbounded(automaton: Automaton, here: str) -> Automaton:
     return replace(automaton, locations=tuple(locations))
 
 
-def _without_ways(automaton: Automaton, blocked: AbstractSet[str]) -> Automaton:
-    """The automaton without commands to begin these movements."""
+def _without_ways(automaton: Automaton, request: Request) -> Automaton:
+    """The automaton without commands to begin the movements that are blocked for it."""
+    ways = [way for way in request.blocked if automaton.name in (way[2:] or (automaton.name,))]
+    blocked = {going(x, y) for a, b, *_ in ways for x, y in ((a, b), (b, a))}
     edges = tuple(edge for edge in automaton.edges if not (edge.controllable and edge.target in blocked))
     return replace(automaton, edges=edges)
 

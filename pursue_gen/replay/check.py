@@ -233,7 +233,7 @@ class _Checker:
         return orders.after(move, place_of(before), self.moves, since, before, state)
 
     def _turned(self, before: SystemState, state: SystemState) -> bool:
-        """True where robots whose way was blocked turn round with a new plan, as the only change."""
+        """True where robots that could not go on turn round with a new plan, as the only change."""
         changed = [name for name, here in state.locations.items() if here != before.locations[name]]
         parts = [self.moves.way_back(place_of(before), name) for name in changed]
         move = tuple(part for part in parts if part is not None)
@@ -244,7 +244,7 @@ class _Checker:
             zero = state.stamp - state.clocks.get(clock, 0.0) * state.unit
             self._zeros[clock] = zero if self._zeros[clock] <= zero <= state.stamp else state.stamp
         for name in changed:
-            self._report(WORLD, "turned", state, f"{name} turned round on its way, which was blocked")
+            self._report(WORLD, "turned", state, f"{name} turned round: it could not go on")
         return True
 
     def _clocks_at(self, state: SystemState) -> Dict[str, float]:

@@ -25,10 +25,11 @@ from pursue_runtime.words import (
     RESUME,
     START,
     STOP,
+    STUCK,
 )
 
 CONTROL = (START, PING, STOP, FINISH)
-REPORTS = {BLOCKED: WORLD, FREE: NOTE, HELD: WORLD, RESUME: NOTE, DISPLACED: WORLD, BACK: NOTE}
+REPORTS = {BLOCKED: WORLD, STUCK: WORLD, FREE: NOTE, HELD: WORLD, RESUME: NOTE, DISPLACED: WORLD, BACK: NOTE}
 """Reports about robots and ways, which move no automaton, and what they are in the findings."""
 
 APART = 60.0

@@ -7,10 +7,9 @@ from __future__ import annotations
 
 from typing import Callable, List, Optional, Sequence, Tuple
 
+from pursue_runtime.controller.answers import meaning_of
 from pursue_runtime.controller.goal import (
-    ABORTED,
     CANCELLED,
-    FAILURES,
     OVER,
     SUCCEEDED,
     Answer,
@@ -33,6 +32,7 @@ from pursue_runtime.words import (
     FAILED,
     HELD,
     RESUME,
+    STUCK,
     RobotReport,
     Word,
 )
@@ -136,7 +136,7 @@ class Navigation:
         elif answer.status in CANCELLED:
             self._on_cancelled(trip, answer, now)
         else:
-            self._on_failure(trip, FAILURES[answer.status], answer.text, now)
+            self._on_failure(trip, answer, now)
 
     def on_status(self, answers: Sequence[Answer], now: float, real: float) -> None:
         """Take move_base's status: the goals that it has, and those that are over since a few seconds."""
@@ -336,17 +336,17 @@ class Navigation:
         word = Word("", f"{self.name}_{trip.movement.location}2{poi}", as_of=self._as_of)
         self._report = Report(word, self.reaction)
 
-    def _on_failure(self, trip: Trip, how: str, text: str, now: float) -> None:
-        what = trip.describe(how, text)
-        if trip.attempts <= self.settings.retries:
-            self.trouble = f"{what}; trying again"
-            self._log("warn", f"{self.name} {in_words(self.trouble)}")
+    def _on_failure(self, trip: Trip, answer: Answer, now: float) -> None:
+        meaning = meaning_of(answer)
+        what, own_text = trip.describe(meaning.says), f" (move_base: {answer.text})" if answer.text else ""
+        if meaning.again and trip.attempts <= self.settings.retries:
+            self.trouble = f"{what}; it tries again"
+            self._log("warn", f"{self.name} {in_words(self.trouble)}{own_text}")
             trip.goal_at = now + self.settings.retry_delay
         else:
-            self.trouble = f"{what}; given up after {trip.attempts} goal{'s' * (trip.attempts > 1)}"
-            self._log("err", f"{self.name} {in_words(self.trouble)}")
-            is_blocked = how == FAILURES[ABORTED] and not trip.is_return
-            self._report = Report(self._word(BLOCKED if is_blocked else FAILED, self.trouble), self.reaction)
+            self.trouble = what + (f", in {trip.attempts} attempts" if trip.attempts > 1 else "")
+            self._log("err", f"{self.name} {in_words(self.trouble)}{own_text}")
+            self._report = Report(self._word(FAILED if trip.is_return else meaning.event, self.trouble), self.reaction)
 
     def _on_cancelled(self, trip: Trip, answer: Answer, now: float) -> None:
         """Wait for the status that shows whether a goal of another node has taken the place of ours."""
@@ -382,6 +382,6 @@ class Navigation:
 
     def _is_shown(self, word: str, view: View) -> bool:
         """Return True if the state shows what the word reports."""
-        shown = {FAILED: view.lost, BLOCKED: view.lost, HELD: view.held}
+        shown = {FAILED: view.lost, STUCK: view.lost, BLOCKED: view.lost, HELD: view.held}
         shown.update({DISPLACED: view.displaced, BACK: not view.displaced})
         return any(shown[event] for event in shown if word.startswith(f"{self.name}:{event}"))

@@ -335,7 +335,7 @@ class Observer:
             late, lost, away = (" ".join(sorted(names)) for names in (mission.late, mission.lost, mission.silent))
             values: Dict[str, object] = {"mission": mission.name, "seq": mission.seq, "status": mission.status}
             values.update({"plan": mission.plan, "planning": f"{self.planner.seconds:.0f} s"})
-            blocked = " ".join("-".join(way) for way in sorted(mission.ways.blocked))
+            blocked = " ".join("-".join(way[:2]) + ":".join(("", *way[2:])) for way in sorted(mission.ways.blocked))
             values.update({"late": late, "lost": lost, "silent": away, "blocked": blocked})
             robots = {"held": mission.robots.held, "displaced": mission.robots.displaced}
             robots["finished"] = dict.fromkeys(mission.shared_ends.finished, "")

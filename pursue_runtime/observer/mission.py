@@ -25,6 +25,7 @@ from pursue_runtime.words import (
     PLANNED,
     START,
     STOP,
+    STUCK,
     RobotReport,
     Word,
     format_word,
@@ -322,11 +323,11 @@ class Mission(MissionStatus):
     # Reports ----------------------------------------------------------------------------------------------------------
 
     def _on_robot_report(self, report: RobotReport, now: float) -> List[SystemState]:
-        """Take a report about a robot (failed, held, resumes, displaced, back in place) or a way (blocked, free)."""
+        """Take a report about a robot (failed, stuck, held, resumes, displaced, back) or a way (blocked, free)."""
         agent, location, wrong = report.agent, self._automata.location_of(report.agent), ""
         if self._is_over(agent, report.as_of, report.event):
             return []
-        if report.event in (BLOCKED, FREE):
+        if report.event in (BLOCKED, FREE, STUCK):
             wrong, why = self.ways.on_report(report, location, agent in self.lost)
             if why:
                 self._mark_lost(agent, why)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import AbstractSet, Any, Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Set, Tuple
 
 from pursue_runtime.model import Position
-from pursue_runtime.observer.ways import Way, Ways, blocked_reason, check_avoids
+from pursue_runtime.observer.ways import Block, Ways, blocked_reason, check_avoids
 from pursue_runtime.sentences import as_sentence, marked
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Cover, read_cover
@@ -24,8 +24,8 @@ UNKNOWN = 1000
 class PlanRequest(NamedTuple):
     """A request for a plan from this state; clocks are those at `stamp` (seconds), `ahead` is in time units.
 
-    The plan must not rely on the agents in `excused`, nor send anybody along the ways in `blocked`. The robots in
-    `turning` turn round when it begins, and may be back at any time.
+    The plan must not rely on the agents in `excused`, nor send anybody along the ways in `blocked`, or the agent alone
+    that stands behind a way. The robots in `turning` turn round when it begins, and may be back at any time.
     """
 
     number: int
@@ -35,7 +35,7 @@ class PlanRequest(NamedTuple):
     stamp: float
     ahead: float
     excused: Tuple[str, ...]
-    blocked: Tuple[Way, ...] = ()
+    blocked: Tuple[Block, ...] = ()
     turning: Tuple[str, ...] = ()
 
 
@@ -61,7 +61,7 @@ class Planning:
         self.request: Optional[PlanRequest] = None
         self.proposal: Optional[Proposal] = None
         self.excused: FrozenSet[str] = frozenset()
-        self.avoided: FrozenSet[Way] = frozenset()
+        self.avoided: FrozenSet[Block] = frozenset()
         self.not_assumed: FrozenSet[str] = frozenset()
         self.no_plan_reason = ""
         self.searched = 0.0
@@ -81,9 +81,9 @@ class Planning:
         """Return which lost agents the plan in force relies on, and why they are lost; "" if there are none."""
         return " and ".join(f"{marked(name)} {lost[name]}" for name in sorted(set(lost) - self.excused))
 
-    def unavoided(self, blocked: AbstractSet[Way]) -> str:
+    def unavoided(self, blocked: AbstractSet[Block]) -> str:
         """Return that blocked ways are such as the plan in force may use; "" if there are none."""
-        return blocked_reason(blocked - self.avoided)
+        return blocked_reason(blocked, self.avoided)
 
     def request_plan(
         self,

@@ -2,48 +2,60 @@
 
 from __future__ import annotations
 
-from typing import Any, Collection, Dict, Mapping, Optional, Set, Tuple
+from typing import AbstractSet, Any, Dict, Iterable, Mapping, Optional, Set, Tuple
 
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_movement, movement
 from pursue_runtime.model import Model, Move
 from pursue_runtime.sentences import as_sentence, marked
-from pursue_runtime.words import FREE, RobotReport
+from pursue_runtime.words import BLOCKED, FREE, STUCK, RobotReport
 
 Way = Tuple[str, str]
 """The two places that a way connects, in alphabetical order."""
 
+Block = Tuple[str, ...]
+"""A way, and behind it the agent that alone cannot take it; where there is none it is blocked for all."""
+
 
 class Ways:
-    """The ways that are `blocked`; `turns`: how the robots that found that would set out for where they come from."""
+    """The ways that are `blocked`; `turns`: how the robots that could not go on would set out for where they come from.
+    """
 
     def __init__(self, model: Model) -> None:
-        self.blocked: Set[Way] = set()
+        self.blocked: Set[Block] = set()
         self.turns: Dict[str, Move] = {}
         self._model = model
+        self._stuck: Set[Block] = set()  # who has been stuck where: the second time it does not get that way again
 
     def on_report(self, report: RobotReport, location: str, is_lost: bool) -> Tuple[str, str]:
-        """Take a report that a way is blocked, or free: of an agent at this location, or ("") of the named movement.
+        """Take a report that a way is blocked or free, or that an agent is stuck: of an agent at this location, or ("")
+        of the named movement, which is blocked for all.
 
         Return why it cannot be ("": it can), and why the agent is lost now ("": it is not).
         """
         name, why = report.agent, ""
         way = way_of(self._model, location or name)
-        if way is None:
+        if way is None or (report.event == STUCK and not location):
             return "expected the name of a movement, such as going_a_to_b, or of an agent that moves", ""
         if report.event == FREE:
-            self.blocked.discard(way)
+            self.blocked = {block for block in self.blocked if block[:2] != way}
+            self._stuck = {block for block in self._stuck if block[:2] != way}
             return "", ""
+        block = (*way, name) if location else way
         if location and not is_lost:
             turn = way_back(self._model, name, location)
-            if turn and way not in self.blocked and self._model.automaton(name).kind == "robot":
+            if turn and self.blocked.isdisjoint((way, block)) and self._model.automaton(name).kind == "robot":
                 self.turns[name] = turn
-            text = f": {as_sentence(report.text)}" if report.text else ""
-            why = f"has found that {in_words(way)} is blocked{text}"
-        self.blocked.add(way)
+            found = f"has found that {in_words(way)} is blocked" if report.event == BLOCKED else "cannot go on"
+            why = f"gave up {as_sentence(report.text)}" if report.text else found
+            if block in self._stuck:
+                self.blocked.add(block)
+            self._stuck.add(block)
+        if report.event == BLOCKED:
+            self.blocked.add(block)
         return "", why
 
-    def revision(self) -> Tuple[Tuple[Way, ...], Tuple[str, ...]]:
+    def revision(self) -> Tuple[Tuple[Block, ...], Tuple[str, ...]]:
         """Return the blocked ways, and the robots that are to turn round."""
         return tuple(sorted(self.blocked)), tuple(sorted(self.turns))
 
@@ -76,28 +88,32 @@ def _has_receivers(model: Model, word: str) -> bool:
     return any(edge.word == word and edge.sync == "receive" for automaton in model.automata for edge in automaton.edges)
 
 
-def in_words(way: Way) -> str:
+def in_words(way: Block) -> str:
     """Return the way in words, as in "the way between a and b", as part of a sentence."""
     return f"the way between {marked(way[0])} and {marked(way[1])}"
 
 
-def blocked_reason(ways: Collection[Way]) -> str:
-    """Return that these ways are blocked; "" if there are none."""
-    return " and ".join(f"{in_words(way)} is blocked" for way in sorted(ways))
+def blocked_reason(blocks: AbstractSet[Block], avoided: AbstractSet[Block] = frozenset()) -> str:
+    """Return that these ways are blocked but for those that are `avoided`; "" if there are none."""
+    left = sorted(block for block in blocks - avoided if block[:2] not in avoided)
+    who = (" for " + marked(block[2]) if block[2:] else "" for block in left)
+    return " and ".join(f"{in_words(block)} is blocked{name}" for block, name in zip(left, who))
 
 
-def check_avoids(answer: Mapping[str, Any], ways: Collection[Way]) -> None:
-    """Raise DataError if a command of a planner's answer sends an agent along one of the ways, or cannot be read."""
-    for way in ways:
-        movements = {movement(*way), movement(*reversed(way))}
+def check_avoids(answer: Mapping[str, Any], blocks: Iterable[Block]) -> None:
+    """Raise DataError if a command of a planner's answer sends an agent along a way that is blocked for it, or cannot
+    be read."""
+    for block in blocks:
+        movements = {movement(*block[:2]), movement(*reversed(block[:2]))}
         try:
-            commands = [
+            commands = {
                 command["to"]
                 for data in (*answer["strategies"].values(), answer["people"] or {})
                 for entry in data.get("strategy", ())
                 for command in entry["commands"]
-            ]
+                if command["agent"] in (block[2:] or (command["agent"],))
+            }
         except (AttributeError, KeyError, TypeError) as problem:
             raise DataError(f"its strategies lack or misspell something: {problem!r}") from problem
         if not movements.isdisjoint(commands):
-            raise DataError(f"it uses {in_words(way)}, which is blocked; --planner has to be of this version")
+            raise DataError(f"it uses {in_words(block)}, which is blocked; --planner has to be of this version")

@@ -99,6 +99,20 @@ def test_where_every_way_is_blocked_there_is_no_plan_and_the_ways_are_named() ->
     }
 
 
+@pytest.mark.parametrize("way", [["b", "c", "bot1"], ["c", "b", "bot1"]])
+def test_a_way_that_one_robot_cannot_take_is_open_to_the_other(way: List[str]) -> None:
+    for excused, ways in (("bot2", {"going_a_to_d", "going_d_to_c"}), ("bot1", {"going_a_to_b", "going_b_to_c"})):
+        sent = set(commanded(replan(start(blocked=[way], excused=[excused]))))
+        assert ways <= {to for _, to in sent}
+        assert not sent & {("bot1", to) for to in movements([("b", "c")])}
+
+
+def test_where_the_only_robot_cannot_take_a_way_it_is_named() -> None:
+    request = start(blocked=[["a", "b", "bot1"], ["a", "d", "bot1"]], excused=["bot2"])
+    without = [f"without the way between {{a}} and {{{place}}} for {{bot1}}" for place in "bd"]
+    assert replan(request)["why"].endswith(" and ".join(without))
+
+
 def test_another_robot_goes_round_where_one_has_failed() -> None:
     request = under_way("bot1", "b", "c", 5.0, excused=["bot1"], blocked=[["b", "c"]])
     sent = set(commanded(replan(request)))
@@ -147,17 +161,18 @@ def test_who_is_not_commanded_moves_as_it_likes() -> None:
 
 
 @given(
-    st.lists(st.sampled_from(WAYS), unique=True, max_size=3), st.sampled_from(["bot1", "bot2", ""]),
-    st.sampled_from(["excused", "turning", ""]),
+    st.lists(st.tuples(st.sampled_from(WAYS), st.sampled_from(["", "bot1", "bot2"])), unique=True, max_size=3),
+    st.sampled_from(["bot1", "bot2", ""]), st.sampled_from(["excused", "turning", ""]),
 )
 def test_no_plan_uses_a_blocked_way_and_both_engines_agree(
-    blocked: List[Tuple[str, str]], mover: str, how: str
+    blocked: List[Tuple[Tuple[str, str], str]], mover: str, how: str
 ) -> None:
     request = start() if not mover else under_way(mover, "b", "c", 5.0, **({how: [mover]} if how else {}))
-    request["blocked"] = [list(way) for way in blocked]
+    request["blocked"] = [[*way, alone] if alone else list(way) for way, alone in blocked]
     answer = replan(request)
     if answer["won"]:
-        assert not {to for _, to in commanded(answer)} & set(movements(blocked))
+        for way, alone in blocked:
+            assert not {to for who, to in commanded(answer) if alone in ("", who)} & set(movements([way]))
     scenario, network = ring(), network_from(played(translate(ring()), Rules()), read_request(request))
     assert solve(network, scenario_objective(scenario), Rules().reaction, engine="python").won is answer["won"]
 

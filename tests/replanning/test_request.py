@@ -67,6 +67,8 @@ BAD = {
     "blocked places": ({**GOOD, "blocked": ["c", "b"]}, "blocked is ['c', 'b']"),
     "a blocked way of three places": ({**GOOD, "blocked": [["a", "c", "b"]]}, "blocked is [['a', 'c', 'b']]"),
     "a blocked way that is none": ({**GOOD, "blocked": [["a", "b"]]}, "blocked is [['a', 'b']]"),
+    "a way that is blocked for strangers": ({**GOOD, "blocked": [["b", "c", "bot9"]]}, "blocked is [['b', 'c', 'bot9'"),
+    "a way that is blocked for two": ({**GOOD, "blocked": [["b", "c", "bot1", "bot2"]]}, "blocked is [['b', 'c', "),
     "a blocked way of numbers": ({**GOOD, "blocked": [[{}, 1]]}, "blocked is [[{}, 1]]"),
     "a limit of nothing": ({**GOOD, "limit": 0}, "limit is 0"),
 }

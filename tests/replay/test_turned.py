@@ -65,7 +65,7 @@ def test_the_turn_is_shown_and_is_no_fault(played: Tuple[List[SystemState], byte
     findings = check(MissionRecord(tuple(states), words, orders, {1: PLAN}), game()).findings
     assert [f.kind for f in findings if f.level == FAULT] == []
     assert [(f.kind, f.text) for f in findings if f.kind == "turned" and f.level == WORLD] == [
-        ("turned", "bot1 turned round on its way, which was blocked")
+        ("turned", "bot1 turned round: it could not go on")
     ]
 
 

@@ -6,8 +6,8 @@ action takes; negative: the robot does not report its end), boot (seconds from t
 server is up), reboot (the same after a restart; boot where it is not given), recovery (seconds until a robot that is
 stuck gives up, and answers other goals and cancellations), status (seconds between two status messages), plays (what
 becomes of its first goal, of its second …; the last one of all that follow): succeed, abort (at once), reject (at
-once), never, stuck (it gives up after the recovery), twice (the result comes twice), stale (a result of long ago comes
-first), turned (it arrives, but looks the wrong way).
+once), never, stuck (it finds no plan, and gives up after the recovery), oscillating (gives up then, with that text),
+twice (the result comes twice), stale (a result of long ago comes first), turned (it arrives, but looks the wrong way).
 
 Orders of a test on <robot>/test: `put X Y YAW` (a person carries it there), `restart SECONDS` (move_base is killed
 and started again after so long), `play NAME` (what becomes of the goals from now on), `travel SECONDS`,
@@ -51,6 +51,7 @@ ACCEPTED = "This goal has been accepted by the simple action server"
 TEXTS = {
     "succeed": (GoalStatus.SUCCEEDED, "Goal reached."),
     "stuck": (GoalStatus.ABORTED, "Failed to find a valid plan. Even after executing recovery behaviors."),
+    "oscillating": (GoalStatus.ABORTED, "Robot is oscillating. Even after executing recovery behaviors."),
     "abort": (GoalStatus.ABORTED, "Failed to find a valid control. Even after executing recovery behaviors."),
     "reject": (GoalStatus.REJECTED, "This goal was rejected."),
     "cancel": (GoalStatus.PREEMPTED, ""),
@@ -233,7 +234,7 @@ class FakeMoveBase:
         yaw = 2.0 * math.atan2(target.orientation.z, target.orientation.w) + (math.pi if play == "turned" else 0.0)
         if play in ("abort", "reject"):
             self.finish(play)
-        elif play == "stuck":
+        elif play in ("stuck", "oscillating"):
             self.gives_up = rospy.get_time() + self.recovery
         elif play != "never":
             self.show_plan(target)
@@ -316,7 +317,8 @@ class FakeMoveBase:
             self.finish("replace")
             self.begin(goal, target)
         else:
-            self.finish("cancel" if current.status == GoalStatus.PREEMPTING else "stuck")
+            play = self.plays[min(self.count, len(self.plays)) - 1]
+            self.finish("cancel" if current.status == GoalStatus.PREEMPTING else play)
 
     def on_action(self, message: String) -> None:
         x, y, _ = self.body.at

@@ -58,7 +58,7 @@ def test_a_robot_that_cannot_go_fails_and_others_are_called_back_when_the_missio
     arguments = f"ends:=result on_stop:=cancel planner:=off robots:={tmp_path}/own.yaml"
     bot1, bot2 = {"plays": ["abort"]}, {"plays": ["never"]}
     with playing(ros, workspace, tmp_path, arguments, bot1=bot1, bot2=bot2) as (robots, log, mission):
-        failed = r"reports bot1:_blocked_#\d+ on its way to b: aborted: Failed to find a valid control\."
+        failed = r"reports bot1:_stuck_#\d+ on its way to b: it finds no free motion, in 2 attempts"
         wait_for(lambda: bool(re.search(failed, log.read_text())), log, "bot1 has not failed")
         wait_for(lambda: "goal a" in robots.heard("bot2"), log, "bot2 is not sent")
         wait_for(lambda: "cancel" in robots.heard("bot2"), log, "bot2 is not called back")
@@ -179,12 +179,16 @@ def test_what_comes_while_move_base_recovers_is_answered_later(
     assert robots.heard("bot1") == ["goal b", *between, "goal b", "action bot1_inb"]
 
 
-def test_what_move_base_says_is_part_of_the_reason(ros: Ros, workspace: Path, tmp_path: Path) -> None:
+def test_the_log_has_the_words_of_move_base_and_the_reason_what_they_mean(
+    ros: Ros, workspace: Path, tmp_path: Path
+) -> None:
     (tmp_path / "own.yaml").write_text("retries: 0\n")
     arguments = f"goals:=action ends:=result planner:=off robots:={tmp_path}/own.yaml"
     _, said = played(ros, workspace, tmp_path, arguments, bot1={"plays": ["stuck"], "recovery": 1.0})
-    why = "on its way to b: aborted: Failed to find a valid plan. Even after executing recovery behaviors."
-    assert re.search(rf"The mission was stopped, .*: bot1 has found that .* is blocked: {why}", said), said[-8000:]
+    own = "(move_base: Failed to find a valid plan. Even after executing recovery behaviors.)"
+    assert f"bot1 on its way to b: it finds no way {own}" in said, said[-8000:]
+    why = "bot1 gave up on its way to b: it finds no way; no other plan"
+    assert re.search(rf"The mission was stopped, .*: {why}", said), said[-8000:]
 
 
 @pytest.mark.parametrize("ends", ["result", "pose", "tf"])

@@ -16,7 +16,7 @@ from pursue_runtime.orders import Order
 B, C = Place("b", 3.0, 4.0, 0.0), Place("c", 0.0, 0.0)
 WAY = Movement("going_c_to_b", B)
 BACK = Movement("going_b_to_c", C)
-END, FAILED, BLOCKED = "bot1_going_c_to_b2b", "bot1:_failed_", "bot1:_blocked_"
+END, FAILED, STUCK, BLOCKED = "bot1_going_c_to_b2b", "bot1:_failed_", "bot1:_stuck_", "bot1:_blocked_"
 CANCELLED = (2, 8)
 HELD, DISPLACED, BACK_AGAIN = "bot1:_held_", "bot1:_displaced_", "bot1:_back_"
 PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, RECALLED, LOST = 0, 1, 2, 3, 4, 5, 8, 9

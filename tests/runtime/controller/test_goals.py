@@ -11,12 +11,12 @@ from tests.runtime.controller.robot_world import (
     ABORTED,
     ACTIVE,
     BACK,
-    BLOCKED,
     END,
     HELD,
     PENDING,
     PREEMPTED,
     RECALLED,
+    STUCK,
     SUCCEEDED,
     WAY,
     World,
@@ -148,7 +148,7 @@ def test_the_status_shows_failures_of_simple_goals_too() -> None:
     robot.go()
     robot.status(Answer("/move_base-1", robot.now, ACTIVE))
     robot.status(Answer("/move_base-1", robot.now, ABORTED, "Robot is oscillating."))
-    assert robot.texts == [f"{BLOCKED}#0 on its way to {{b}}: aborted: Robot is oscillating.; given up after 1 goal"]
+    assert robot.texts == [f"{STUCK}#0 on its way to {{b}}: it moves to and fro"]
 
 
 # Cancelled by somebody else -------------------------------------------------------------------------------------------

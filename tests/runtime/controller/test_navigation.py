@@ -15,13 +15,13 @@ from tests.runtime.controller.robot_world import (
     ABORTED,
     ACTIVE,
     BACK,
-    BLOCKED,
     END,
     FAILED,
     HELD,
     LOST,
     PREEMPTED,
     REJECTED,
+    STUCK,
     SUCCEEDED,
     WAY,
     B,
@@ -59,7 +59,7 @@ def test_a_report_has_the_number_of_the_first_state_that_shows_what_it_is_about(
     robot.robot.start(WAY, robot.now)
     robot.act()
     robot.result(ABORTED)
-    assert robot.texts[-1].startswith(f"{BLOCKED}#12 on its way to {{b}}")
+    assert robot.texts[-1].startswith(f"{STUCK}#12 on its way to {{b}}")
 
 
 def test_an_end_before_its_window_is_reported_at_once(results: World) -> None:
@@ -159,8 +159,8 @@ def test_after_a_failure_the_goal_is_sent_again_and_may_succeed(results: World, 
     assert results.words == [END]
 
 
-@pytest.mark.parametrize(("status", "word"), [(ABORTED, BLOCKED), (REJECTED, FAILED), (LOST, FAILED)])
-def test_a_robot_that_fails_again_and_again_has_failed_and_its_way_is_blocked_if_move_base_aborts(
+@pytest.mark.parametrize(("status", "word"), [(ABORTED, STUCK), (REJECTED, FAILED), (LOST, FAILED)])
+def test_a_robot_that_fails_again_and_again_is_stuck_if_move_base_has_taken_its_goal_else_it_has_failed(
     results: World, status: int, word: str
 ) -> None:
     for attempts in (1, 2, 3):
@@ -178,7 +178,7 @@ def test_a_failure_is_repeated_until_the_robot_counts_as_lost() -> None:
     world.result(ABORTED)
     assert world.wait(2.0) == [0.5, 1.5]
     world.state(lost=True)
-    assert world.wait(20.0) == [] and world.words == [BLOCKED] * 3
+    assert world.wait(20.0) == [] and world.words == [STUCK] * 3
 
 
 def test_a_failure_that_is_received_twice_is_one() -> None:
@@ -439,7 +439,7 @@ def test_a_robot_that_failed_and_is_brought_there_is_there() -> None:
     world.state(lost=True)
     world.at(3.0, 4.0)
     world.wait(0.6)
-    assert world.words == [BLOCKED, END]
+    assert world.words == [STUCK, END]
 
 
 def test_success_elsewhere_is_reported_as_a_warning() -> None:

@@ -272,9 +272,9 @@ def test_a_robot_that_finds_its_way_blocked_is_lost_and_the_plan_is_to_avoid_tha
     assert (state.status, state.lost) == ("holding", ("bot",))
     assert state.reason == "{bot} has found that the way between {a} and {b} is blocked; looking for another plan"
     wanted = made.mission.plan_request
-    assert (wanted.excused, wanted.blocked) == (("bot",), (("a", "b"),))
+    assert (wanted.excused, wanted.blocked) == (("bot",), (("a", "b", "bot"),))
     assert made.hear("bot:_blocked_", 3.5) is None
-    assert planned(made, EVERYWHERE, 4.0)[-1].status == "running" and made.mission.ways.blocked == {("a", "b")}
+    assert planned(made, EVERYWHERE, 4.0)[-1].status == "running" and made.mission.ways.blocked == {("a", "b", "bot")}
 
 
 def test_anybody_may_report_that_a_way_is_blocked() -> None:
@@ -300,7 +300,8 @@ def test_a_plan_of_a_planner_that_does_not_know_of_blocked_ways_is_not_used() ->
     made = journey()
     made.hear("going_a_to_b:_blocked_", 1.0)
     plan = answer(EVERYWHERE)
-    plan["strategies"]["two"] = {"strategy": [{"state": {}, "commands": [{"to": "b"}, {"to": "going_b_to_a"}]}]}
+    commands = [{"agent": "bot", "to": to} for to in ("b", "going_b_to_a")]
+    plan["strategies"]["two"] = {"strategy": [{"state": {}, "commands": commands}]}
     (state,) = made.mission.on_plan(made.mission.plan_request.number, plan, 1.5)
     assert state.status == "stopped" and "it uses the way between {a} and {b}, which is blocked" in state.reason
 

@@ -49,7 +49,7 @@ def test_the_plan_is_to_begin_with_the_robot_on_its_way_back() -> None:
     state = made.hear("bot:_blocked_", 5.0)
     assert (state.status, state.lost, state.locations["bot"]) == ("holding", ("bot",), "going_a_to_b")
     wanted = made.mission.plan_request
-    assert (wanted.excused, wanted.blocked, wanted.turning) == ((), (("a", "b"),), ("bot",))
+    assert (wanted.excused, wanted.blocked, wanted.turning) == ((), (("a", "b", "bot"),), ("bot",))
     assert (wanted.locations["bot"], wanted.values["Pbot"]) == ("going_b_to_a", -21)
     assert (wanted.clocks["Cbot"], wanted.clocks["Creach"], wanted.ahead) == (0.0, 5.0, 1.0)
 
@@ -117,6 +117,91 @@ def test_who_finds_a_way_blocked_that_was_blocked_before_is_lost() -> None:
     state = made.hear("bot:_blocked_", 5.0)
     assert (state.status, state.lost, state.locations["bot"]) == ("holding", ("bot",), "going_b_to_a")
     assert (made.mission.plan_request.excused, made.mission.plan_request.turning) == (("bot",), ())
+
+
+def test_a_way_that_one_finds_blocked_is_open_to_others_until_it_is_reported_of_the_way() -> None:
+    made = journey()
+    made.hear("bot:_blocked_", 3.0)
+    assert made.mission.ways.blocked == {("a", "b", "bot")}
+    assert planned(made, EVERYWHERE, 4.0)[-1].status == "running"
+    state = made.hear("going_b_to_a:_blocked_", 5.0)
+    assert (state.status, made.mission.plan_request.blocked) == ("holding", (("a", "b"), ("a", "b", "bot")))
+    assert state.reason == "the way between {a} and {b} is blocked; looking for another plan"
+    assert planned(made, EVERYWHERE, 5.5)[-1].status == "running"
+    assert made.hear("going_a_to_b:_free_", 6.0) is None and made.mission.ways.blocked == set()
+
+
+def test_what_is_blocked_for_all_is_blocked_for_each() -> None:
+    made = journey()
+    made.hear("going_a_to_b:_blocked_", 2.5)
+    planned(made, EVERYWHERE, 3.0)
+    made.hear("bot:_blocked_", 4.0)
+    assert made.mission.plan_request.turning == (), "it is said already that nobody gets through"
+    planned(made, EVERYWHERE, 5.0)
+    assert made.mission.status == "running"
+
+
+def test_a_plan_may_send_others_along_a_way_that_one_cannot_take_but_not_that_one() -> None:
+    for agent, status in (("dog", "holding"), ("bot", "stopped")):
+        made = journey()
+        made.hear("bot:_blocked_", 3.0)
+        plan = answer(EVERYWHERE)
+        plan["strategies"]["two"] = {
+            "strategy": [{"state": {}, "commands": [{"agent": agent, "to": "going_a_to_b"}]}]
+        }
+        made.mission.on_plan(made.mission.plan_request.number, plan, 3.5)
+        if status == "stopped":  # the next request is for a plan without the robot
+            made.mission.on_plan(made.mission.plan_request.number, plan, 3.6)
+            assert "it uses the way between {a} and {b}, which is blocked" in made.mission.reason
+        assert (made.mission.status, made.mission.proposal is None) == (status, status == "stopped")
+
+
+# Stuck ----------------------------------------------------------------------------------------------------------------
+
+
+def test_a_robot_that_is_stuck_goes_back_and_its_way_stays_open() -> None:
+    made = journey()
+    state = made.hear("bot:_stuck_ on its way to {b}: it moves to and fro, in 3 attempts", 3.0)
+    gave_up = "{bot} gave up on its way to {b}: it moves to and fro, in 3 attempts; looking for another plan"
+    assert (state.status, state.lost, state.reason) == ("holding", ("bot",), gave_up)
+    wanted = made.mission.plan_request
+    assert (wanted.excused, wanted.blocked, wanted.turning) == ((), (), ("bot",))
+    assert made.hear("bot:_stuck_", 3.2) is None, "its report comes again"
+    (state,) = planned(made, EVERYWHERE, 3.5)
+    assert (state.status, state.lost, state.locations["bot"]) == ("running", (), "going_b_to_a")
+    assert made.mission.ways.blocked == set(), "it may be sent there once more"
+
+
+def test_who_is_stuck_a_second_time_does_not_get_that_way_again_and_then_it_is_lost() -> None:
+    made = journey()
+    made.hear("bot:_stuck_", 3.0)
+    planned(made, EVERYWHERE, 3.5)
+    state = made.hear("bot:_stuck_", 5.0)
+    assert state.reason == "{bot} cannot go on; looking for another plan"
+    wanted = made.mission.plan_request
+    assert (wanted.excused, wanted.blocked, wanted.turning) == ((), (("a", "b", "bot"),), ("bot",))
+    (state,) = planned(made, EVERYWHERE, 5.5)
+    assert state.locations["bot"] == "going_a_to_b"
+    made.hear("bot:_stuck_", 7.0)
+    assert (made.mission.plan_request.excused, made.mission.plan_request.turning) == (("bot",), ())
+
+
+def test_a_way_that_is_free_again_may_be_tried_as_often_as_before() -> None:
+    made = journey()
+    made.hear("bot:_stuck_", 3.0)
+    planned(made, EVERYWHERE, 3.5)
+    made.hear("going_a_to_b:_free_", 4.0)
+    made.hear("bot:_stuck_", 5.0)
+    assert made.mission.plan_request.blocked == ()
+
+
+def test_only_who_moves_is_stuck() -> None:
+    made = journey()
+    made.hear("bot_going_a_to_b2b", 5.5)
+    for word in ("bot:_stuck_", "going_a_to_b:_stuck_", "nobody:_stuck_"):
+        assert made.hear(word, 6.0) is None
+        assert made.logs[-1][0] == "warn" and "expected the name of a movement" in made.logs[-1][1]
+    assert made.mission.ways.blocked == set() and made.mission.ways.turns == {}
 
 
 def test_who_fails_before_it_could_go_back_is_lost() -> None:
