@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Dict, List, Mapping, Optional, Tuple
 
 import typer
 
-from pursue_gen.cli.console import guarded, info, show, suggest
+from pursue_gen.cli.console import ended, guarded, info, show, suggest
 from pursue_gen.cli.options import SCENARIO
 from pursue_gen.diagnostics import as_json, error, usage_error
 from pursue_gen.files import check_new, shell_quoted, write_bytes
-from pursue_gen.outcomes import Unavailable
+from pursue_gen.outcomes import Invalid, Unavailable
 
 if TYPE_CHECKING:
     from pursue_gen.language.scenario import Scenario
@@ -69,7 +69,7 @@ def survey(
 
     drive = Drive({}, time_unit, turning, acceleration, start, reserve / 100, tolerance)
     options = Options(radius, clearance, unit, ways, tuple(map(_pair, keep)), drive)
-    read, copy, found = _surveyed(floor, scenario, speed, options)
+    read, copy, found = _surveyed(floor, scenario, speed, options, "" if dry_run else str(target))
     files = {} if dry_run else {target: copy}
     if picture is not None:
         files[picture] = _picture(read, found, floor, radius)
@@ -77,6 +77,10 @@ def survey(
     _print(found, as_json_)
     for file in files:
         info(f"wrote {file}")
+    if found.errors:
+        show(() if as_json_ else found.errors)
+        info("The copy has errors: mend the scenario, first what the map says above, and survey it again.")
+        raise ended(Invalid(found.errors))
     if not dry_run:
         suggest(f"pursue-gen solve {shell_quoted(target)}")
 
@@ -93,7 +97,9 @@ def _check_packages() -> None:
     del numpy, scipy
 
 
-def _surveyed(floor: Path, file: Path, speed: List[str], options: Options) -> Tuple[Scenario, bytes, Survey]:
+def _surveyed(
+    floor: Path, file: Path, speed: List[str], options: Options, copy_name: str
+) -> Tuple[Scenario, bytes, Survey]:
     """The scenario, its copy, and the survey."""
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.language.parser import read_text
@@ -103,7 +109,7 @@ def _surveyed(floor: Path, file: Path, speed: List[str], options: Options) -> Tu
     scenario = read_scenario(text, str(file))
     robots = [agent.name for agent in scenario.agents if agent.is_robot and agent.mobile is not None]
     driven = replace(options, drive=replace(options.drive, speeds=_speeds(speed, robots)))
-    found = surveyed(scenario, read_ground(floor, whole=True), floor.name, driven)
+    found = surveyed(scenario, read_ground(floor, whole=True), floor.name, driven, copy_name)
     copy = found.text.replace("\n", "\r\n") if "\r\n" in text else found.text
     return scenario, copy.encode("utf-8"), found
 
@@ -119,7 +125,7 @@ def _print(found: Survey, as_json_: bool) -> None:
     from pursue_gen.survey.texts import as_data, table
 
     if as_json_:
-        findings = [as_json(finding) for finding in found.findings]
+        findings = [as_json(finding) for finding in (*found.findings, *found.errors)]
         print(json.dumps({**as_data(found), "findings": findings}, indent=1))
         return
     show(found.findings)

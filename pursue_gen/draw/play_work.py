@@ -24,7 +24,7 @@ def play(given: Work, pipe: Connection) -> None:
         try:
             session = _begun(given, pipe)
         except PursueError as problem:
-            pipe.send({"verdict": ERRORS, "lines": sentences(problem)})
+            pipe.send({"verdict": ERRORS, "lines": sentences(problem.diagnostics)})
             return
         lines: Sequence[str] = opening(session)
         for turn in range(1, 1_000_000):

@@ -10,9 +10,9 @@ import time
 from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
-from typing import Iterator, List, Optional
+from typing import Iterable, Iterator, List, Optional
 
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.diagnostics import Diagnostic, PursueError
 from pursue_gen.drawing.floor import Floor, read_floor
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, without_errors
@@ -77,7 +77,7 @@ def solve(given: Work, pipe: Connection) -> None:
         try:
             _solve(given, pipe)
         except PursueError as problem:
-            pipe.send({"verdict": ERRORS, "lines": sentences(problem)})
+            pipe.send({"verdict": ERRORS, "lines": sentences(problem.diagnostics)})
 
 
 def scenario_of(given: Work) -> Scenario:
@@ -109,7 +109,8 @@ def _solve(given: Work, pipe: Connection) -> None:
     try:
         found = promised_of(scenario, request, progress)
     except (Lost, LimitHit) as problem:
-        pipe.send({"verdict": LOST if isinstance(problem, Lost) else UNDECIDED, "lines": sentences(problem)})
+        verdict = LOST if isinstance(problem, Lost) else UNDECIDED
+        pipe.send({"verdict": verdict, "lines": sentences(problem.diagnostics)})
         pipe.send({"progress": "looking for what would change that"})
         lost = lost_report(scenario, problem, limits.since(start), progress, floor)
         pipe.send({"page": report_page(lost)})
@@ -139,6 +140,6 @@ def _promise(found: Promised) -> List[str]:
     return [*lines, f"This holds {assumed}."] if assumed else lines
 
 
-def sentences(problem: PursueError) -> List[str]:
-    """What went wrong, a sentence for each finding."""
-    return [f"{one.message} ({one.hint})" if one.hint else one.message for one in problem.diagnostics]
+def sentences(findings: Iterable[Diagnostic]) -> List[str]:
+    """A sentence for each finding, with what to do."""
+    return [f"{one.message} ({one.hint})" if one.hint else one.message for one in findings]

@@ -39,7 +39,7 @@ def survey(given: SurveyWork, pipe: Connection) -> None:
             what = f"this needs the Python packages numpy and scipy, which are not installed here ({problem})"
             pipe.send({"verdict": ERRORS, "lines": [f"{what}: pip install 'pursue-gen[survey]'"]})
         except PursueError as problem:
-            pipe.send({"verdict": ERRORS, "lines": sentences(problem)})
+            pipe.send({"verdict": ERRORS, "lines": sentences(problem.diagnostics)})
 
 
 def _measured(given: SurveyWork, floor: Path) -> Dict[str, Any]:
@@ -52,5 +52,5 @@ def _measured(given: SurveyWork, floor: Path) -> Dict[str, Any]:
     speeds = {} if given.speed is None else dict.fromkeys(robots, given.speed)
     options = Options(radius=given.radius, ways=given.ways, drive=Drive(speeds))
     found = surveyed(scenario, read_ground(floor, whole=True), floor.name, options)
-    lines = [*table(found), *(f"{one.severity.value} {one.code}: {one.message}" for one in found.findings)]
+    lines = [*sentences(found.findings), *table(found)]
     return {"verdict": SURVEYED, "lines": lines, "surveyed": format_text(found.text, given.file)}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Optional
+from typing import Optional, Tuple
 
 from pursue_gen.drawing.floor import MapSettings, read_greys, read_settings, unusable
 
@@ -28,13 +28,24 @@ class Ground:
 
     def at(self, x: float, y: float) -> str:
         """What is at a point of the map (metres); free where the greys are not known."""
+        column, row = self.pixel(x, y)
+        if not (0 <= column < self.width and 0 <= row < self.height):
+            return OUTSIDE
+        return FREE if self.greys is None else kind_of(self.settings, self.greys[row * self.width + column])
+
+    def pixel(self, x: float, y: float) -> Tuple[int, int]:
+        """The column and the row, counted from the top, in which a point of the map (metres) is."""
         place = self.settings
         cos, sin = math.cos(place.yaw), math.sin(place.yaw)
         column = math.floor((cos * (x - place.x) + sin * (y - place.y)) / place.resolution)
-        row = self.height - 1 - math.floor((cos * (y - place.y) - sin * (x - place.x)) / place.resolution)
-        if not (0 <= column < self.width and 0 <= row < self.height):
-            return OUTSIDE
-        return FREE if self.greys is None else kind_of(place, self.greys[row * self.width + column])
+        return column, self.height - 1 - math.floor((cos * (y - place.y) - sin * (x - place.x)) / place.resolution)
+
+    def middle(self, column: float, row: float) -> Tuple[float, float]:
+        """The middle of a pixel (column, row from the top) as a point of the map (metres)."""
+        place = self.settings
+        cos, sin = math.cos(place.yaw), math.sin(place.yaw)
+        across, up = (column + 0.5) * place.resolution, (self.height - row - 0.5) * place.resolution
+        return place.x + cos * across - sin * up, place.y + sin * across + cos * up
 
     def free_pixels(self) -> Optional[bytes]:
         """1 for each pixel that is free, else 0, row by row from the top; None where the greys are not known."""

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from typing import AbstractSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, Span, warning
-from pursue_gen.drawing.ground import FREE, Ground
+from pursue_gen.diagnostics import Diagnostic, warning
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Connection, Pose, Scenario
 from pursue_gen.survey.copying import Movement
@@ -15,16 +13,6 @@ from pursue_gen.survey.plan import Plan
 from pursue_gen.survey.spots import Ways, exits_of, shut_in
 
 _SOME = 8  # places that a message lists
-
-
-def too_narrow(scenario: Scenario, ground: Ground, grid: Grid, radius: float) -> Iterator[Diagnostic]:
-    """Poses and spots on free ground that are too near an obstacle for the robot."""
-    for what, pose, span in _poses(scenario):
-        if ground.at(pose.x, pose.y) == FREE and not grid.is_free(grid.cell(pose.x, pose.y)):
-            message = f"{what} ({pose.x:g}, {pose.y:g}) is nearer than {radius:g} m, the robots' radius, to an obstacle"
-            yield warning(
-                "MAP003", message, span, f"{_nearest(grid, pose)}; if the robot is smaller, say so: --radius METRES"
-            )
 
 
 def apart(scenario: Scenario, plan: Plan) -> Iterator[Diagnostic]:
@@ -114,23 +102,6 @@ def other_unit(
         message = f"ways are {ratio:.1f} times as long as written, so with the same mobile {_listed(movers)} "
         hint = f"say what a unit of distance is: --unit {ratio * unit:.2g}; or change mobile, or give robots a --speed"
         yield warning("MAP008", message + f"will take {ratio:.1f} times as long", span, hint)
-
-
-def _nearest(grid: Grid, pose: Pose) -> str:
-    """Where there is room for the robot nearby."""
-    x, y = grid.nearest((pose.x, pose.y))
-    apart = math.dist((x, y), (pose.x, pose.y))
-    return f"move it away from the obstacle: there is room at {x:.2f}, {y:.2f}, {apart:.2f} m from there"
-
-
-def _poses(scenario: Scenario) -> Iterator[Tuple[str, Pose, Span]]:
-    present = robots_at(scenario)
-    for poi in scenario.pois:
-        own = {spot.robot.name for spot in poi.spots}
-        if poi.pose is not None and not own.issuperset(present[poi.name] or {""}):
-            yield f"the pose of {poi.name}", poi.pose, poi.span
-        for spot in poi.spots:
-            yield f"the spot of {spot.robot.name} at {poi.name}", spot.pose, spot.robot.span
 
 
 def _listed(names: Iterable[str]) -> str:

@@ -63,13 +63,6 @@ class Grid:
         rows, columns = self.free.shape
         return bool(0 <= column < columns and 0 <= row < rows and self.free[row, column])
 
-    def nearest(self, point: Point) -> Point:
-        """The centre of the free cell (metres) that is nearest to a point of the map (metres); there are free cells."""
-        x, y = self.cell(*point)
-        rows, columns = np.nonzero(self.free)
-        first = int(np.argmin(np.hypot(columns + 0.5 - x, rows + 0.5 - y)))
-        return self.metres((float(columns[first]) + 0.5, float(rows[first]) + 0.5))
-
     def sees(self, a: Point, b: Point) -> bool:
         """Return True if all cells that the line between two points touches are free; both are in free cells."""
         one_by_one, width = self._cells[0], self.free.shape[1]

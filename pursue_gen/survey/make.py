@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, counted, error, in_order, usage_error
+from pursue_gen.diagnostics import Diagnostic, Severity, counted, error, in_order, usage_error
 from pursue_gen.drawing.ground import Ground
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.checks import check_reading
@@ -80,10 +80,14 @@ class SurveyedWay:
 
 @dataclass(frozen=True)
 class Survey:
-    """What was found: the `text` of the copy, the findings, the ways, and the spots that were added."""
+    """What was found: the `text` of the copy, the findings on the map, the ways, and the spots that were added.
+
+    `errors`: those of the copy, which cannot be solved before they are mended; () where it is right.
+    """
 
     text: str
     findings: Tuple[Diagnostic, ...]
+    errors: Tuple[Diagnostic, ...]
     ways: Tuple[SurveyedWay, ...]
     spots: Mapping[str, Mapping[str, Pose]]
 
@@ -97,8 +101,8 @@ def read_scenario(text: str, file: str) -> Scenario:
     return without_errors(reading.scenario, findings)
 
 
-def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options) -> Survey:
-    """The survey of a scenario (`read_scenario`) on the map with this name.
+def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options, copy: str = "") -> Survey:
+    """The survey of a scenario (`read_scenario`) on the map with this name; `copy`: the file to which it is written.
 
     A scenario without ways gets those that are missing in any case. Raises PursueError where nothing can be measured.
     """
@@ -112,20 +116,19 @@ def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options
     placed = _with_spots(replace(scenario, connections=with_new.connections), spots)
     work = _Work(with_new, placed, plan, options, map_name)
     ways = {way: work.way(way, given=(way.a, way.b) not in new) for way in with_new.connections}
-    text = _copy(work, ways, spots)
+    text, errors = _copy(work, ways, spots, copy or f"the copy of {scenario.file}")
     findings = [
-        *found_wrong.too_narrow(scenario, ground, grid, options.radius),
         *found_wrong.apart(scenario, plan),
         *found_wrong.too_near(scenario, plan),
         *found_wrong.crossing(scenario, plan),
         *found_wrong.without_room(scenario, spots),
         *found_wrong.shut_in_places(placed, grid, _lines(with_new, plan), options.radius, options.room),
         *found_wrong.other_unit(scenario, _compared(scenario, ways), _timed(with_new, ways), options.unit),
-        *check_spots(placed, ground, 0),
+        *check_spots(placed, ground, 0, options.radius),
     ]
     proposals = [work.proposed(*pair) for pair in missing if pair not in new]
     poses = {place: {robot: pose for robot, pose in found if pose is not None} for place, found in spots.items()}
-    return Survey(text, in_order(findings), (*ways.values(), *proposals), poses)
+    return Survey(text, in_order(findings), errors, (*ways.values(), *proposals), poses)
 
 
 def _check_robots(scenario: Scenario, options: Options) -> None:
@@ -321,8 +324,10 @@ def _timed(scenario: Scenario, ways: Mapping[Connection, SurveyedWay]) -> Set[Mo
     return new | {(travel.agent.name, *travel.way) for travel in scenario.travels}
 
 
-def _copy(work: _Work, ways: Mapping[Connection, SurveyedWay], spots: Spots) -> str:
-    """The text of the copy. Raises PursueError where it would have errors."""
+def _copy(
+    work: _Work, ways: Mapping[Connection, SurveyedWay], spots: Spots, file: str
+) -> Tuple[str, Tuple[Diagnostic, ...]]:
+    """The text of the copy, and its errors: what cannot be reached on the map, for example."""
     unit, name = work.options.unit, work.map_name
     distances = {
         way: (one.written, _measured(one.metres, name, unit))
@@ -336,6 +341,5 @@ def _copy(work: _Work, ways: Mapping[Connection, SurveyedWay], spots: Spots) -> 
         for robot, a, b, low, high in one.windows
     }
     text = written(work.scenario, distances, windows, spots, name)
-    reading = read(text, f"the copy of {work.scenario.file}", work.scenario.name)
-    without_errors(reading.scenario, check_reading(reading))
-    return text
+    found = check_reading(read(text, file, work.scenario.name))
+    return text, tuple(finding for finding in found if finding.severity is Severity.ERROR)

@@ -151,7 +151,7 @@ def test_places_that_are_not_on_the_floor_plan_are_reported(tmp_path: Path) -> N
     (tmp_path / "map.yaml").write_text("image: map.pgm\nresolution: 0.1\norigin: [0, 0, 0]\n")
     result = pursue("report", THIEF, "--pictures", "pictures", "--map", "map.yaml")
     assert (tmp_path / "pictures" / "map.svg").is_file()
-    places = re.findall(r"WSP008: the pose of (\w) \S+ \S+ is outside the map", result.err)
+    places = re.findall(r"WSP008: the pose of (\w) \S+ \S+ is off the map", result.err)
     assert places == ["b", "d"]
 
 

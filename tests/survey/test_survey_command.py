@@ -112,6 +112,35 @@ def test_places_in_walls_and_too_near_to_them_keep_their_distances() -> None:
     assert not Path("rooms_surveyed.pur").exists()
 
 
+def test_a_place_in_a_wall_is_found_first_and_the_copy_is_written_though_it_has_errors() -> None:
+    text = re.sub(r"connect.*\n|travel.*\n", "", TEXT).replace("//[6.0, 3.0", "//[4.0, 1.0")
+    text = text.replace("location desk\nrule", "location hall\nrule")
+    done = surveyed(text=text, status=3)
+    assert codes(done)[0] == "WSP008" and set(codes(done)[1:]) == {"PML153"}
+    assert re.search(r"warning WSP008: .*\n.*\n.*\n    help: there is room at 4\.45, 1\.05, 0\.45 m", done.err)
+    assert "wrote rooms_surveyed.pur\n" in done.err and "next:" not in done.err
+    line = re.search(r"rooms_surveyed\.pur:(\d+):\d+: error PML153: bot1 can never do drop", done.err)
+    assert line and "can_do fetch, drop" in copied().splitlines()[int(line[1]) - 1], "as a line of the copy"
+    assert re.search(r"\nconnect desk and shelf distance 1\d", copied()), "what can be measured is"
+    with_json = json.loads(surveyed("--json", "--dry-run", text=text, status=3).out)
+    assert {one["code"] for one in with_json["findings"]} == {"WSP008", "PML153"} and with_json["ways"]
+
+
+@pytest.mark.parametrize(
+    ("pose", "told", "remedy"),
+    [
+        ("12.1, 1.0", "is off the map", "there is room at 11.55, 1.05, 0.55 m from there"),
+        ("500, 1.0", "is off the map", "the map reaches from 0.0 to 12.0 in x and from 0.0 to 6.0 in y"),
+        ("4.0, 1.0", "is in an obstacle of the map", "there is room at 4.45, 1.05, 0.45 m from there"),
+    ],
+)
+def test_a_place_that_is_not_on_free_ground_is_told_where_there_is_room(pose: str, told: str, remedy: str) -> None:
+    done = surveyed("--dry-run", text=TEXT.replace("//[6.0, 3.0", f"//[{pose}"))
+    assert f"{told}\n" in done.err and remedy in done.err
+    checked = pursue("check", "rooms.pur", "--map", "map.yaml")
+    assert f"{told}\n" in checked.out and remedy in checked.out
+
+
 def test_a_door_that_is_too_narrow_is_reported_with_the_way(folder: Path) -> None:
     write(folder, three_rooms(0.6, CELL), CELL)
     done = surveyed()

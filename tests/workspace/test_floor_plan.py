@@ -36,7 +36,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_the_page_finds_the_plan_that_ws_has_put_there(folder: Path) -> None:
     done = pursue("ws", "visit.pur", "--map", "map.yaml", "-o", "out")
     assert done.status == 0, done.err
-    assert "the pose of b (9, 9) is outside the map" in done.out + done.err, "places are checked as by check --map"
+    assert "the pose of b (9, 9) is off the map" in done.out + done.err, "places are checked as by check --map"
     found, given = read_floor(str(folder / "out/src/UI/config")), desk.read_floor(folder / "map.yaml")
     assert found is not None and found.picture == given.picture
     assert found.scene() == {"width": 4, "height": 6, "resolution": 0.5, "x": -1.0, "y": 0.25, "yaw": 0.1}

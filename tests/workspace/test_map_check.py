@@ -52,10 +52,10 @@ def told(floor: Ground, behind: str, robots: int = 1, distance: float = 1.0) -> 
         (11.5, 22.1, "is in an obstacle of the map"),
         (10.5, 20.5, "is in an obstacle of the map"),
         (13.5, 21.5, "is unknown to the map"),
-        (9.9, 20.5, "is outside the map"),
-        (14.1, 20.5, "is outside the map"),
-        (11.5, 23.1, "is outside the map"),
-        (11.5, 19.9, "is outside the map"),
+        (9.9, 20.5, "is off the map"),
+        (14.1, 20.5, "is off the map"),
+        (11.5, 23.1, "is off the map"),
+        (11.5, 19.9, "is off the map"),
     ],
 )
 def test_a_pose_is_looked_up_where_map_server_has_it(tmp_path: Path, x: float, y: float, what: str) -> None:
@@ -71,7 +71,7 @@ def test_the_settings_of_the_map_count(tmp_path: Path) -> None:
     lower = YAML.replace("0.65", "0.5")
     assert "obstacle" in told(floor_of(tmp_path, lower, grey), "//[10.5, 20.5, 0, 0, 0, 0, 1]")[0]
     turned = floor_of(tmp_path, YAML.replace("20, 0]", f"20, {math.pi / 2!r}]"))
-    assert told(turned, "//[9.5, 21.5, 0, 0, 0, 0, 1]") == [] and "outside" in told(turned, pose)[0]
+    assert told(turned, "//[9.5, 21.5, 0, 0, 0, 0, 1]") == [] and "off the map" in told(turned, pose)[0]
 
 
 def test_the_spots_of_robots_are_checked_too(tmp_path: Path) -> None:
@@ -81,7 +81,7 @@ def test_the_spots_of_robots_are_checked_too(tmp_path: Path) -> None:
     assert left == "the spot of bot2 at a (11.5, 22.5) is in an obstacle of the map"
     assert told(floor, pose, robots=2, distance=0.4) == []
     (own,) = told(floor, f"{pose} bot2 [9, 9, 0, 0, 0, 0, 1]", robots=2)
-    assert own == "the spot of bot2 at a (9, 9) is outside the map"
+    assert own == "the spot of bot2 at a (9, 9) is off the map"
 
 
 def test_the_pose_of_a_place_to_which_no_robot_is_sent_does_not_count(tmp_path: Path) -> None:
@@ -104,7 +104,8 @@ def test_check_reports_them_with_the_other_findings(tmp_path: Path, monkeypatch:
     done = pursue("check", "two.pur", "--map", "map.yaml")
     assert (done.status, re.findall("warning ([A-Z0-9]+)", done.out)) == (0, ["PML120", "WSP008"])
     assert "two.pur:1:5: warning WSP008: the spot of bot2 at a (11.5, 22.3)" in done.out
-    assert "write a pose for it behind that of a: bot2 [x, y" in done.out and "0 errors, 2 warnings" in done.err
+    assert "write a pose for it behind that of a: bot2 [12.5, 21.5, 0, 0, 0, 0, 1]" in done.out
+    assert "0 errors, 2 warnings" in done.err
     assert "WSP008" not in pursue("check", "two.pur", "--map", "map.yaml", "--spot-distance", "0.4").out
     both = pursue("check", "bad.pur", "two.pur", "--map", "map.yaml", "--json")
     assert both.status == 3 and [f["code"] for f in json.loads(both.out)][-2:] == ["PML120", "WSP008"]
