@@ -9,10 +9,10 @@ import struct
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, Optional, Tuple
+from typing import Any, Dict, Iterable, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.drawing.png_greys import greys
+from pursue_gen.drawing.png_pixels import pixels
 from pursue_gen.files import read_text
 from pursue_runtime.bounded import SETTINGS, BadText, read_yaml
 from pursue_runtime.named_files import read_all
@@ -107,16 +107,17 @@ def read_settings(file: Path) -> MapSettings:
     return MapSettings(file.parent / image, resolution, x, y, yaw, negate, occupied, free, str(mode))
 
 
-def read_greys(file: Path) -> Tuple[Optional[bytes], int, int]:
-    """A grey (0 to 255) for each pixel of an image of a map, row by row from the top, and its width and height.
+def read_pixels(file: Path) -> Tuple[Optional[Tuple[int, Iterable[bytes]]], int, int]:
+    """The channels and the rows of an image of a map, as `png_pixels.pixels` has them, and its width and height.
 
-    None for the greys of a PNG of an unusual kind (`png_greys`). Raises PursueError (exit status 2).
+    None for the pixels of a PNG of an unusual kind. Raises PursueError (exit status 2).
     """
     content = _content(file)
     if content.startswith(SIGNATURE):
         width, height = _png_size(file, content)
-        return greys(content), width, height
-    return _pgm_greys(file, content)
+        return pixels(content), width, height
+    greys, width, height = _pgm_greys(file, content)
+    return (1, [greys]), width, height
 
 
 def _yaml(file: Path) -> Dict[str, Any]:

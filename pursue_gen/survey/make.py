@@ -161,7 +161,7 @@ def _plan(scenario: Scenario, grid: Grid, options: Options) -> Plan:
         raise Invalid([error("MAP001", message, span, "survey the floors of the building one by one")])
     if not grid.free.any():
         message = f"the map has no free ground for a robot with a radius of {options.radius:g} m"
-        hint = "look at negate, free_thresh and resolution of the map, or try a smaller --radius"
+        hint = "look at negate, free_thresh, resolution and the picture's opacity, or try a smaller --radius"
         raise Invalid([error("MAP001", message, span, hint)])
     points = {poi.name: (poi.pose.x, poi.pose.y) for poi in posed if poi.pose is not None}
     return Plan(graph_of(grid), {name: at for name, at in points.items() if grid.is_free(grid.cell(*at))}, options.room)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from pursue_gen.drawing.clearance import Clearance
 from pursue_gen.drawing.floor import MapSettings
-from pursue_gen.drawing.ground import Ground
+from pursue_gen.drawing.ground import Ground, cells_of
 
 ROWS = st.integers(1, 9).flatmap(
     lambda width: st.lists(st.lists(st.sampled_from("....#?"), min_size=width, max_size=width), min_size=1, max_size=9)
@@ -24,7 +24,8 @@ def ground(rows: List[List[str]], yaw: float = 0.0) -> Ground:
     """The first row is the lowest one; cells of 0.5 m."""
     greys = {".": 254, "#": 0, "?": 205}
     place = MapSettings(Path("map.pgm"), 0.5, 3.0, -1.0, yaw, False, 0.65, 0.196, "trinary")
-    return Ground(place, len(rows[0]), len(rows), bytes(greys[one] for row in rows[::-1] for one in row))
+    cells = cells_of(place, 1, [bytes(greys[one] for one in row) for row in rows[::-1]])
+    return Ground(place, len(rows[0]), len(rows), cells)
 
 
 def apart(rows: List[List[str]], cell: Tuple[int, int]) -> float:

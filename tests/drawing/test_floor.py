@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import struct
 import zlib
+from fractions import Fraction
 from pathlib import Path
 from typing import List, Tuple
 
@@ -175,6 +176,55 @@ def test_what_a_grey_means_depends_on_the_mode(tmp_path: Path, mode: str, kinds:
     found = [ground.at(-1 + 0.05 * (column + 0.5), 2.01) for column in range(4)]
     assert "".join(kind[0] for kind in found) == kinds
     assert ground.free_pixels() == bytes(kind == "f" for kind in kinds)
+
+
+def as_map_server(pixel: Tuple[int, ...], mode: str, negate: bool, occupied: float, free: float) -> str:
+    """What map_server 1.17 makes of a pixel, written down from its documentation and its source; `u` for all between.
+
+    A picture of grey and opacity comes to it as RGB with opacity.
+    """
+    channels = (pixel[0],) * 3 + pixel[1:] if len(pixel) == 2 else pixel
+    if len(channels) == 4 and mode != "trinary":
+        channels = channels[:3]
+    mean = Fraction(sum(channels), len(channels))
+    level = 255 - mean if negate else mean
+    if mode == "raw":
+        value = int(level)
+        return "u" if value == 255 else "o" if value > 100 * occupied else "f" if value < 100 * free else "u"
+    darkness = (255 - level) / 255
+    return "o" if darkness > Fraction(occupied) else "f" if darkness < Fraction(free) else "u"
+
+
+SHADES = (0, 13, 63, 64, 89, 90, 100, 128, 190, 204, 205, 206, 254, 255)
+KINDS = {0: 1, 4: 2, 2: 3, 6: 4}
+"""Types of PNG → channels."""
+
+
+@pytest.mark.parametrize("negate", [0, 1])
+@pytest.mark.parametrize("mode", ["trinary", "scale", "raw"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_pictures_are_read_as_map_server_reads_them(tmp_path: Path, kind: int, mode: str, negate: int) -> None:
+    channels = KINDS[kind]
+    several = {1: [(a,) for a in range(256)], 2: [(a, b) for a in SHADES for b in SHADES]}
+    colours = [(a, a, a) for a in range(256)] + [(a, b, c) for a in SHADES for b in SHADES for c in (0, 205, 255)]
+    several.update({3: colours, 4: [(*one, opacity) for one in colours for opacity in (255, 0, 127)]})
+    pixels = several[channels]
+    rows = b"".join(b"\0" + bytes(pixel) for pixel in pixels)  # a pixel in each row
+    wide = b"\0" + bytes(value for pixel in pixels for value in pixel)  # and all in one
+    for width, height, data in ((1, len(pixels), rows), (len(pixels), 1, wide)):
+        (tmp_path / "floor.pgm").write_bytes(png(width, height, 8, kind, data))
+        (tmp_path / "map.yaml").write_text(GOOD.replace("negate: 0", f"negate: {negate}") + f"mode: {mode}\n")
+        ground = read_ground(tmp_path / "map.yaml", whole=True)
+        cells = [(k, 0) if height == 1 else (0, k) for k in range(len(pixels))]
+        found = "".join(ground.at(*ground.middle(*cell))[0] for cell in cells)
+        assert found == "".join(as_map_server(pixel, mode, bool(negate), 0.65, 0.196) for pixel in pixels)
+        assert ground.free_pixels() == bytes(kind == "f" for kind in found)
+
+
+def test_what_is_opaque_is_free_nowhere_where_opacity_counts_and_bright_is_occupied(tmp_path: Path) -> None:
+    (tmp_path / "floor.pgm").write_bytes(png(2, 1, 8, 6, b"\0" + bytes([0, 0, 0, 255, 0, 0, 0, 0])))
+    (tmp_path / "map.yaml").write_text(GOOD.replace("negate: 0", "negate: 1"))
+    assert read_ground(tmp_path / "map.yaml").free_pixels() == b"\0\1"
 
 
 def test_a_mode_that_map_server_does_not_know_is_reported(tmp_path: Path) -> None:

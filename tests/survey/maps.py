@@ -8,7 +8,7 @@ from typing import Any, Iterable, List, Tuple
 import numpy as np
 
 from pursue_gen.drawing.floor import MapSettings
-from pursue_gen.drawing.ground import Ground
+from pursue_gen.drawing.ground import Ground, cells_of
 from pursue_gen.survey.grid import Grid, grid_of
 
 WALL, UNKNOWN, FREE = 0, 205, 254
@@ -43,7 +43,7 @@ def three_rooms(door: float = 1.0, resolution: float = 0.05) -> Any:
 def ground_of(greys: Any, resolution: float = 0.05, origin: Tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Ground:
     """The ground of greys whose first row is the lowest one."""
     settings = MapSettings(Path("map.pgm"), resolution, *origin, False, 0.65, 0.196, "trinary")
-    return Ground(settings, greys.shape[1], greys.shape[0], greys[::-1].tobytes())
+    return Ground(settings, greys.shape[1], greys.shape[0], cells_of(settings, 1, [greys[::-1].tobytes()]))
 
 
 def cells(rows: List[str]) -> Grid:

@@ -1,4 +1,4 @@
-"""The greys of a PNG: what map_server makes of an image, for the usual kinds."""
+"""The pixels of a PNG, of the usual kinds."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 import struct
 import zlib
 from functools import lru_cache
-from typing import Optional, Tuple
+from typing import Iterator, Optional, Tuple
 
 _SIGNATURE = 8  # bytes
 _CHANNELS = {0: 1, 2: 3, 4: 2, 6: 4}  # channels by type of colour: grey, RGB, both with opacity
@@ -14,29 +14,32 @@ _CHANNELS = {0: 1, 2: 3, 4: 2, 6: 4}  # channels by type of colour: grey, RGB, b
 _NOT_ZERO = re.compile(rb"[^\0]")
 
 
-def greys(png: bytes) -> Optional[bytes]:
-    """A grey (0 to 255) for each pixel, row by row from the top; colours give their mean.
+def pixels(png: bytes) -> Optional[Tuple[int, Iterator[bytes]]]:
+    """The channels of a pixel (1: grey, 2: grey and opacity, 3: RGB, 4: RGB and opacity), and the rows from the top,
+    with a byte for each channel of each pixel.
 
-    None where the PNG is damaged, interlaced, has a palette, or other than eight bits per channel.
+    None where the PNG is damaged, interlaced, has a palette or a transparent grey, or other than 8 bits per channel.
     """
     width, height, depth, kind, _, _, interlaced = struct.unpack(">IIBBBBB", png[16:29])
-    if depth != 8 or interlaced or kind not in _CHANNELS:
+    if depth != 8 or interlaced or kind not in _CHANNELS or (kind == 0 and _chunks(png, b"tRNS")):
         return None
     channels = _CHANNELS[kind]
+    size = width * channels + 1
     try:
         unpacker = zlib.decompressobj()
-        size = height * (width * channels + 1)
-        data = unpacker.decompress(_chunks(png, b"IDAT"), size)  # no more, whatever the file unpacks to
+        data = unpacker.decompress(_chunks(png, b"IDAT"), height * size)  # no more, whatever the file unpacks to
     except zlib.error:
         return None
-    if len(data) < size or any(data[start] > 4 for start in range(0, size, width * channels + 1)):
+    if len(data) < height * size or any(data[start] > 4 for start in range(0, height * size, size)):
         return None
-    rows = []
-    before = bytes(width * channels)
-    for start in range(0, size, width * channels + 1):
-        before = _unfiltered(data[start], data[start + 1 : start + 1 + width * channels], before, channels)
-        rows.append(before if channels == 1 else _mean(before, channels))
-    return b"".join(rows)
+    return channels, _rows(data, size, channels)
+
+
+def _rows(data: bytes, size: int, channels: int) -> Iterator[bytes]:
+    before = bytes(size - 1)
+    for start in range(0, len(data), size):
+        before = _unfiltered(data[start], data[start + 1 : start + size], before, channels)
+        yield before
 
 
 def _chunks(png: bytes, name: bytes) -> bytes:
@@ -48,14 +51,6 @@ def _chunks(png: bytes, name: bytes) -> bytes:
             found.append(png[at + 8 : at + 8 + length])
         at += length + 12
     return b"".join(found)
-
-
-def _mean(row: bytes, channels: int) -> bytes:
-    """The greys of a row of colours; opacity does not count."""
-    colours = [row[channel::channels] for channel in range(1 if channels == 2 else 3)]
-    if all(colour == colours[0] for colour in colours):
-        return colours[0]
-    return bytes(sum(one) // len(one) for one in zip(*colours))
 
 
 def _unfiltered(kind: int, row: bytes, above: bytes, step: int) -> bytes:
