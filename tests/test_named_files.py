@@ -18,7 +18,8 @@ pytest.importorskip("cryptography", reason="cryptography is not installed")
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.draw.storage import version
-from pursue_gen.drawing.floor import read_floor, read_pixels
+from pursue_gen.drawing.floor import read_image
+from pursue_gen.drawing.floor_picture import read_floor
 from pursue_gen.files import read_text
 from pursue_gen.language.formatter_files import layout_of
 from pursue_gen.replay import read_recording
@@ -80,7 +81,7 @@ READERS: Dict[str, Callable[[Path], object]] = {
     "a version": version,
     "map.yaml": read_floor,
     "a map's image": image,
-    "an image": read_pixels,
+    "an image": read_image,
     "a recording": read_recording,
     "a workspace's game": game,
     "a network": lambda file: load_game([file, file]),

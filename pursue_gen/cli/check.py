@@ -70,14 +70,15 @@ def _moved(file: Path, distance: float) -> List[str]:
 
 
 def _on_map(files: List[Path], floor: Path, spot_distance: float) -> List[Diagnostic]:
-    """The findings on the map, for scenarios without errors. Raises PursueError for a map that cannot be used."""
+    """The findings on the map, for scenarios without errors but for ways that are missing. Raises PursueError for a map
+    that cannot be used."""
     from pursue_gen.drawing.ground import read_ground
-    from pursue_gen.language import load
-    from pursue_gen.workspace.map_check import check_spots
+    from pursue_gen.language.parser import read_text
+    from pursue_gen.workspace.map_check import check_spots, read_placed
 
     ground = read_ground(floor)
     found: List[Diagnostic] = []
     for file in files:
         with contextlib.suppress(PursueError):  # its errors are reported
-            found += check_spots(load(file), ground, spot_distance)
+            found += check_spots(read_placed(read_text(str(file)), str(file)), ground, spot_distance)
     return found

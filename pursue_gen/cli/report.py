@@ -66,7 +66,7 @@ def report(
     gets a page that says why.
     """
     from pursue_gen.cli.solution import naming_costs
-    from pursue_gen.drawing.floor import read_floor
+    from pursue_gen.drawing.floor_picture import read_floor
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.report.make import ReportOptions
     from pursue_gen.workspace.map_check import check_spots

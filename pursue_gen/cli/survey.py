@@ -103,10 +103,11 @@ def _surveyed(
     """The scenario, its copy, and the survey."""
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.language.parser import read_text
-    from pursue_gen.survey.make import read_scenario, surveyed
+    from pursue_gen.survey.make import surveyed
+    from pursue_gen.workspace.map_check import read_placed
 
     text = read_text(str(file))
-    scenario = read_scenario(text, str(file))
+    scenario = read_placed(text, str(file))
     robots = [agent.name for agent in scenario.agents if agent.is_robot and agent.mobile is not None]
     driven = replace(options, drive=replace(options.drive, speeds=_speeds(speed, robots)))
     found = surveyed(scenario, read_ground(floor, whole=True), floor.name, driven, copy_name)
@@ -115,7 +116,7 @@ def _surveyed(
 
 
 def _picture(scenario: Scenario, found: Survey, floor: Path, radius: float) -> bytes:
-    from pursue_gen.drawing.floor import read_floor
+    from pursue_gen.drawing.floor_picture import read_floor
     from pursue_gen.survey.picture import drawn
 
     return drawn(scenario, found, read_floor(floor), radius).encode("utf-8")

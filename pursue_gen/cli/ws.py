@@ -46,7 +46,7 @@ def ws(
     """
     from pursue_gen.cli.inputs import scenario_from
     from pursue_gen.cli.solution import solve_and_print
-    from pursue_gen.drawing.floor import read_floor
+    from pursue_gen.drawing.floor_picture import read_floor
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.workspace.make import Extras, make_workspace
     from pursue_gen.workspace.map_check import check_spots

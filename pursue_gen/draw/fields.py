@@ -81,7 +81,8 @@ def metres_of(values: Values, field: str) -> float:
     """A coordinate."""
     value = _float(values, field)
     if abs(value) > _FARTHEST:
-        raise refused(f"{field} is {value:g} metres", f"expected at most {_FARTHEST:g}")
+        message = f"{field} is off the map: farther than {_FARTHEST:,.0f} m from its origin"
+        raise refused(message, "expected metres on the map")
     return value
 
 

@@ -12,7 +12,7 @@ from pursue_gen.draw import fields, storage
 from pursue_gen.draw.jobs import Jobs
 from pursue_gen.draw.operations import ANYBODY, change
 from pursue_gen.draw.view import forms, view
-from pursue_gen.drawing.floor import read_floor
+from pursue_gen.drawing.floor_picture import CLOSE, read_floor
 from pursue_gen.drawing.ground import read_ground
 from pursue_gen.language.syntax import MOST_LETTERS
 from pursue_gen.lsp.positions import plain
@@ -28,7 +28,7 @@ class DrawPage:
         matter. Raises PursueError (exit status 2) for a map that cannot be used.
         """
         self.file, self.jobs, self._anew = file, jobs, anew
-        self._floor = None if plan is None else read_floor(plan)
+        self._floor = None if plan is None else read_floor(plan, CLOSE)
         self._ground = None if plan is None else read_ground(plan)
         self._lock = threading.Lock()
 

@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Iterable, Iterator, List, Optional
 
 from pursue_gen.diagnostics import Diagnostic, PursueError
-from pursue_gen.drawing.floor import Floor, read_floor
+from pursue_gen.drawing.floor import Floor
+from pursue_gen.drawing.floor_picture import read_floor
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Scenario

@@ -11,6 +11,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.draw.solve_work import ERRORS, Work, sentences, working
 from pursue_gen.drawing.ground import read_ground
 from pursue_gen.language.formatter import format_text
+from pursue_gen.workspace.map_check import read_placed
 
 SURVEYED = "surveyed"
 
@@ -43,11 +44,11 @@ def survey(given: SurveyWork, pipe: Connection) -> None:
 
 
 def _measured(given: SurveyWork, floor: Path) -> Dict[str, Any]:
-    from pursue_gen.survey.make import Options, read_scenario, surveyed  # needs numpy and scipy
+    from pursue_gen.survey.make import Options, surveyed  # needs numpy and scipy
     from pursue_gen.survey.texts import table
     from pursue_gen.survey.times import Drive
 
-    scenario = read_scenario(given.text, given.file)
+    scenario = read_placed(given.text, given.file)
     robots = [agent.name for agent in scenario.agents if agent.is_robot and agent.mobile is not None]
     speeds = {} if given.speed is None else dict.fromkeys(robots, given.speed)
     options = Options(radius=given.radius, ways=given.ways, drive=Drive(speeds))

@@ -18,7 +18,7 @@ from pursue_gen.lsp.forms import FORMS
 from pursue_gen.lsp.map_preview import drawable
 from pursue_gen.lsp.tokens import Statement
 from pursue_gen.solving.inputs import findings_of
-from pursue_gen.workspace.map_check import check_spots
+from pursue_gen.workspace.map_check import but_for_ways, check_spots
 from pursue_gen.workspace.spots import SPOT_DISTANCE
 
 _MOST_FINDINGS = 200
@@ -68,9 +68,11 @@ def forms() -> List[Dict[str, Any]]:
 def _findings(document: Document, ground: Optional[Ground]) -> Tuple[Diagnostic, ...]:
     """What `pursue-gen check` reports, with --map where there is a map."""
     found = findings_of(document.reading)
-    if ground is None or any(one.severity is Severity.ERROR for one in found):
+    scenario = document.reading.scenario
+    wrong = but_for_ways(scenario, found)
+    if ground is None or scenario is None or any(one.severity is Severity.ERROR for one in wrong):
         return found
-    return in_order((*found, *check_spots(document.scenario, ground, SPOT_DISTANCE)))
+    return in_order((*found, *check_spots(scenario, ground, SPOT_DISTANCE)))
 
 
 def _wanted(document: Document, findings: Sequence[Diagnostic]) -> List[str]:

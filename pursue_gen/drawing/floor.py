@@ -1,4 +1,4 @@
-"""A floor plan under the map: the image and the yaml that map_server reads."""
+"""A floor plan of map_server: what its yaml file and its image say."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ import base64
 import math
 import re
 import struct
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, Iterable, Optional, Tuple
+from typing import Any, Dict, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing.png_pixels import pixels
@@ -23,16 +22,11 @@ _LARGEST_FILE = 160 << 20
 
 _MODES = ("trinary", "scale", "raw")
 
-_MOST = 8_000_000
-"""Bytes of the picture in the page: what it is embedded in has to stay below 10 MB."""
-
-
 @dataclass(frozen=True)
 class Floor:
     """A floor plan. `uri`: the picture as data; `width`, `height` in pixels; `resolution` in metres per pixel.
 
     `x`, `y` (metres) and `yaw` (radians) say where its lower left corner is on the map, and how it is turned.
-    `negate`: bright pixels are occupied; a darkness above `occupied` (0 to 1) is an obstacle, one below `free` is free.
     """
 
     uri: str
@@ -42,9 +36,6 @@ class Floor:
     x: float
     y: float
     yaw: float
-    negate: bool = False
-    occupied: float = 0.65
-    free: float = 0.196
 
     @property
     def picture(self) -> bytes:
@@ -61,7 +52,10 @@ class Floor:
 
 @dataclass(frozen=True)
 class MapSettings:
-    """What the yaml file of a map says: the file of its image, and the rest as in `Floor`. `mode` is map_server's."""
+    """What the yaml file of a map says: the file of its image, and what `Floor` has of it; `mode` is map_server's.
+
+    `negate`: bright pixels are occupied; a darkness above `occupied` (0 to 1) is an obstacle, one below `free` is free.
+    """
 
     image: Path
     resolution: float
@@ -72,18 +66,6 @@ class MapSettings:
     occupied: float
     free: float
     mode: str
-
-
-def read_floor(file: Path) -> Floor:
-    """The floor plan of a yaml file of map_server. Raises PursueError (exit status 2)."""
-    settings = read_settings(file)
-    content, width, height = _image(settings.image)
-    if len(content) > _MOST:
-        message = f"{settings.image.name} takes {len(content) / 1e6:.1f} MB as PNG"
-        raise unusable(file, message, f"an image below {_MOST / 1e6:g} MB: cut it, or make it smaller")
-    uri = "data:image/png;base64," + base64.b64encode(content).decode("ascii")
-    one = settings
-    return Floor(uri, width, height, one.resolution, one.x, one.y, one.yaw, one.negate, one.occupied, one.free)
 
 
 def read_settings(file: Path) -> MapSettings:
@@ -107,17 +89,30 @@ def read_settings(file: Path) -> MapSettings:
     return MapSettings(file.parent / image, resolution, x, y, yaw, negate, occupied, free, str(mode))
 
 
-def read_pixels(file: Path) -> Tuple[Optional[Tuple[int, Iterable[bytes]]], int, int]:
-    """The channels and the rows of an image of a map, as `png_pixels.pixels` has them, and its width and height.
+@dataclass(frozen=True)
+class Image:
+    """An image of a map: its file's `content`, its size in pixels; of each pixel so many `channels` (1: grey, 2: grey
+    and opacity, 3: RGB, 4: RGB and opacity); `rows`, from the top, with a byte for each channel of each pixel.
 
-    None for the pixels of a PNG of an unusual kind. Raises PursueError (exit status 2).
+    `rows` is None for a PNG of an unusual kind.
     """
+
+    content: bytes
+    width: int
+    height: int
+    channels: int
+    rows: Optional[Tuple[bytes, ...]]
+
+
+def read_image(file: Path) -> Image:
+    """The image of a map. Raises PursueError (exit status 2)."""
     content = _content(file)
     if content.startswith(SIGNATURE):
         width, height = _png_size(file, content)
-        return pixels(content), width, height
+        channels, rows = pixels(content) or (1, None)
+        return Image(content, width, height, channels, rows)
     greys, width, height = _pgm_greys(file, content)
-    return (1, [greys]), width, height
+    return Image(content, width, height, 1, tuple(greys[k : k + width] for k in range(0, len(greys), width)))
 
 
 def _yaml(file: Path) -> Dict[str, Any]:
@@ -129,15 +124,6 @@ def _yaml(file: Path) -> Dict[str, Any]:
     if not isinstance(data, dict):
         raise unusable(file, "it holds no settings", "the lines image:, resolution: and origin:")
     return data
-
-
-def _image(file: Path) -> Tuple[bytes, int, int]:
-    """The image as PNG, its width and height."""
-    content = _content(file)
-    if content.startswith(SIGNATURE):
-        return content, *_png_size(file, content)
-    values, width, height = _pgm_greys(file, content)
-    return _png(values, width, height), width, height
 
 
 def _content(file: Path) -> bytes:
@@ -204,17 +190,6 @@ def _sized(file: Path, width: int, height: int) -> Tuple[int, int]:
     if not width or not height or width * height > LARGEST:
         raise unusable(file, f"it has {width} times {height} pixels", f"1 to {LARGEST // 1_000_000} million pixels")
     return width, height
-
-
-def _png(values: bytes, width: int, height: int) -> bytes:
-    """Eight bits of grey per pixel as PNG."""
-
-    def chunk(kind: bytes, data: bytes) -> bytes:
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    rows = b"".join(b"\x00" + values[k * width : (k + 1) * width] for k in range(height))
-    head = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
-    return SIGNATURE + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b"")
 
 
 def _number(file: Path, data: Dict[str, Any], key: str, default: Optional[float] = None) -> float:

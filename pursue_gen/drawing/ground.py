@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Iterable, Optional, Sequence, Tuple
 
-from pursue_gen.drawing.floor import MapSettings, read_pixels, read_settings, unusable
+from pursue_gen.drawing.floor import MapSettings, read_image, read_settings, unusable
 
 FREE, OCCUPIED, UNKNOWN, OUTSIDE = "free", "occupied", "unknown", "outside"
 _KINDS = (UNKNOWN, FREE, OCCUPIED)
@@ -58,15 +58,16 @@ class Ground:
 def read_ground(file: Path, whole: bool = False) -> Ground:
     """The ground of a yaml file of map_server; `whole`: its pixels must be known. Raises PursueError (status 2)."""
     settings = read_settings(file)
-    found, width, height = read_pixels(settings.image)
-    if whole and found is None:
+    image = read_image(settings.image)
+    if whole and image.rows is None:
         expected = "a PGM, or a PNG of 8 bits per channel without palette and interlacing"
         raise unusable(settings.image, "its pixels cannot be read", expected)
-    return Ground(settings, width, height, None if found is None else cells_of(settings, *found))
+    cells = None if image.rows is None else cells_of(settings, image.channels, image.rows)
+    return Ground(settings, image.width, image.height, cells)
 
 
 def cells_of(settings: MapSettings, channels: int, rows: Iterable[bytes]) -> bytes:
-    """The kinds of pixels, as map_server 1.17 has them (`image_loader.cpp`).
+    """The kinds of pixels (0: unknown), as map_server 1.17 has them (`image_loader.cpp`).
 
     It counts the mean of the colours, and in mode trinary of the colours and the opacity; grey with opacity is read as
     RGB with opacity.

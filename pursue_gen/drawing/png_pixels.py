@@ -14,7 +14,7 @@ _CHANNELS = {0: 1, 2: 3, 4: 2, 6: 4}  # channels by type of colour: grey, RGB, b
 _NOT_ZERO = re.compile(rb"[^\0]")
 
 
-def pixels(png: bytes) -> Optional[Tuple[int, Iterator[bytes]]]:
+def pixels(png: bytes) -> Optional[Tuple[int, Tuple[bytes, ...]]]:
     """The channels of a pixel (1: grey, 2: grey and opacity, 3: RGB, 4: RGB and opacity), and the rows from the top,
     with a byte for each channel of each pixel.
 
@@ -32,7 +32,7 @@ def pixels(png: bytes) -> Optional[Tuple[int, Iterator[bytes]]]:
         return None
     if len(data) < height * size or any(data[start] > 4 for start in range(0, height * size, size)):
         return None
-    return channels, _rows(data, size, channels)
+    return channels, tuple(_rows(data, size, channels))
 
 
 def _rows(data: bytes, size: int, channels: int) -> Iterator[bytes]:

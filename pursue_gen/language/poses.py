@@ -139,7 +139,7 @@ def _read_list(item: _Item, span: Span, what: str, form: str) -> Tuple[Optional[
         return None, (error("PML020", f"{what} has seven numbers, here are {len(items)}", span, form),)
     numbers = tuple(float(one) for one in items)
     if any(abs(number) > _FARTHEST for number in numbers):
-        message = f"{what} farther than a thousand kilometres away cannot be meant"
+        message = f"{what} is off the map: farther than {_FARTHEST:,.0f} m from its origin"
         return None, (error("PML020", message, span, form),)
     return _pose_of(numbers, span)
 

@@ -35,10 +35,6 @@ _STOREY = 0.5
 _LONGER = 1.3
 """So much longer than by way of the places a path in the graph is between spots beside them, at most, more or less."""
 
-_OF_WAYS = frozenset(("PML153", "PML154", "PML201", "PML230"))
-"""Errors that a scenario has because it has no ways yet."""
-
-
 @dataclass(frozen=True)
 class Options:
     """What a survey assumes. `radius` of the robots and `clearance` between two of them, in metres; `unit`: metres per
@@ -92,17 +88,8 @@ class Survey:
     spots: Mapping[str, Mapping[str, Pose]]
 
 
-def read_scenario(text: str, file: str) -> Scenario:
-    """A scenario for a survey: without errors, but perhaps without ways. Raises PursueError."""
-    reading = read(text, file)
-    findings = check_reading(reading)
-    if reading.scenario is not None and not reading.scenario.connections:
-        findings = tuple(finding for finding in findings if finding.code not in _OF_WAYS)
-    return without_errors(reading.scenario, findings)
-
-
 def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options, copy: str = "") -> Survey:
-    """The survey of a scenario (`read_scenario`) on the map with this name; `copy`: the file to which it is written.
+    """The survey of a scenario (`read_placed`) on the map with this name; `copy`: the file to which it is written.
 
     A scenario without ways gets those that are missing in any case. Raises PursueError where nothing can be measured.
     """

@@ -10,11 +10,16 @@ from pursue_gen.diagnostics import Diagnostic, Span, warning
 from pursue_gen.drawing.clearance import Clearance
 from pursue_gen.drawing.ground import FREE, OCCUPIED, OUTSIDE, UNKNOWN, Ground
 from pursue_gen.language.behaviour import robots_at
+from pursue_gen.language.checks import check_reading
+from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.workspace.spots import placing
 
 RADIUS = 0.3
 """Metres from the middle of a robot to its farthest part, by default."""
+
+_OF_WAYS = frozenset(("PML153", "PML154", "PML201", "PML230"))
+"""Errors that a scenario has because it has no ways yet."""
 
 _SAYS = {
     OUTSIDE: "is off the map",
@@ -22,6 +27,19 @@ _SAYS = {
     UNKNOWN: "is unknown to the map",
 }
 """What a message says on ground that is not free."""
+
+
+def read_placed(text: str, file: str) -> Scenario:
+    """A scenario whose places can be looked at on a map: without errors, perhaps without ways. Raises PursueError."""
+    reading = read(text, file)
+    return without_errors(reading.scenario, but_for_ways(reading.scenario, check_reading(reading)))
+
+
+def but_for_ways(scenario: Optional[Scenario], findings: Sequence[Diagnostic]) -> Tuple[Diagnostic, ...]:
+    """The findings, without those that a scenario has because it has no ways yet."""
+    if scenario is None or scenario.connections:
+        return tuple(findings)
+    return tuple(finding for finding in findings if finding.code not in _OF_WAYS)
 
 
 def check_spots(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import http.client
 import json
 import os
+import re
 import stat
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -251,6 +252,8 @@ def test_the_floor_plan_lies_under_the_picture_where_its_origin_and_its_turn_say
     text = WON.replace('poi "a"', 'poi "a" //[0, 3, 0, 0, 0, 0, 1]').replace('"b"', '"b" //[99, 0, 0, 0, 0, 0, 1]')
     found = page.answer("view", {"text": text})["view"]["findings"]
     assert "WSP008" in [one["code"] for one in found]
+    found = page.answer("view", {"text": re.sub("connect.*\n", "", text)})["view"]["findings"]
+    assert {"PML153", "WSP008"} <= {one["code"] for one in found}, "before there are ways, too"
 
 
 def test_a_text_is_solved_beside_the_page_and_can_be_given_up(served: DrawServer) -> None:
@@ -277,12 +280,13 @@ def test_ways_are_measured_on_the_map_as_survey_does(tmp_path: Path) -> None:
     settings = {"radius": 0.3, "speed": 0.4, "ways": True}
     page.answer("survey", {"text": text, **settings})
     done = until(lambda: page.answer("job", {})["state"] == "ended" and page.answer("job", {}), "the end")
-    from pursue_gen.survey.make import Options, read_scenario, surveyed
+    from pursue_gen.survey.make import Options, surveyed
     from pursue_gen.survey.times import Drive
+    from pursue_gen.workspace.map_check import read_placed
 
     ground = read_ground(rooms.with_suffix(".yaml"), whole=True)
     options = Options(ways=True, drive=Drive({"bot1": 0.4, "bot2": 0.4}))
-    copy = surveyed(read_scenario(text, rooms.name), ground, "three_rooms.yaml", options).text
+    copy = surveyed(read_placed(text, rooms.name), ground, "three_rooms.yaml", options).text
     assert done["surveyed"] == format_text(copy, "copy.pur")
     assert any(line.startswith("hall - shelf") for line in done["lines"])
     page.answer("survey", {"text": "poi", **settings})

@@ -14,7 +14,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.drawing.floor import Floor, read_floor
+from pursue_gen.drawing.floor import Floor
+from pursue_gen.drawing.floor_picture import read_floor
 from pursue_gen.drawing.ground import read_ground
 
 GOOD = "image: floor.pgm\nresolution: 0.05\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\n"
@@ -155,6 +156,57 @@ def test_whatever_the_files_hold_there_is_a_plan_or_a_message(
             assert problem.diagnostics[0].hint
         else:
             assert floor.width * floor.height > 0
+
+
+def shown(folder: Path, rows: List[str], text: str = GOOD, most: int = 1200) -> Tuple[Floor, List[str]]:
+    """The floor plan of a drawing (`#` a wall, `.` free, `?` unknown; cells of 0.5 m), and its picture as one."""
+    shades = {"#": 0, ".": 254, "?": 205}
+    image = b"P5 %d %d 255\n" % (len(rows[0]), len(rows)) + bytes(shades[one] for row in rows for one in row)
+    (folder / "floor.pgm").write_bytes(image)
+    (folder / "map.yaml").write_text(text.replace("0.05", "0.5"))
+    floor = read_floor(folder / "map.yaml", most)
+    width, height, found = greys(floor)
+    assert (width, height) == (floor.width, floor.height)
+    signs = "".join({0: "#", 254: ".", 205: "?"}[one] for one in found)
+    return floor, [signs[k : k + width] for k in range(0, len(signs), width)]
+
+
+def test_unknown_ground_around_what_is_known_is_left_out(tmp_path: Path) -> None:
+    rows = ["?" * 9, "?" * 9, "????#.???", "????..???", "?" * 9, "?" * 9, "?" * 9]
+    floor, found = shown(tmp_path, rows)
+    assert found == ["????", "?#.?", "?..?", "????"], "half a metre of it stays"
+    assert (floor.x, floor.y, floor.resolution) == (-1 + 3 * 0.5, 2 + 2 * 0.5, 0.5)
+    turned, _ = shown(tmp_path, rows, GOOD.replace("2.0, 0.0", "2.0, 1.5707963267948966"))
+    assert (turned.x, turned.y) == pytest.approx((-1 - 2 * 0.5, 2 + 3 * 0.5))
+    floor, found = shown(tmp_path, ["??", "??"])
+    assert found == ["??", "??"], "all of it where nothing is known"
+
+
+def test_walls_of_one_pixel_are_seen_on_a_picture_that_is_smaller_than_the_map(tmp_path: Path) -> None:
+    rows = ["....#..", "....#..", "....#..", ".......", "##?...."]
+    floor, found = shown(tmp_path, rows, most=4)
+    assert found == ["..#.", "..#.", "#?.."]
+    assert (floor.x, floor.y, floor.resolution) == (-1, 2 - 0.5, 1.0), "what is missing below is empty"
+    rows = [row.translate(str.maketrans("#.", ".#")) for row in rows]
+    _, found = shown(tmp_path, rows[:4], GOOD.replace("negate: 0", "negate: 1"), 4)
+    assert found == ["##.#", "##.#"], "bright is a wall there"
+
+
+def test_colours_stay_and_squares_of_them_become_the_darkest(tmp_path: Path) -> None:
+    pixels = bytes([9, 200, 30, 8, 210, 40, 254, 254, 254, 254, 254, 254])
+    floor = plan(tmp_path, png(4, 1, 8, 2, b"\0" + pixels))
+    assert floor.picture == png_of(4, 1, 2, b"\0" + pixels) and (floor.width, floor.height) == (4, 1)
+    small = read_floor(tmp_path / "map.yaml", 2)
+    assert small.picture == png_of(2, 1, 2, b"\0" + bytes([8, 200, 30, 254, 254, 254])) and small.resolution == 0.1
+
+
+def png_of(width: int, height: int, kind: int, rows: bytes) -> bytes:
+    """A PNG as this program writes it: all pixels in one chunk."""
+    content = png(width, height, 8, kind, rows)
+    first = content.index(b"IDAT") - 4
+    packed = zlib.compress(rows, 9)
+    chunk = struct.pack(">I", len(packed)) + b"IDAT" + packed + struct.pack(">I", zlib.crc32(b"IDAT" + packed))
+    return content[:first] + chunk + content[content.index(b"IEND") - 4 :]
 
 
 # The ground -----------------------------------------------------------------------------------------------------------

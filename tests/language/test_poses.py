@@ -61,8 +61,8 @@ def test_only_the_line_of_a_poi_holds_its_pose() -> None:
         ("//[1, , 3, 0, 0, 0, 1]", "PML020", "its item 2 is empty"),
         ("//[]", "PML020", "its item 1 is empty"),
         ("//[1, 2, 3, 0, 0, 0, 1", "PML020", "not closed"),
-        ("//[1e9, 2, 3, 0, 0, 0, 1]", "PML020", "farther than a thousand kilometres"),
-        ("//[1e999, 2, 3, 0, 0, 0, 1]", "PML020", "farther than a thousand kilometres"),
+        ("//[1e9, 2, 3, 0, 0, 0, 1]", "PML020", "off the map: farther than 1,000,000 m"),
+        ("//[1e999, 2, 3, 0, 0, 0, 1]", "PML020", "off the map: farther than 1,000,000 m"),
         ("//[1, 2, 3, 0, 0, 0, 0]", "PML021", "no direction"),
     ],
 )

@@ -20,7 +20,7 @@ import pytest
 pytest.importorskip("cryptography", reason="cryptography is not installed")
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.drawing.floor import read_floor
+from pursue_gen.drawing.floor_picture import read_floor
 from pursue_gen.language.parser import parse
 from pursue_gen.replay.game import read_game
 from pursue_gen.replay.read import read_recording

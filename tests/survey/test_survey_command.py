@@ -122,6 +122,8 @@ def test_a_place_in_a_wall_is_found_first_and_the_copy_is_written_though_it_has_
     line = re.search(r"rooms_surveyed\.pur:(\d+):\d+: error PML153: bot1 can never do drop", done.err)
     assert line and "can_do fetch, drop" in copied().splitlines()[int(line[1]) - 1], "as a line of the copy"
     assert re.search(r"\nconnect desk and shelf distance 1\d", copied()), "what can be measured is"
+    checked = pursue("check", "rooms.pur", "--map", "map.yaml")
+    assert checked.status == 3 and "WSP008: the pose of hall (4, 1) is in an obstacle" in checked.out
     with_json = json.loads(surveyed("--json", "--dry-run", text=text, status=3).out)
     assert {one["code"] for one in with_json["findings"]} == {"WSP008", "PML153"} and with_json["ways"]
 

@@ -11,8 +11,9 @@ from pursue_gen.diagnostics import Severity
 from pursue_gen.drawing.ground import Ground
 from pursue_gen.language import check, parse
 from pursue_gen.language.formatter import format_text
-from pursue_gen.survey.make import Options, Survey, read_scenario, surveyed
+from pursue_gen.survey.make import Options, Survey, surveyed
 from pursue_gen.survey.times import Drive
+from pursue_gen.workspace.map_check import read_placed
 from tests.conftest import ROOT
 from tests.survey.maps import drawn, ground_of
 
@@ -43,7 +44,7 @@ def test_a_copy_is_sound_and_is_its_own_copy(file: Path, ways: bool) -> None:
     text = with_poses(file.read_text(encoding="utf-8"))
 
     def survey(text: str) -> Survey:
-        scenario = read_scenario(text, str(file))
+        scenario = read_placed(text, str(file))
         speeds = {agent.name: 0.5 for agent in scenario.agents if agent.is_robot and agent.mobile is not None}
         return surveyed(scenario, ground(text), "map.yaml", Options(radius=0.2, ways=ways, drive=Drive(speeds)))
 

@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.drawing import floor as desk
+from pursue_gen.drawing import floor_picture as desk
 from pursue_runtime.data import DataError
 from pursue_runtime.ui.floor import read_floor
 from tests.authoring.commands import pursue
