@@ -7,7 +7,7 @@ names there, or their labels; all other words stay as they are.
 from __future__ import annotations
 
 from string import Formatter
-from typing import Callable, List, Optional, Protocol, Tuple
+from typing import Callable, List, Optional, Protocol, Set, Tuple
 
 
 class Names(Protocol):
@@ -46,6 +46,24 @@ def in_words(sentence: str, shown: Callable[[str], str] = str) -> str:
     sentence stays as it is."""
     parts = _parts(sentence)
     return sentence if parts is None else "".join(text + (shown(name) if name else "") for text, name in parts)
+
+
+class Told:
+    """What was said of the reason of a mission that holds. Parts of the reason (between semicolons) come and go while
+    plans are looked for: people read each of them once."""
+
+    def __init__(self) -> None:
+        self._said: Set[str] = set()
+
+    def news(self, reason: str) -> str:
+        """Return the parts of the reason that were not said before; "" if there are none."""
+        parts = [part for part in reason.split("; ") if part not in self._said]
+        self._said.update(parts)
+        return "; ".join(parts)
+
+    def forget(self) -> None:
+        """Begin anew: the mission goes on."""
+        self._said.clear()
 
 
 def _parts(sentence: str) -> Optional[List[Tuple[str, str]]]:

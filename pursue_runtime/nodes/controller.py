@@ -110,7 +110,7 @@ class Controller:
             self.ending.end(0)
         elif state.status in (LOST, STOPPED):
             if not self.ending.called:  # states come several times
-                rospy.logerr("the mission is %s: %s", state.status, in_words(state.reason))
+                rospy.logwarn("the mission is %s", state.status)  # the observer and the UI say why
             self.ending.end(1)
 
     def wake(self) -> None:

@@ -8,6 +8,7 @@ from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Assumption, Move, Position
 from pursue_runtime.observer import life
 from pursue_runtime.observer.assumptions import Breach, breach, overstayed
+from pursue_runtime.observer.lateness import late_words, untimely_words
 from pursue_runtime.observer.mission_status import MissionStatus
 from pursue_runtime.observer.orders import first_overdue
 from pursue_runtime.observer.planning import stays
@@ -133,7 +134,7 @@ class Mission(MissionStatus):
                 has_broken = True
                 continue
             self.late.add(name)
-            self._log("warn", f"{name} is late: it should have left {place} by now")
+            self._log("warn", in_words(late_words(automaton, position)))
         for name, delay in self._late_agents(position):
             if delay + self._lost_after <= EPSILON:
                 self._mark_lost(name, f"is late by {self._lost_after:g} time units")
@@ -184,7 +185,8 @@ class Mission(MissionStatus):
         untimed = self.model.joint_move(position, word.event, word.agent, timed=False)
         if untimed and word.seq is None:
             self.counts["untimely"] += 1
-            self._log("warn", f"{word.event} is outside the model's time window; the state follows the report")
+            doer = self.model.automaton(untimed[0].automaton)
+            self._log("warn", in_words(untimely_words(doer, untimed, position)))
             return untimed
         delay = due([untimed[0].edge.when], position.clocks, EPSILON) if untimed else None
         if delay is not None and delay <= self._tolerance:

@@ -13,7 +13,7 @@ from pursue_runtime.observer.planning import Planning
 from pursue_runtime.observer.robots import Robots
 from pursue_runtime.observer.shared_ends import ALL, SharedEnds
 from pursue_runtime.observer.ways import Ways
-from pursue_runtime.sentences import in_words
+from pursue_runtime.sentences import Told, in_words
 from pursue_runtime.state import WON, SystemState
 from pursue_runtime.strategy import Cover, Entry
 from pursue_runtime.words import Word
@@ -56,6 +56,7 @@ class MissionState:
         self.late: Set[str] = set()
         self.lost: Dict[str, str] = {}  # and why
         self.silent: Set[str] = set()
+        self._told = Told()  # what was logged of the reason since the mission holds
         self.ways = Ways(model)
         self.robots = Robots(model)
         self.orders = Orders(model)

@@ -138,14 +138,16 @@ class MissionStatus(MissionState):
             if not awaited:
                 self._conclude(life.STOP, trouble, now)
                 return
-            reasons.append(f"waiting for {awaited}: {trouble}")
+            reasons.append(f"{trouble}; waiting for {awaited}")
         reason = "; ".join(reasons)
         if reason == self.reason and bool(reasons) == (self.status == HOLDING):
             return
         if reasons:
-            self._log("warn", f"the mission holds: {in_words(reason)}")
+            news = self._told.news(reason)
+            self._log("warn" if news else "debug", f"the mission holds: {in_words(news or reason)}")
             self._life.take(life.HOLD, reason)
         else:
+            self._told.forget()
             self._log("info", "the mission goes on")
             self._life.take(life.GO_ON)
 

@@ -24,7 +24,7 @@ def uncovered_reason(
     matter to it. The sentence is the same while only time passes. `late`: the agents that are; `tolerance` as in
     `covers`."""
     if late:
-        who = [f"{marked(name)} is late {_doing(model.automaton(name), position)}" for name in sorted(late)]
+        who = [f"{marked(name)} is late {doing(model.automaton(name), position)}" for name in sorted(late)]
         return f"{_joined(who)}, and the strategy does not say what to do then"
     where = _where(model, cover, position)
     if not cover.zones(SystemState(0, 0.0, *position)):
@@ -46,12 +46,12 @@ def _where(model: Model, cover: Cover, position: Position) -> str:
     acting = model.of_kind(*ACTING)
     named = [automaton for automaton in acting if automaton.name in cover.names] or acting
     shown = named[:SHOWN] if len(named) > SHOWN + 1 else named
-    parts = [f"{marked(each.name)} is {_doing(each, position)}" for each in shown]
+    parts = [f"{marked(each.name)} is {doing(each, position)}" for each in shown]
     more = len(named) - len(shown)
     return _joined([*parts, f"{more} others are elsewhere"] if more else parts)
 
 
-def _doing(automaton: Automaton, position: Position) -> str:
+def doing(automaton: Automaton, position: Position) -> str:
     """What an agent does, behind `is`: `at c`, `on its way to b`, `doing catch at b`."""
     here = position.locations[automaton.name]
     begins = [edge for edge in automaton.edges if edge.target == here != edge.source]

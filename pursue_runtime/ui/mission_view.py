@@ -11,7 +11,7 @@ from pursue_runtime.locations import is_end, is_movement
 from pursue_runtime.model import Edge, Model
 from pursue_runtime.phrases import not_promised, phrase, sentence, where
 from pursue_runtime.resend import resend_timeout
-from pursue_runtime.sentences import in_words
+from pursue_runtime.sentences import Told, in_words
 from pursue_runtime.simulator.simulator import ACTING, report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
@@ -162,7 +162,7 @@ class MissionView:
         """`orders`: the part of the strategy that people carry out."""
         self.state: Optional[SystemState] = None
         self.start: Optional[float] = None
-        self._model = model
+        self._model, self._told = model, Told()
         self._environment = player
         self._orders = None if orders is None else Plans(orders)
         self._since: Dict[Entry, SystemState] = {}  # in which is decided what stands in the present state
@@ -289,9 +289,10 @@ class MissionView:
         if state.event and (last is None or last.seq != state.seq):
             lines.append(f"{self.elapsed(state.stamp):8.1f}  {sentence(self._model, state, last)}")
         if state.status == HOLDING:
-            why = in_words(state.reason, self._model.shown)
-            lines.append(f"{self.elapsed(state.stamp):8.1f}  the mission holds: {why}")
+            why = in_words(self._told.news(state.reason or "no reason is given"), self._model.shown)
+            lines += [f"{self.elapsed(state.stamp):8.1f}  the mission holds: {why}"] if why else []
         if state.status == RUNNING:
+            self._told.forget()
             instructions = [self._instruction(person, state, last) for person in sorted(self._people)]
             lines += [f"          {instruction}" for instruction in instructions if instruction]
         return lines

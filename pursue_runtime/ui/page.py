@@ -21,7 +21,7 @@ from pursue_runtime.phrases import (
     sentence,
 )
 from pursue_runtime.poses import read_poses
-from pursue_runtime.sentences import in_words
+from pursue_runtime.sentences import Told, in_words
 from pursue_runtime.simulator.simulator import ACTING, end_window, report_word
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
 from pursue_runtime.strategy import Strategy
@@ -102,6 +102,7 @@ class Page:
         `promise`: what is to be achieved; `strategies`: those of all controllers, where they are known; `floor`: what
         lies under the map."""
         self._model = model
+        self._told = Told()
         self._statuses = statuses
         self._promise = promise
         watching = {name for objective in promise.objectives for name in objective.of}
@@ -188,10 +189,11 @@ class Page:
                 fresh.append(self.note(at, f"{self._model.shown(name)} is back"))
             if last.plan != state.plan:
                 fresh.append(self.note(at, f"plan {state.plan} is in force"))
-        if state.status == HOLDING and (last is None or (last.status, last.reason) != (HOLDING, state.reason)):
-            why = in_words(state.reason, self._model.shown) or "no reason is given"
-            fresh.append(self.note(at, f"the mission holds: {why}", BAD))
+        news = self._told.news(state.reason or "no reason is given") if state.status == HOLDING else ""
+        if news:
+            fresh.append(self.note(at, f"the mission holds: {in_words(news, self._model.shown)}", BAD))
         if last is not None and last.status == HOLDING and state.status == RUNNING:
+            self._told.forget()
             fresh.append(self.note(at, "the mission goes on"))
         return fresh
 

@@ -14,6 +14,7 @@ from pursue_runtime.observer.uncovered import uncovered_reason
 from pursue_runtime.sentences import in_words
 from pursue_runtime.strategy import read_cover
 from tests.runtime.models import model_data, worker
+from tests.runtime.observer.test_holding import EVERYWHERE, planned
 from tests.runtime.observer.test_mission import CHASE, Journey
 from tests.runtime.texts import read
 
@@ -27,6 +28,8 @@ cover:
 - state: {bot: b, thief: b}
   wait: [Cbot - Creach <= -5 && Cbot <= 20]
 """
+
+ANYWHERE = "format: 1\ncover: [{state: {}, wait: [always]}]\n"
 
 TECHNICAL = re.compile(r"=|\b[CPS](bot|thief|reach|rule|open)\b|_")
 """What no sentence for people has: values, names of clocks and variables, locations of automata."""
@@ -50,7 +53,45 @@ def test_who_is_late_is_named_with_what_it_does() -> None:
     )
     made.mission.on_no_plan(made.mission.plan_request.number, "'do catch' cannot be guaranteed from here", moment)
     state = made.hear("_ping_", moment)
-    assert state.reason.startswith("waiting for {bot}: {bot} is late on its way to {b}, and ")
+    why = "{bot} is late on its way to {b}, and the strategy does not say what to do then"
+    assert state.reason == f"{why}; no other plan: 'do catch' cannot be guaranteed from here; waiting for {{bot}}"
+
+
+def test_the_log_has_each_part_of_a_reason_once_while_the_mission_holds() -> None:
+    made = journey(lost_after=100.0, controllers=("one", "two"))
+    made.hear("bot_a2b", 2.0)
+    moment, state = made.tick_from(2.0)
+    while state is None or state.status == "running":
+        moment, state = made.tick_from(moment)
+    for word in ("thief_leaves", "going_a_to_b:_blocked_"):  # with each there is another search, and no plan again
+        made.mission.on_no_plan(made.mission.plan_request.number, "it cannot be guaranteed from here", 11.0)
+        assert made.hear(word, 11.0).status == "holding"
+    made.mission.on_no_plan(made.mission.plan_request.number, "it cannot be guaranteed from here", 11.0)
+    assert [text for level, text in made.logs if "the mission holds" in text and level == "warn"] == [
+        "the mission holds: bot is late on its way to b, and the strategy does not say what to do then;"
+        " looking for another plan",
+        "the mission holds: no other plan: it cannot be guaranteed from here; waiting for bot",
+        "the mission holds: the way between a and b is blocked",
+    ]
+    made.hear("going_a_to_b:_free_", 12.0)
+    made.hear("bot_going_a_to_b2b", 12.5)
+    planned(made, EVERYWHERE, 12.6)
+    assert made.mission.status == "running"
+    made.hear("going_a_to_b:_blocked_", 13.0)
+    assert made.logs[-1] == ("warn", "the mission holds: the way between a and b is blocked; looking for another plan")
+
+
+def test_who_is_late_and_what_happens_too_early_or_too_late_is_said_as_people_would() -> None:
+    made = journey(ANYWHERE)
+    made.hear("bot_a2b", 2.0)
+    made.hear("bot_going_a_to_b2b", 3.5)
+    assert made.logs[-2] == ("warn", "bot arrives at b 1.5 time units too early; the mission goes on from there")
+    made = journey(ANYWHERE)
+    made.hear("bot_a2b", 2.0)
+    made.mission.on_time(6.5)
+    assert ("warn", "bot is late: it is still on its way to b") in made.logs
+    made.hear("bot_going_a_to_b2b", 7.0)
+    assert not [text for _, text in made.logs if "too" in text], "it was late: that is said already"
 
 
 @pytest.mark.parametrize(("words", "reason"), [

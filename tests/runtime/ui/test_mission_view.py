@@ -413,3 +413,17 @@ def test_a_state_that_comes_late_is_no_news() -> None:
     shown.on_state(now, 110.0)
     assert shown.on_state(at(2, 105.0, bot="going_a_to_b", event="bot_a2b"), 111.0) == []
     assert shown.state == now
+
+
+def test_each_part_of_a_reason_is_printed_once_while_the_mission_holds() -> None:
+    view = mission()
+    view.on_state(at(1, 100.0, event="_start_"), 100.0)
+    told = []
+    late = "{bot} is late"
+    states = [(f"{late}; looking", "holding"), (f"{late}; no plan", "holding"), (f"{late}; looking", "holding")]
+    for number, (reason, status) in enumerate([*states, ("", "running"), (late, "holding"), ("", "holding")], 2):
+        told += view.on_state(at(number, 100.0 + number, status=status, reason=reason), 100.0 + number)
+    assert [line.split("  ", 1)[1].strip() for line in map(str.strip, told)] == [
+        "the mission holds: bot is late; looking", "the mission holds: no plan", "the mission holds: bot is late",
+        "the mission holds: no reason is given",
+    ]

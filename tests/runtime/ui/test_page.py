@@ -206,6 +206,21 @@ def test_the_log_tells_of_holding_of_lost_agents_and_of_new_plans() -> None:
     ]
 
 
+def test_the_log_has_each_part_of_a_reason_once_while_the_mission_holds() -> None:
+    shown = page()
+    shown.on_state(at(1, 100.0, event="_start_"), 0.0)
+    late, moment = "{bot} is late", 1
+    for reason in (f"{late}; looking", f"{late}; no plan; waiting", f"{late}; looking", f"{late}; no plan; waiting"):
+        moment += 1
+        shown.on_state(at(moment, 100.0 + moment, status="holding", reason=reason), float(moment))
+    shown.on_state(at(moment + 1, 110.0), 10.0)
+    shown.on_state(at(moment + 2, 111.0, status="holding", reason=late), 11.0)
+    assert [entry["text"] for entry in shown.log[1:]] == [
+        "the mission holds: bot is late; looking", "the mission holds: no plan; waiting", "the mission goes on",
+        "the mission holds: bot is late",
+    ]
+
+
 def test_the_log_keeps_what_is_new() -> None:
     shown = page()
     for number in range(MAX_ENTRIES + 5):
