@@ -11,7 +11,7 @@ from typing import List, Optional
 import typer
 
 from pursue_gen.cli.console import ended, guarded, info, show, suggest
-from pursue_gen.cli.options import SPOT_DISTANCE
+from pursue_gen.cli.options import ROBOT, SPOT_DISTANCE
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, as_json, counted
 from pursue_gen.files import shell_quoted
 
@@ -23,6 +23,7 @@ def check(
         None, "--map", metavar="YAML", help="Look where places and robots stand on this map of map_server, too."
     ),
     spot_distance: float = SPOT_DISTANCE,
+    robot: List[str] = ROBOT,
     as_json_: bool = typer.Option(False, "--json", help="Print the findings as a JSON list."),
 ) -> None:
     """Tell everything that is wrong with scenarios, with line and column.
@@ -33,7 +34,7 @@ def check(
 
     findings = [finding for file in files for finding in findings_in(file)]
     if floor is not None:
-        findings += _on_map(files, floor, spot_distance)
+        findings += _on_map(files, floor, spot_distance, robot)
     if as_json_:
         print(json.dumps([as_json(finding) for finding in findings], indent=1))
     else:
@@ -69,16 +70,17 @@ def _moved(file: Path, distance: float) -> List[str]:
     return moved(scenario, distance) if several and any(poi.pose for poi in scenario.pois) else []
 
 
-def _on_map(files: List[Path], floor: Path, spot_distance: float) -> List[Diagnostic]:
+def _on_map(files: List[Path], floor: Path, spot_distance: float, robot: List[str]) -> List[Diagnostic]:
     """The findings on the map, for scenarios without errors but for ways that are missing. Raises PursueError for a map
     that cannot be used."""
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.language.parser import read_text
     from pursue_gen.workspace.map_check import check_spots, read_placed
+    from pursue_gen.workspace.robot_size import read_size
 
-    ground = read_ground(floor)
+    ground, size = read_ground(floor), read_size(robot)
     found: List[Diagnostic] = []
     for file in files:
         with contextlib.suppress(PursueError):  # its errors are reported
-            found += check_spots(read_placed(read_text(str(file)), str(file)), ground, spot_distance)
+            found += check_spots(read_placed(read_text(str(file)), str(file)), ground, spot_distance, size)
     return found

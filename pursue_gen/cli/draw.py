@@ -9,6 +9,7 @@ from typing import List, Optional, Tuple
 import typer
 
 from pursue_gen.cli.console import guarded, info, suggest
+from pursue_gen.cli.options import ROBOT
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.files import shell_quoted
 
@@ -25,6 +26,7 @@ def draw(
     limit: float = typer.Option(
         _LIMIT, metavar="SECONDS", min=1, max=86400, help="So much processor time the page's button Solve may take."
     ),
+    robot: List[str] = ROBOT,
     force: bool = typer.Option(
         False, "--force", help="Without SCENARIO: begin anew, and let Save replace the file that is there."
     ),
@@ -39,13 +41,14 @@ def draw(
     from pursue_gen.draw.page import DrawPage, file_for
     from pursue_gen.draw.server import DrawServer
     from pursue_gen.synthesis.limits import careful_memory
+    from pursue_gen.workspace.robot_size import read_size
 
     plan, scenario = _named(files or [])
     file = file_for(scenario, plan)
     if scenario is None:
         storage.check_new(file, force)
     _, version = storage.opened(file)
-    jobs = Jobs(file.name, plan, limit, careful_memory())
+    jobs = Jobs(file.name, plan, limit, careful_memory(), read_size(robot))
     with DrawServer(DrawPage(file, plan, jobs, anew=scenario is None), port) as server:
         print(server.url, flush=True)
         begins = scenario is None or version == storage.NOTHING

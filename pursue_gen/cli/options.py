@@ -152,6 +152,13 @@ SPOT_DISTANCE = typer.Option(
     "the place's pose).",
     callback=_spot_distance,
 )
+ROBOT = typer.Option(
+    [],
+    "--robot",
+    metavar="METRES|YAML",
+    help="The radius of the largest robot (0.3), or parameters of its costmaps and planners: footprint, "
+    "inflation_radius, xy_goal_tolerance; repeatable.",
+)
 KEYS = typer.Option(
     None, "--keys", metavar="DIR", help="Where the keys are; ~/.config/pursue/keys by default (XDG_CONFIG_HOME)."
 )

@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Optional
+from typing import TYPE_CHECKING, List, Optional
 
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.inputs import scenario_from
-from pursue_gen.cli.options import DEFAULT_DISTANCE, JSON, REQUEST, SCENARIO, with_request
+from pursue_gen.cli.options import DEFAULT_DISTANCE, JSON, REQUEST, ROBOT, SCENARIO, with_request
 from pursue_gen.diagnostics import counted, error, usage_error
 from pursue_gen.files import shell_quoted
 from pursue_gen.outcomes import LimitHit, Lost, Unavailable
@@ -48,6 +48,7 @@ def report(
     floor: Optional[Path] = typer.Option(
         None, "--map", metavar="YAML", help="A floor plan of map_server, to lie under the map."
     ),
+    robot: List[str] = ROBOT,
     runs: int = typer.Option(
         200, metavar="N", min=0, help="So many simulated missions for each shape of controllers, for the page."
     ),
@@ -70,6 +71,7 @@ def report(
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.report.make import ReportOptions
     from pursue_gen.workspace.map_check import check_spots
+    from pursue_gen.workspace.robot_size import read_size
 
     html = html or output is not None
     seen = html or pictures is not None
@@ -86,11 +88,12 @@ def report(
     target = _target(scenario, file or output)
     if html and not force:
         _check_target(target)
+    size = read_size(robot)
     under = None if floor is None else read_floor(floor)
     options = ReportOptions(reach_obj, runs if html else 0, under)
     read = scenario_from(scenario, request)
     if floor is not None:
-        show(check_spots(read, read_ground(floor), DEFAULT_DISTANCE))
+        show(check_spots(read, read_ground(floor), DEFAULT_DISTANCE, size))
     made = _made(read, options, solving)
     if pictures is not None:
         _write_pictures(made, pictures)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Dict, List, Mapping, Optional, Tuple
 import typer
 
 from pursue_gen.cli.console import ended, guarded, info, show, suggest
-from pursue_gen.cli.options import SCENARIO
+from pursue_gen.cli.options import ROBOT, SCENARIO
 from pursue_gen.diagnostics import as_json, error, usage_error
 from pursue_gen.files import check_new, shell_quoted, write_bytes
 from pursue_gen.outcomes import Invalid, Unavailable
@@ -25,8 +25,11 @@ if TYPE_CHECKING:
 def survey(
     floor: Path = typer.Argument(..., metavar="MAP.yaml", help="A map of map_server: its yaml file."),
     scenario: Path = SCENARIO,
-    radius: float = typer.Option(0.3, metavar="METRES", help="The radius of the largest robot."),
-    clearance: float = typer.Option(0.2, metavar="METRES", help="How far two robots that stand stay from each other."),
+    robot: List[str] = ROBOT,
+    radius: Optional[float] = typer.Option(None, metavar="METRES", help="As --robot: goes before what a file says."),
+    clearance: Optional[float] = typer.Option(
+        None, metavar="METRES", help="How far two robots that stand stay from each other: twice their goal tolerance."
+    ),
     speed: List[str] = typer.Option(
         [], metavar="[ROBOT=]M/S", help="The speed of all robots, or of this one: gives it travel times; repeatable."
     ),
@@ -59,27 +62,32 @@ def survey(
     target = output or scenario.with_name(f"{scenario.stem}_surveyed.pur")
     for file in [*([] if dry_run else [target]), *([picture] if picture else [])]:
         check_new(file, force)
-    _check_numbers({"--radius": radius, "--clearance": clearance, "--start": start, "--reserve": reserve}, 0.0)
-    _check_numbers({"--tolerance": tolerance}, 0.0)
+    given = {"--radius": radius, "--clearance": clearance}
+    _check_numbers({name: value for name, value in given.items() if value is not None}, 0.0)
+    _check_numbers({"--start": start, "--reserve": reserve, "--tolerance": tolerance}, 0.0)
     _check_numbers({"--time-unit": time_unit, "--turning": turning, "--acceleration": acceleration}, 0.001)
     _check_numbers({"--unit": unit}, 0.001)
     _check_packages()
     from pursue_gen.survey.make import Options
     from pursue_gen.survey.times import Drive
+    from pursue_gen.workspace.robot_size import read_size
 
     drive = Drive({}, time_unit, turning, acceleration, start, reserve / 100, tolerance)
-    options = Options(radius, clearance, unit, ways, tuple(map(_pair, keep)), drive)
+    size = read_size(robot)
+    size = size if radius is None else replace(size, radius=radius)
+    options = Options(size, clearance, unit, ways, tuple(map(_pair, keep)), drive)
     read, copy, found = _surveyed(floor, scenario, speed, options, "" if dry_run else str(target))
     files = {} if dry_run else {target: copy}
     if picture is not None:
-        files[picture] = _picture(read, found, floor, radius)
+        files[picture] = _picture(read, found, floor, size.radius)
     write_bytes(files)
     _print(found, as_json_)
     for file in files:
         info(f"wrote {file}")
     if found.errors:
         show(() if as_json_ else found.errors)
-        info("The copy has errors: mend the scenario, first what the map says above, and survey it again.")
+        info("The copy has errors. Mend the scenario, first what the map says above, and survey it again:")
+        info("with --ways, if ways are missing that the table has.")
         raise ended(Invalid(found.errors))
     if not dry_run:
         suggest(f"pursue-gen solve {shell_quoted(target)}")

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Optional
+from typing import TYPE_CHECKING, List, Optional
 
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
-from pursue_gen.cli.options import EXPLAIN, MISSION, REQUEST, SCENARIO, SPOT_DISTANCE, Controllers, with_request
+from pursue_gen.cli.options import EXPLAIN, MISSION, REQUEST, ROBOT, SCENARIO, SPOT_DISTANCE, Controllers, with_request
 from pursue_gen.files import shell_quoted
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ def ws(
         None, "--map", metavar="YAML", help="A floor plan of map_server, to lie under the map of the UI's page."
     ),
     spot_distance: float = SPOT_DISTANCE,
+    robot: List[str] = ROBOT,
     force: bool = typer.Option(False, "--force", help="Replace files that were edited since they were generated."),
 ) -> None:
     """Write a ROS 1 workspace: a controller per robot, the observer, the user interface, simulated robots, tests.
@@ -50,13 +51,15 @@ def ws(
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.workspace.make import Extras, make_workspace
     from pursue_gen.workspace.map_check import check_spots
+    from pursue_gen.workspace.robot_size import read_size
 
+    size = read_size(robot)
     under = None if floor is None else read_floor(floor)
     start = request.options.limits.now()
     read = scenario_from(scenario, request)
     request = request.since(start)
     if floor is not None:
-        show(check_spots(read, read_ground(floor), spot_distance))
+        show(check_spots(read, read_ground(floor), spot_distance, size))
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")
     found = solve_and_print(read, request, explain)

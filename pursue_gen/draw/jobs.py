@@ -15,6 +15,7 @@ from pursue_gen.draw.fields import refused
 from pursue_gen.draw.play_work import play
 from pursue_gen.draw.solve_work import UNDECIDED, Work, solve
 from pursue_gen.draw.survey_work import SurveyWork, survey
+from pursue_gen.workspace.robot_size import USUAL, RobotSize
 
 RUNNING, ENDED, CANCELLED, NONE = "running", "ended", "cancelled", "none"
 _DIED = "the process has ended without an answer; perhaps the machine has too little memory"
@@ -23,9 +24,13 @@ _DIED = "the process has ended without an answer; perhaps the machine has too li
 class Jobs:
     """The present job and what it has sent. Methods may be called from several threads."""
 
-    def __init__(self, file: str, floor: Optional[Path], seconds: float, memory: int) -> None:
-        """`file`: what messages call the text; `floor`: the map that lies under pictures; the limits of a job."""
+    def __init__(
+        self, file: str, floor: Optional[Path], seconds: float, memory: int, robot: RobotSize = USUAL
+    ) -> None:
+        """`file`: what messages call the text; `floor`: the map that lies under pictures; the limits of a job; `robot`:
+        the size of the robots."""
         self._file, self._floor, self._seconds, self._memory = file, floor, seconds, memory
+        self.robot = robot
         self._lock = threading.Lock()
         self._number = 0
         self._state: Dict[str, Any] = {"state": NONE}
@@ -60,7 +65,7 @@ class Jobs:
         """
         if self._floor is None:
             raise refused("there is no map to measure on", "pursue-gen draw map.yaml my_floor.pur")
-        given = SurveyWork(text, self._file, self._floor, self._seconds, self._memory, radius, speed, ways)
+        given = SurveyWork(text, self._file, self._floor, self._seconds, self._memory, self.robot, radius, speed, ways)
         with self._lock:
             self._launch(survey, given)
         return self.state()

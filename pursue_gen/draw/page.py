@@ -68,11 +68,12 @@ class DrawPage:
             "x": floor.x, "y": floor.y, "yaw": floor.yaw,
         }  # fmt: skip
         new = self._anew or version == storage.NOTHING
-        about = {"file": self.file.name, "version": version, "new": new, "floor": plan}
+        radius = self.jobs.robot.radius
+        about = {"file": self.file.name, "version": version, "new": new, "floor": plan, "radius": radius}
         return {"text": text, **about, "forms": forms(), "anybody": list(ANYBODY), "view": self._view(text)}
 
     def _view(self, text: str) -> Answer:
-        return view(text, self.file.name, self._ground)
+        return view(text, self.file.name, self._ground, self.jobs.robot)
 
     def _change(self, values: Mapping[str, Any]) -> Answer:
         """The text after an operation, and how it looks."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Dict, Optional
@@ -12,6 +12,7 @@ from pursue_gen.draw.solve_work import ERRORS, Work, sentences, working
 from pursue_gen.drawing.ground import read_ground
 from pursue_gen.language.formatter import format_text
 from pursue_gen.workspace.map_check import read_placed
+from pursue_gen.workspace.robot_size import USUAL, RobotSize
 
 SURVEYED = "surveyed"
 
@@ -20,10 +21,11 @@ SURVEYED = "surveyed"
 class SurveyWork(Work):
     """A text whose ways are to be measured, on the map `floor`.
 
-    `radius`: of the largest robot, in metres; `speed`: metres per second of all robots, None: no travel times; `ways`:
-    those that are missing are added.
+    `robot`: the size of the robots, but for their `radius` in metres; `speed`: metres per second of all robots, None:
+    no travel times; `ways`: those that are missing are added.
     """
 
+    robot: RobotSize = USUAL
     radius: float = 0.3
     speed: Optional[float] = None
     ways: bool = False
@@ -51,7 +53,7 @@ def _measured(given: SurveyWork, floor: Path) -> Dict[str, Any]:
     scenario = read_placed(given.text, given.file)
     robots = [agent.name for agent in scenario.agents if agent.is_robot and agent.mobile is not None]
     speeds = {} if given.speed is None else dict.fromkeys(robots, given.speed)
-    options = Options(radius=given.radius, ways=given.ways, drive=Drive(speeds))
+    options = Options(replace(given.robot, radius=given.radius), ways=given.ways, drive=Drive(speeds))
     found = surveyed(scenario, read_ground(floor, whole=True), floor.name, options)
     lines = [*sentences(found.findings), *table(found)]
     return {"verdict": SURVEYED, "lines": lines, "surveyed": format_text(found.text, given.file)}

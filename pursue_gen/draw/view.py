@@ -19,22 +19,25 @@ from pursue_gen.lsp.map_preview import drawable
 from pursue_gen.lsp.tokens import Statement
 from pursue_gen.solving.inputs import findings_of
 from pursue_gen.workspace.map_check import but_for_ways, check_spots
+from pursue_gen.workspace.robot_size import USUAL, RobotSize
 from pursue_gen.workspace.spots import SPOT_DISTANCE
 
 _MOST_FINDINGS = 200
 _OWN_FORMS = ("POI", "CONNECT", "EVENT", "AGENT")
 
 
-def view(text: str, file: str = "scenario.pur", ground: Optional[Ground] = None) -> Dict[str, Any]:
+def view(
+    text: str, file: str = "scenario.pur", ground: Optional[Ground] = None, robot: RobotSize = USUAL
+) -> Dict[str, Any]:
     """The picture's parts and the findings of a text, right or wrong, and what is wanted in sentences.
 
-    `ground`: where places stand on it is looked at, too.
+    `ground`: whether robots of this size have room where they stand on it is looked at, too.
 
     Distances and times are texts as they are written, positions metres, headings degrees; `statement` is the number by
     which `operations.change` knows a part, `from` and `to` are its first and last line, counted from 1.
     """
     document = Document.of(text, file)
-    found = _findings(document, ground)
+    found = _findings(document, ground, robot)
     places = _places(document)
     return {
         "places": places,
@@ -65,14 +68,14 @@ def forms() -> List[Dict[str, Any]]:
     return found
 
 
-def _findings(document: Document, ground: Optional[Ground]) -> Tuple[Diagnostic, ...]:
+def _findings(document: Document, ground: Optional[Ground], robot: RobotSize) -> Tuple[Diagnostic, ...]:
     """What `pursue-gen check` reports, with --map where there is a map."""
     found = findings_of(document.reading)
     scenario = document.reading.scenario
-    wrong = but_for_ways(scenario, found)
+    wrong = but_for_ways(found)
     if ground is None or scenario is None or any(one.severity is Severity.ERROR for one in wrong):
         return found
-    return in_order((*found, *check_spots(scenario, ground, SPOT_DISTANCE)))
+    return in_order((*found, *check_spots(scenario, ground, SPOT_DISTANCE, robot)))
 
 
 def _wanted(document: Document, findings: Sequence[Diagnostic]) -> List[str]:

@@ -10,10 +10,8 @@ from pursue_gen.drawing.ground import Ground
 
 Point = Tuple[float, float]
 
-_REACH = 5.0
-"""Metres around a point in which room is looked for."""
 _MOST = 250
-"""The same in cells, on fine maps."""
+"""Cells around a point in which room is looked for, on fine maps."""
 _TOUCH = 1e-9
 """Cells by which a distance counts as equal; numbers are as exact."""
 
@@ -43,14 +41,13 @@ class Clearance:
         return min(most, best * scale)
 
     def nearest(
-        self, x: float, y: float, radius: float, is_wanted: Callable[[Point], bool] = lambda point: True
+        self, x: float, y: float, radius: float, reach: float, is_wanted: Callable[[Point], bool] = lambda point: True
     ) -> Optional[Point]:
         """The point nearest to a point of the map (metres) that is farther than `radius` from every obstacle and is
-        wanted; None: there is none within 5 m."""
+        wanted; None: there is none within `reach` metres."""
         scale = self._ground.settings.resolution
         column, row = self._ground.pixel(x, y)
-        reach = min(_MOST, math.ceil(_REACH / scale))
-        for across, down in _around(reach):
+        for across, down in _around(min(_MOST, math.ceil(reach / scale))):
             if self._is_clear(column + across, row + down, radius / scale + _TOUCH):
                 point = self._ground.middle(column + across, row + down)
                 if is_wanted(point):

@@ -31,15 +31,6 @@ def apart(scenario: Scenario, plan: Plan) -> Iterator[Diagnostic]:
             yield warning("MAP004", message, spans[part[0]], hint)
 
 
-def too_near(scenario: Scenario, plan: Plan) -> Iterator[Diagnostic]:
-    """Places at which two robots cannot stand at the same time."""
-    spans = {poi.name: poi.span for poi in scenario.pois}
-    hint = "move one of them, or keep robots from being at both at once (objective: avoid …)"
-    for a, b, metres in plan.too_near():
-        message = f"{b} is {metres:.2f} m from {a}: two robots need {plan.room:g} m"
-        yield warning("MAP005", message, spans[b], hint)
-
-
 def crossing(scenario: Scenario, plan: Plan) -> Iterator[Diagnostic]:
     """Ways that lead through third places."""
     for way in scenario.connections:

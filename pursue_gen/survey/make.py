@@ -22,9 +22,10 @@ from pursue_gen.survey.graph import graph_of
 from pursue_gen.survey.grid import Grid, grid_of
 from pursue_gen.survey.plan import Pair, Plan
 from pursue_gen.survey.routes import Route, Routes
-from pursue_gen.survey.spots import Spots, Ways, proposed_spots
+from pursue_gen.survey.spots import Spots, Standing, Ways, proposed_spots
 from pursue_gen.survey.times import Drive, window
 from pursue_gen.workspace.map_check import check_spots
+from pursue_gen.workspace.robot_size import USUAL, RobotSize
 
 MOST_PLACES = 200
 """More places than that take too long and too much memory."""
@@ -37,12 +38,13 @@ _LONGER = 1.3
 
 @dataclass(frozen=True)
 class Options:
-    """What a survey assumes. `radius` of the robots and `clearance` between two of them, in metres; `unit`: metres per
-    unit of distance. `ways`: write the ways that are missing, too. `keep`: ways whose distances stay (pairs of places).
+    """What a survey assumes. `robot`: the size of the robots; `clearance`: metres between two of them, None: as their
+    tolerances need it; `unit`: metres per unit of distance. `ways`: write the ways that are missing, too. `keep`: ways
+    whose distances stay (pairs of places).
     """
 
-    radius: float = 0.3
-    clearance: float = 0.2
+    robot: RobotSize = USUAL
+    clearance: Optional[float] = None
     unit: float = 1.0
     ways: bool = False
     keep: Tuple[Pair, ...] = ()
@@ -51,7 +53,7 @@ class Options:
     @property
     def room(self) -> float:
         """Metres that the centres of two robots keep between them."""
-        return 2 * self.radius + self.clearance
+        return self.robot.apart if self.clearance is None else 2 * self.robot.radius + self.clearance
 
 
 @dataclass(frozen=True)
@@ -94,24 +96,25 @@ def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options
     A scenario without ways gets those that are missing in any case. Raises PursueError where nothing can be measured.
     """
     _check_robots(scenario, options)
-    grid = grid_of(ground, options.radius)
+    grid = grid_of(ground, options.robot.radius)
     plan = _plan(scenario, grid, options)
     missing = plan.own_ways([(way.a, way.b) for way in scenario.connections])
     new = missing if options.ways or not scenario.connections else []
     with_new = _with_ways(scenario, new, plan, map_name, options)
-    spots = proposed_spots(with_new, grid, plan.places, options.room, _lines(with_new, plan), 2 * options.radius)
+    standing = Standing(grid_of(ground, options.robot.needed), grid_of(ground, options.robot.wanted))
+    lines, body = _lines(with_new, plan), 2 * options.robot.radius
+    spots = proposed_spots(with_new, grid, plan.places, options.room, lines, body, standing)
     placed = _with_spots(replace(scenario, connections=with_new.connections), spots)
     work = _Work(with_new, placed, plan, options, map_name)
     ways = {way: work.way(way, given=(way.a, way.b) not in new) for way in with_new.connections}
     text, errors = _copy(work, ways, spots, copy or f"the copy of {scenario.file}")
     findings = [
         *found_wrong.apart(scenario, plan),
-        *found_wrong.too_near(scenario, plan),
         *found_wrong.crossing(scenario, plan),
         *found_wrong.without_room(scenario, spots),
-        *found_wrong.shut_in_places(placed, grid, _lines(with_new, plan), options.radius, options.room),
+        *found_wrong.shut_in_places(placed, grid, lines, options.robot.radius, options.room),
         *found_wrong.other_unit(scenario, _compared(scenario, ways), _timed(with_new, ways), options.unit),
-        *check_spots(placed, ground, 0, options.radius),
+        *check_spots(placed, ground, 0, options.robot),
     ]
     proposals = [work.proposed(*pair) for pair in missing if pair not in new]
     poses = {place: {robot: pose for robot, pose in found if pose is not None} for place, found in spots.items()}
@@ -147,7 +150,7 @@ def _plan(scenario: Scenario, grid: Grid, options: Options) -> Plan:
         message = f"{len(posed)} places; at most {MOST_PLACES} can be surveyed at once"
         raise Invalid([error("MAP001", message, span, "survey the floors of the building one by one")])
     if not grid.free.any():
-        message = f"the map has no free ground for a robot with a radius of {options.radius:g} m"
+        message = f"the map has no free ground for a robot with a radius of {options.robot.radius:g} m"
         hint = "look at negate, free_thresh, resolution and the picture's opacity, or try a smaller --radius"
         raise Invalid([error("MAP001", message, span, hint)])
     points = {poi.name: (poi.pose.x, poi.pose.y) for poi in posed if poi.pose is not None}

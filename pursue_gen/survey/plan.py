@@ -51,11 +51,6 @@ class Plan:
         found = [(_near(route.bends, at), name) for name, at in self.places.items() if name not in (a, b)]
         return [name for (apart, _), name in sorted(found, key=lambda one: one[0][1]) if apart < self.room]
 
-    def too_near(self) -> List[Tuple[str, str, float]]:
-        """The pairs of places at which two robots cannot stand at the same time, with their distance."""
-        pairs = combinations(self.places.items(), 2)
-        return [(a, b, math.dist(at, to)) for (a, at), (b, to) in pairs if math.dist(at, to) < self.room]
-
     def parts(self) -> List[List[str]]:
         """The places, by what can be reached from each other; the largest part first."""
         parts: List[List[str]] = []

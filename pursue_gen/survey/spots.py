@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
@@ -32,6 +32,15 @@ _AROUND = 1.0
 _TRIES = 200
 """So many points are looked at for one from which nobody is shut in."""
 
+
+@dataclass(frozen=True)
+class Standing:
+    """Where on a grid robots may stand: as far from obstacles as they need (`may`), and as their planners like it."""
+
+    may: Grid
+    likes: Grid
+
+
 Spots = Dict[str, List[Tuple[str, Optional[Pose]]]]
 """place → robots without a pose of their own there, with the spot that is proposed; None: there is no room."""
 Ways = Mapping[Tuple[str, str], Sequence[Point]]
@@ -45,14 +54,16 @@ def proposed_spots(
     room: float,
     ways: Ways,
     body: float = 0.0,
+    standing: Optional[Standing] = None,
 ) -> Spots:
     """Spots for all robots that share a place with others and have no pose of their own there.
 
     The first of them has the pose of the place. `places`: those whose pose is on free ground; `room`: metres that the
     centres of two robots keep between them; `ways`: the paths that robots take; `body`: metres by which the centres of
-    two robots are apart that touch each other. A spot is as near to the pose of its place as possible, more or less,
-    beside it rather than before or behind it, seen from it, and first of all out of the way of other robots. Where that
-    is possible, each robot can leave while the others stand there.
+    two robots are apart that touch each other; `standing`: where a robot may stand. A spot is first of all out of the
+    way of other robots, then where planners like it, then as near to the pose of its place as possible, more or less,
+    beside it rather than before or behind it, and seen from it. Where that is possible, each robot can leave while the
+    others stand there.
     """
     present, wanted = robots_at(scenario), set(places)
     taken = [point for poi in scenario.pois for point in _given(poi, present[poi.name])]
@@ -63,15 +74,15 @@ def proposed_spots(
         robots = [robot for robot in present[poi.name] if robot not in own][1:]
         if poi.name not in wanted or poi.pose is None or not robots:
             continue
-        candidates = _Candidates(grid, poi.pose, room, _passing(poi, passed, room))
+        candidates = _Candidates(grid, poi.pose, room, _passing(poi, passed, room), standing)
         found[poi.name] = []
-        standing = [one for one in _given(poi, present[poi.name]) if grid.is_free(grid.cell(*one))]
+        others = [one for one in _given(poi, present[poi.name]) if grid.is_free(grid.cell(*one))]
         exits = exits_of(poi.name, (poi.pose.x, poi.pose.y), ways, room)
         for robot in robots:
-            point = candidates.best(taken, standing, exits, body)
+            point = candidates.best(taken, others, exits, body)
             found[poi.name].append((robot, None if point is None else replace(poi.pose, x=point[0], y=point[1])))
             taken += [] if point is None else [point]
-            standing += [] if point is None else [point]
+            others += [] if point is None else [point]
     return found
 
 
@@ -124,17 +135,22 @@ def _given(poi: Poi, present: Sequence[str]) -> List[Point]:
 class _Candidates:
     """The free points around a place from which it can be reached, in the order in which they are wanted."""
 
-    def __init__(self, grid: Grid, pose: Pose, room: float, passed: Array) -> None:
+    def __init__(self, grid: Grid, pose: Pose, room: float, passed: Array, standing: Optional[Standing]) -> None:
         """`passed`: points of ways at which robots are in each other's way."""
         self._grid, self._room, self._middle = grid, room, grid.cell(pose.x, pose.y)
         reach = max(_LEAST_REACH, _REACH * room)
-        cells = _connected(grid, self._middle, reach) + 0.5
+        found = _connected(grid, self._middle, reach)
+        likes = np.ones(len(found), dtype=bool)
+        if standing is not None:
+            found = found[standing.may.free[found[:, 1], found[:, 0]]]
+            likes = standing.likes.free[found[:, 1], found[:, 0]]
+        cells = found + 0.5
         points = np.round(np.column_stack(grid.metres((cells[:, 0], cells[:, 1]))), 3) + 0.0
         x, y = points[:, 0] - pose.x, points[:, 1] - pose.y
         apart = np.hypot(x, y)
         aside = cKDTree(passed).query(points)[0] >= room if len(passed) else np.ones(len(points), dtype=bool)
         ahead = np.abs(x * math.cos(yaw_of(pose)) + y * math.sin(yaw_of(pose)))
-        order = np.lexsort((points[:, 1], points[:, 0], np.round(ahead, 3), apart // _NEARLY, ~aside))
+        order = np.lexsort((points[:, 1], points[:, 0], np.round(ahead, 3), apart // _NEARLY, ~likes, ~aside))
         self._points = points[order][apart[order] <= reach]
 
     def best(

@@ -1,10 +1,10 @@
-"""Spots against a map of the building: is the ground free where robots are sent, and where nearby is there room?"""
+"""Spots against a map of the building: is there room where robots are sent, and if not, where nearby is there some?"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Iterator, Optional, Sequence, Tuple
+from typing import FrozenSet, Iterator, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, warning
 from pursue_gen.drawing.clearance import Clearance
@@ -13,13 +13,14 @@ from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Pose, Scenario
+from pursue_gen.workspace.robot_size import USUAL, RobotSize
 from pursue_gen.workspace.spots import placing
 
-RADIUS = 0.3
-"""Metres from the middle of a robot to its farthest part, by default."""
+_NEAR, _FAR = 1.5, 5.0
+"""Metres around a point in which room is looked for that planners like, and any room at all."""
 
 _OF_WAYS = frozenset(("PML153", "PML154", "PML201", "PML230"))
-"""Errors that a scenario has because it has no ways yet."""
+"""Errors that a scenario has because ways are missing."""
 
 _SAYS = {
     OUTSIDE: "is off the map",
@@ -30,45 +31,137 @@ _SAYS = {
 
 
 def read_placed(text: str, file: str) -> Scenario:
-    """A scenario whose places can be looked at on a map: without errors, perhaps without ways. Raises PursueError."""
+    """A scenario whose places can be looked at on a map: without errors, but some ways may be missing. Raises
+    PursueError."""
     reading = read(text, file)
-    return without_errors(reading.scenario, but_for_ways(reading.scenario, check_reading(reading)))
+    return without_errors(reading.scenario, but_for_ways(check_reading(reading)))
 
 
-def but_for_ways(scenario: Optional[Scenario], findings: Sequence[Diagnostic]) -> Tuple[Diagnostic, ...]:
-    """The findings, without those that a scenario has because it has no ways yet."""
-    if scenario is None or scenario.connections:
-        return tuple(findings)
+def but_for_ways(findings: Sequence[Diagnostic]) -> Tuple[Diagnostic, ...]:
+    """The findings, without those that a scenario has because ways are missing."""
     return tuple(finding for finding in findings if finding.code not in _OF_WAYS)
 
 
 def check_spots(
-    scenario: Scenario, ground: Ground, distance: float, radius: Optional[float] = None
+    scenario: Scenario, ground: Ground, distance: float, robot: RobotSize = USUAL
 ) -> Tuple[Diagnostic, ...]:
-    """A warning for each place or spot that is not on free ground, with the nearest point at which there is room;
-    places without a pose are left out.
+    """A warning for each place or spot that is not on free ground, has too little room for a robot, or is too near
+    another one, with the nearest point at which there is room; places without a pose are left out.
 
-    `distance`: metres between the robots at one place. `radius`: of the robots (metres), which spots that are nearer to
-    an obstacle are warned about; None: only the point is checked.
+    `distance`: metres between the robots at one place.
     """
+    points = tuple(_points(scenario, distance))
+    look = _Look(ground, Clearance(ground), robot, points)
     found = []
-    clearance = Clearance(ground)
-    points = list(_points(scenario, distance))
-    for point in points:
-        pose, kind = point.pose, ground.at(point.pose.x, point.pose.y)
-        at = f"{point.what} ({pose.x:g}, {pose.y:g})"
-        if kind != FREE:
-            remedy = point.remedy(clearance, RADIUS if radius is None else radius, points)
-            hint = f"{remedy}; {_extent(ground) if kind == OUTSIDE else _CORRECT}"
-            found.append(warning("WSP008", f"{at} {_SAYS[kind]}", point.span, hint))
-        elif radius is not None and not clearance.metres(pose.x, pose.y, 2 * radius + 1) > radius + 1e-9:
-            message = f"{at} is nearer than {radius:g} m, the robots' radius, to an obstacle"
-            hint = f"{point.remedy(clearance, radius, points)}; if the robot is smaller, say so: --radius METRES"
-            found.append(warning("MAP003", message, point.span, hint))
+    for number, point in enumerate(points):
+        finding = look.on_ground(point) or look.room(point)
+        found += [finding] if finding else []
+        found += look.neighbour(point, points[:number])
     return tuple(found)
 
 
+@dataclass(frozen=True)
+class _Point:
+    """Where robots are sent: what it is in words, who is sent there (nobody: a place that no robot gets to), and whose
+    spot has to be written to change it; "": the pose stands there."""
+
+    what: str
+    pose: Pose
+    span: Span
+    place: str
+    robots: FrozenSet[str] = frozenset()
+    unwritten: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.what} ({self.pose.x:g}, {self.pose.y:g})"
+
+    def apart(self, x: float, y: float) -> float:
+        return math.dist((self.pose.x, self.pose.y), (x, y))
+
+    def meets(self, other: _Point) -> bool:
+        """Return True if two robots may stand there, one at each."""
+        return not (self.robots and other.robots) or len(self.robots | other.robots) > 1
+
+
+@dataclass(frozen=True)
+class _Look:
+    """The points of a scenario on the ground, for robots of a size."""
+
+    ground: Ground
+    clearance: Clearance
+    robot: RobotSize
+    points: Tuple[_Point, ...]
+
+    def on_ground(self, point: _Point) -> Optional[Diagnostic]:
+        """A point that is not on free ground."""
+        kind = self.ground.at(point.pose.x, point.pose.y)
+        if kind == FREE:
+            return None
+        more = _extent(self.ground) if kind == OUTSIDE else _CORRECT
+        return warning("WSP008", f"{point} {_SAYS[kind]}", point.span, f"{self.remedy(point)}; {more}")
+
+    def room(self, point: _Point) -> Optional[Diagnostic]:
+        """A point that is too near an obstacle."""
+        robot = self.robot
+        metres = self.clearance.metres(point.pose.x, point.pose.y, robot.wanted + 1)
+        if metres > robot.wanted + _TOUCH:
+            return None
+        if metres > robot.needed + _TOUCH:
+            better = self._better(point, robot.wanted, _NEAR)
+            if better is None:
+                return None  # there is no better one
+            message = f"{point} is {metres:.2f} m from an obstacle, within the robots' inflation radius of "
+            message += f"{robot.inflation:g} m, where planners may oscillate"
+            return warning("MAP003", message, point.span, self._move(point, better))
+        if metres > robot.radius + _TOUCH:
+            message = f"{point} is {metres:.2f} m from an obstacle: to stop and turn there a robot needs more than "
+            message += f"{robot.needed:g} m, its radius of {robot.radius:g} m and its goal tolerance of "
+            message += f"{robot.tolerance:g} m"
+        else:
+            message = f"{point} is nearer than {robot.radius:g} m, the robots' radius, to an obstacle"
+        return warning("MAP003", message, point.span, f"{self.remedy(point)}; {_SMALLER}")
+
+    def neighbour(self, point: _Point, others: Sequence[_Point]) -> List[Diagnostic]:
+        """The nearest of other points, where two robots cannot stand there and here."""
+        robot = self.robot
+        near = [(one.apart(point.pose.x, point.pose.y), one.what) for one in others if point.meets(one)]
+        metres, what = min(near, default=(math.inf, ""))
+        if metres >= robot.apart - _TOUCH:
+            return []
+        message = f"{point} is {metres:.2f} m from {what}: two robots with a radius of {robot.radius:g} m and a goal "
+        message += f"tolerance of {robot.tolerance:g} m need {robot.apart:g} m"
+        hint = f"{self.remedy(point)}; or keep robots from being at both at once (objective: avoid …); {_SMALLER}"
+        return [warning("MAP005", message, point.span, hint)]
+
+    def remedy(self, point: _Point) -> str:
+        """What to do about a point where there is too little room."""
+        better = self._better(point, self.robot.wanted, _NEAR) or self._better(point, self.robot.needed, _FAR)
+        if better is None:
+            return f"move it: near it there is no room for a robot that needs {self.robot.needed:g} m"
+        return self._move(point, better)
+
+    def _better(self, point: _Point, radius: float, reach: float) -> Optional[Tuple[float, float]]:
+        """The nearest point that is farther from obstacles than a radius, and far enough from all other points."""
+
+        def is_apart(at: Tuple[float, float]) -> bool:
+            return all(one is point or one.apart(*at) >= self.robot.apart for one in self.points)
+
+        return self.clearance.nearest(point.pose.x, point.pose.y, radius, reach, is_apart)
+
+    def _move(self, point: _Point, to: Tuple[float, float]) -> str:
+        x, y = (round(number, 3) + 0.0 for number in to)
+        where = f"there is room at {x:.10g}, {y:.10g}, {point.apart(x, y):.2f} m from there"
+        if not point.unwritten:
+            return where
+        one = replace(point.pose, x=x, y=y)
+        numbers = ", ".join(f"{n:.10g}" for n in (one.x, one.y, one.z, one.qx, one.qy, one.qz, one.qw))
+        return f"{where}: write a pose for it behind that of {point.place}: {point.unwritten} [{numbers}]"
+
+
 _CORRECT = "poses are metres, from the origin that the map's yaml file gives for its lower left corner"
+_SMALLER = "if the robots are smaller, say so: --robot METRES or --robot PARAMETERS.yaml"
+_TOUCH = 1e-9
+"""Metres by which a distance counts as equal; numbers are as exact."""
 
 
 def _extent(ground: Ground) -> str:
@@ -78,47 +171,18 @@ def _extent(ground: Ground) -> str:
     return f"the map reaches from {left:.1f} to {right:.1f} in x and from {low:.1f} to {high:.1f} in y"
 
 
-@dataclass(frozen=True)
-class _Point:
-    """Where robots are sent: what it is in words, and the robot whose spot has to be written; "": the pose is there."""
-
-    what: str
-    pose: Pose
-    span: Span
-    place: str
-    unwritten: str = ""
-
-    def remedy(self, clearance: Clearance, radius: float, points: Sequence[_Point]) -> str:
-        """What to do about a point where there is no room for robots of this radius (metres): where they can stand
-        beside those at all other points."""
-        others = [(one.pose.x, one.pose.y) for one in points if one is not self]
-
-        def is_apart(point: Tuple[float, float]) -> bool:
-            return all(math.dist(point, other) > 2 * radius for other in others)
-
-        room = clearance.nearest(self.pose.x, self.pose.y, radius, is_apart)
-        if room is None:
-            return f"move it: near it there is no room for a robot with a radius of {radius:g} m"
-        x, y = (round(number, 3) + 0.0 for number in room)
-        apart = math.dist(room, (self.pose.x, self.pose.y))
-        where = f"there is room at {x:.10g}, {y:.10g}, {apart:.2f} m from there"
-        if not self.unwritten:
-            return where
-        one = replace(self.pose, x=x, y=y)
-        numbers = ", ".join(f"{n:.10g}" for n in (one.x, one.y, one.z, one.qx, one.qy, one.qz, one.qw))
-        return f"{where}: write a pose for it behind that of {self.place}: {self.unwritten} [{numbers}]"
-
-
 def _points(scenario: Scenario, distance: float) -> Iterator[_Point]:
     """The poses of the places, and the spots of the robots that may be there where they are other points."""
     where, present = placing(scenario, distance), robots_at(scenario)
     for poi in scenario.pois:
         own = {spot.robot.name: spot.robot.span for spot in poi.spots}
-        if poi.pose is not None and (not present[poi.name] or set(present[poi.name]) - set(own)):
-            yield _Point(f"the pose of {poi.name}", poi.pose, poi.span, poi.name)
-        for robot in present[poi.name]:
-            spot, what = where.spots[robot][poi.name], f"the spot of {robot} at {poi.name}"
+        spots = {robot: where.spots[robot][poi.name] for robot in present[poi.name]}
+        if poi.pose is not None and (not spots or set(spots) - set(own)):
+            robots = frozenset(robot for robot, spot in spots.items() if spot == poi.pose)
+            yield _Point(f"the pose of {poi.name}", poi.pose, poi.span, poi.name, robots)
+        for robot, spot in spots.items():
+            what = f"the spot of {robot} at {poi.name}"
             if robot in own:
-                yield _Point(what, spot, own[robot], poi.name)
+                yield _Point(what, spot, own[robot], poi.name, frozenset((robot,)))
             elif poi.pose is not None and spot != poi.pose:
-                yield _Point(what, spot, poi.span, poi.name, robot)
+                yield _Point(what, spot, poi.span, poi.name, frozenset((robot,)), robot)

@@ -55,7 +55,7 @@ def test_the_nearest_point_with_room_is_found(
     floor = ground(rows)
     x, y = floor.middle(cell[0], len(rows) - 1 - cell[1])
     cells = [(i, j) for i in range(column, len(rows[0])) for j in range(len(rows)) if apart(rows, (i, j)) > radius]
-    found = Clearance(floor).nearest(x, y, radius, lambda point: point[0] > 3.0 + 0.5 * column)
+    found = Clearance(floor).nearest(x, y, radius, 5.0, lambda point: point[0] > 3.0 + 0.5 * column)
     near = [0.5 * math.dist(cell, one) for one in cells if 0.5 * math.dist(cell, one) <= 5]
     assert (found is None) == (not near)
     if found is not None:
@@ -65,4 +65,5 @@ def test_the_nearest_point_with_room_is_found(
 
 def test_a_point_far_off_the_map_has_no_room_near_it() -> None:
     rows = [["."] * 9] * 9
-    assert Clearance(ground(rows)).nearest(1e6, -1e6, 0.3) is None and Clearance(ground(rows)).metres(1e6, 0, 1) == 0
+    there = Clearance(ground(rows))
+    assert there.nearest(1e6, -1e6, 0.3, 5.0) is None and there.metres(1e6, 0, 1) == 0

@@ -107,7 +107,7 @@ def test_places_in_walls_and_too_near_to_them_keep_their_distances() -> None:
     assert codes(done) == ["WSP008", "MAP003"]
     assert "rooms.pur:3:5: warning WSP008: the pose of hall (4, 1) is in an obstacle" in done.err
     assert "rooms.pur:4:5: warning MAP003: the pose of shelf (11.75, 5) is nearer than 0.3 m" in done.err
-    assert "there is room at 11.55, " in done.err
+    assert "there is room at 11.45, 5.05, 0.30 m from there" in done.err
     assert "6 stays: hall is not on free ground" in done.out
     assert not Path("rooms_surveyed.pur").exists()
 
@@ -117,7 +117,7 @@ def test_a_place_in_a_wall_is_found_first_and_the_copy_is_written_though_it_has_
     text = text.replace("location desk\nrule", "location hall\nrule")
     done = surveyed(text=text, status=3)
     assert codes(done)[0] == "WSP008" and set(codes(done)[1:]) == {"PML153"}
-    assert re.search(r"warning WSP008: .*\n.*\n.*\n    help: there is room at 4\.45, 1\.05, 0\.45 m", done.err)
+    assert re.search(r"warning WSP008: .*\n.*\n.*\n    help: there is room at 4\.55, 1\.05, 0\.55 m", done.err)
     assert "wrote rooms_surveyed.pur\n" in done.err and "next:" not in done.err
     line = re.search(r"rooms_surveyed\.pur:(\d+):\d+: error PML153: bot1 can never do drop", done.err)
     assert line and "can_do fetch, drop" in copied().splitlines()[int(line[1]) - 1], "as a line of the copy"
@@ -131,9 +131,9 @@ def test_a_place_in_a_wall_is_found_first_and_the_copy_is_written_though_it_has_
 @pytest.mark.parametrize(
     ("pose", "told", "remedy"),
     [
-        ("12.1, 1.0", "is off the map", "there is room at 11.55, 1.05, 0.55 m from there"),
+        ("12.1, 1.0", "is off the map", "there is room at 11.45, 1.05, 0.65 m from there"),
         ("500, 1.0", "is off the map", "the map reaches from 0.0 to 12.0 in x and from 0.0 to 6.0 in y"),
-        ("4.0, 1.0", "is in an obstacle of the map", "there is room at 4.45, 1.05, 0.45 m from there"),
+        ("4.0, 1.0", "is in an obstacle of the map", "there is room at 4.55, 1.05, 0.55 m from there"),
     ],
 )
 def test_a_place_that_is_not_on_free_ground_is_told_where_there_is_room(pose: str, told: str, remedy: str) -> None:
@@ -155,7 +155,9 @@ def test_places_too_near_for_two_robots_and_ways_through_third_places_are_report
     near = TEXT.replace('poi "shelf"', 'poi "sofa" //[6.0, 3.5, 0, 0, 0, 0, 1]\npoi "shelf"')
     near = near.replace("connect hall and shelf distance 5.8", "connect desk and shelf distance 12")
     done = surveyed(text=near + "")
-    assert codes(done).count("MAP005") == 1 and "sofa is 0.50 m from hall: two robots need 0.8 m" in done.err
+    assert codes(done).count("MAP005") == 1
+    told = "the pose of sofa (6, 3.5) is 0.50 m from the pose of hall: two robots with a radius of 0.3 m and a goal "
+    assert f"{told}tolerance of 0.1 m need 0.8 m" in done.err
     assert "MAP006" in codes(done) and re.search("from desk to shelf leads through .*hall, where", done.err)
     assert re.search("connect desk and .*hall and shelf instead", done.err)
     assert "MAP005" not in codes(surveyed("--radius", "0.15", text=near))

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import Dict
 
-import pytest
-
 from pursue_gen.survey.graph import graph_of
 from pursue_gen.survey.grid import Point, grid_of
 from pursue_gen.survey.plan import Plan
@@ -49,12 +47,6 @@ def test_whatever_can_be_reached_is_connected_by_the_ways() -> None:
         for _ in ways:
             reached |= {end for way in ways if reached & set(way) for end in way}
         assert reached >= set(part)
-
-
-def test_places_at_which_two_robots_do_not_fit_are_found() -> None:
-    made = plan({"a": (1.0, 1.0), "b": (1.0, 1.79), "c": (1.0, 2.6)})
-    assert [(a, b) for a, b, _ in made.too_near()] == [("a", "b")]
-    assert made.too_near()[0][2] == pytest.approx(0.79)
 
 
 def test_parts_that_cannot_be_reached_from_each_other() -> None:

@@ -6,13 +6,14 @@ import json
 import math
 import re
 from pathlib import Path
-from typing import List
+from typing import List, Tuple
 
 import pytest
 
 from pursue_gen.drawing.ground import Ground, read_ground
 from pursue_gen.language import parse
 from pursue_gen.workspace.map_check import check_spots
+from pursue_gen.workspace.robot_size import RobotSize
 from tests.authoring.commands import pursue
 
 WALL, UNKNOWN, FREE = 0, 205, 254
@@ -35,8 +36,8 @@ def told(floor: Ground, behind: str, robots: int = 1, distance: float = 1.0) -> 
     text = f'poi "a" {behind}\nevent "work"\n'
     text += "".join(f'agent "bot{k}" controllable mobile 1 location a can_do work\n' for k in range(1, robots + 1))
     found = check_spots(parse(text + "reach_objective: do work\n", "test.pur"), floor, distance)
-    assert all(finding.code == "WSP008" and finding.span is not None and finding.hint for finding in found)
-    return [finding.message for finding in found]
+    assert all(finding.span is not None and finding.hint for finding in found)
+    return [finding.message for finding in found if finding.code == "WSP008"]
 
 
 @pytest.mark.parametrize(
@@ -87,6 +88,55 @@ def test_the_pose_of_a_place_to_which_no_robot_is_sent_does_not_count(tmp_path: 
 
 def test_a_place_without_a_pose_is_left_out(tmp_path: Path) -> None:
     assert told(floor_of(tmp_path), "", robots=2) == []
+
+
+ROOM = [[WALL] * 80, *[[WALL] + [FREE] * 78 + [WALL] for _ in range(48)], [WALL] * 80]
+"""8 m by 5 m, in cells of 0.1 m; the walls are 0.1 m thick."""
+ROOM_YAML = YAML.replace("1.0\n", "0.1\n").replace("[10, 20, 0]", "[0, 0, 0]")
+
+
+def found_in(floor: Ground, poses: str, robot: RobotSize, robots: int = 2) -> List[Tuple[str, str, str]]:
+    """Codes, messages and hints of places with these comments, for robots that may be at all of them."""
+    names = "abc"[: len(poses.splitlines())]
+    text = "".join(f'poi "{name}" //{pose}\n' for name, pose in zip(names, poses.splitlines()))
+    text += "".join(f"connect {a} and {b} distance 3\n" for a, b in zip(names, names[1:])) + 'event "work"\n'
+    text += "".join(f'agent "bot{k}" controllable mobile 1 location a can_do work\n' for k in range(1, robots + 1))
+    findings = check_spots(parse(text + "reach_objective: do work\n", "test.pur"), floor, 0.8, robot)
+    return [(finding.code, finding.message, finding.hint) for finding in findings]
+
+
+def test_a_robot_needs_room_to_stop_within_its_tolerance_and_to_turn(tmp_path: Path) -> None:
+    floor = floor_of(tmp_path, ROOM_YAML, ROOM)
+    too_near, tight = "is nearer than 0.2 m, the robots' radius", "is 0.30 m from an obstacle: to stop"
+    for x, told in ((0.25, too_near), (0.35, tight), (0.45, "")):
+        found = found_in(floor, f"[{x}, 2.55, 0, 0, 0, 0, 1]", RobotSize(0.2, 0.1), 1)
+        assert len(found) == bool(told)
+        for code, message, hint in found:
+            assert code == "MAP003" and told in message
+            assert "there is room at 0.45, 2.55, " in hint and "--robot" in hint
+
+
+def test_a_spot_is_outside_what_is_inflated_where_there_is_such_a_point_near_it(tmp_path: Path) -> None:
+    floor = floor_of(tmp_path, ROOM_YAML, ROOM)
+    pose = "[0.55, 2.55, 0, 0, 0, 0, 1]"
+    ((code, message, hint),) = found_in(floor, pose, RobotSize(0.2, 0.1, 0.7), 1)
+    assert code == "MAP003" and "0.50 m from an obstacle, within the robots' inflation radius of 0.7 m" in message
+    assert hint == "there is room at 0.85, 2.55, 0.30 m from there"
+    assert found_in(floor, pose, RobotSize(0.2, 0.1, 0.4), 1) == []
+    assert found_in(floor, pose, RobotSize(0.2, 0.1, 3.0), 1) == [], "nowhere in the room is there such a point"
+
+
+def test_two_robots_do_not_stand_in_each_other(tmp_path: Path) -> None:
+    floor = floor_of(tmp_path, ROOM_YAML, ROOM)
+    poses = "[2, 2, 0, 0, 0, 0, 1] bot2 [2.2, 2, 0, 0, 0, 0, 1]\n[5, 2, 0, 0, 0, 0, 1] bot1 [2, 2.3, 0, 0, 0, 0, 1]"
+    found = found_in(floor, poses, RobotSize(0.17, 0.1))
+    assert [code for code, _, _ in found] == ["MAP005", "MAP005"]
+    assert found[0][1].startswith("the spot of bot2 at a (2.2, 2) is 0.20 m from the pose of a: two robots with")
+    assert found[1][1].startswith("the spot of bot1 at b (2, 2.3) is 0.36 m from the spot of bot2 at a: ")
+    for _, message, hint in found:
+        x, y = map(float, re.search(r"room at ([\d.]+), ([\d.]+), ", hint).groups())  # type: ignore[union-attr]
+        assert min(math.dist((x, y), one) for one in ((2, 2), (5, 2))) >= 0.54 - 1e-9 and "need 0.54 m" in message
+    assert found_in(floor, poses, RobotSize(0.17, 0.1), 1) == [], "one robot is at one of them at a time"
 
 
 def test_check_reports_them_with_the_other_findings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
