@@ -6,7 +6,7 @@ import contextlib
 import json
 import sys
 from pathlib import Path
-from typing import List, Optional
+from typing import TYPE_CHECKING, List, Optional, Tuple
 
 import typer
 
@@ -14,6 +14,9 @@ from pursue_gen.cli.console import ended, guarded, info, show, suggest
 from pursue_gen.cli.options import ROBOT, SPOT_DISTANCE
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, as_json, counted
 from pursue_gen.files import shell_quoted
+
+if TYPE_CHECKING:
+    from pursue_gen.workspace.spots import Fit
 
 
 @guarded
@@ -32,9 +35,10 @@ def check(
     """
     from pursue_gen.solving.inputs import findings_in, outcome_of
 
-    findings = [finding for file in files for finding in findings_in(file)]
+    findings, fit = [finding for file in files for finding in findings_in(file)], None
     if floor is not None:
-        findings += _on_map(files, floor, spot_distance, robot)
+        more, fit = _on_map(files, floor, spot_distance, robot)
+        findings += more
     if as_json_:
         print(json.dumps([as_json(finding) for finding in findings], indent=1))
     else:
@@ -46,7 +50,7 @@ def check(
         suggest(f"pursue-gen explain {problem.diagnostics[0].code}")
         raise ended(problem)
     for file in files:
-        for sentence in (*_periods(file), *_moved(file, spot_distance)):
+        for sentence in (*_periods(file), *_moved(file, spot_distance, fit)):
             info(f"{file}: {sentence}")
     suggest(f"pursue-gen ws {shell_quoted(files[0])}")
 
@@ -60,22 +64,23 @@ def _periods(file: Path) -> List[str]:
     return quickly_found(scenario) if without_period(scenario) else []
 
 
-def _moved(file: Path, distance: float) -> List[str]:
+def _moved(file: Path, distance: float, fit: Optional[Fit]) -> List[str]:
     """Which robots are sent beside the pose that the scenario gives for a place, and how far."""
     from pursue_gen.language import load
     from pursue_gen.workspace.spots import moved
 
     scenario = load(file)
     several = sum(agent.is_robot for agent in scenario.agents) > 1
-    return moved(scenario, distance) if several and any(poi.pose for poi in scenario.pois) else []
+    return moved(scenario, distance, fit) if several and any(poi.pose for poi in scenario.pois) else []
 
 
-def _on_map(files: List[Path], floor: Path, spot_distance: float, robot: List[str]) -> List[Diagnostic]:
-    """The findings on the map, for scenarios without errors but for ways that are missing. Raises PursueError for a map
-    that cannot be used."""
+def _on_map(files: List[Path], floor: Path, spot_distance: float, robot: List[str]) -> Tuple[List[Diagnostic], Fit]:
+    """The findings on the map, for scenarios that lack nothing but ways, and how well spots fit there. Raises
+    PursueError for a map that cannot be used."""
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.language.parser import read_text
     from pursue_gen.workspace.map_check import check_spots, read_placed
+    from pursue_gen.workspace.map_spots import fit_on
     from pursue_gen.workspace.robot_size import read_size
 
     ground, size = read_ground(floor), read_size(robot)
@@ -83,4 +88,4 @@ def _on_map(files: List[Path], floor: Path, spot_distance: float, robot: List[st
     for file in files:
         with contextlib.suppress(PursueError):  # its errors are reported
             found += check_spots(read_placed(read_text(str(file)), str(file)), ground, spot_distance, size)
-    return found
+    return found, fit_on(ground, size)

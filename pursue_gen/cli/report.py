@@ -71,6 +71,7 @@ def report(
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.report.make import ReportOptions
     from pursue_gen.workspace.map_check import check_spots
+    from pursue_gen.workspace.map_spots import with_spots
     from pursue_gen.workspace.robot_size import read_size
 
     html = html or output is not None
@@ -93,7 +94,9 @@ def report(
     options = ReportOptions(reach_obj, runs if html else 0, under)
     read = scenario_from(scenario, request)
     if floor is not None:
-        show(check_spots(read, read_ground(floor), DEFAULT_DISTANCE, size))
+        ground = read_ground(floor)
+        show(check_spots(read, ground, DEFAULT_DISTANCE, size))
+        read = with_spots(read, ground, DEFAULT_DISTANCE, size)
     made = _made(read, options, solving)
     if pictures is not None:
         _write_pictures(made, pictures)

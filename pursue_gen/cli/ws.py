@@ -51,6 +51,7 @@ def ws(
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.workspace.make import Extras, make_workspace
     from pursue_gen.workspace.map_check import check_spots
+    from pursue_gen.workspace.map_spots import with_spots
     from pursue_gen.workspace.robot_size import read_size
 
     size = read_size(robot)
@@ -59,7 +60,9 @@ def ws(
     read = scenario_from(scenario, request)
     request = request.since(start)
     if floor is not None:
-        show(check_spots(read, read_ground(floor), spot_distance, size))
+        ground = read_ground(floor)
+        show(check_spots(read, ground, spot_distance, size))
+        read = with_spots(read, ground, spot_distance, size)
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")
     found = solve_and_print(read, request, explain)

@@ -103,7 +103,7 @@ class Jobs:
             self._process = None
 
     def _work(self, text: str) -> Work:
-        return Work(text, self._file, self._floor, self._seconds, self._memory)
+        return Work(text, self._file, self._floor, self._seconds, self._memory, self.robot)
 
     def _launch(self, target: Callable[[Any, Connection], None], given: Work) -> None:
         self.end()

@@ -15,6 +15,7 @@ from typing import Iterable, Iterator, List, Optional
 from pursue_gen.diagnostics import Diagnostic, PursueError
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.floor_picture import read_floor
+from pursue_gen.drawing.ground import read_ground
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Scenario
@@ -30,6 +31,9 @@ from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import IDEAL
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import Limits, Progress
+from pursue_gen.workspace.map_spots import with_spots
+from pursue_gen.workspace.robot_size import USUAL, RobotSize
+from pursue_gen.workspace.spots import SPOT_DISTANCE
 
 WON, LOST, UNDECIDED, ERRORS = "won", "lost", "undecided", "errors"
 _INTERVAL = 0.3
@@ -38,13 +42,15 @@ _INTERVAL = 0.3
 
 @dataclass(frozen=True)
 class Work:
-    """A text to solve; `file`: what messages call it, `floor`: the map under pictures; limits in seconds and MiB."""
+    """A text to solve; `file`: what messages call it, `floor`: the map under pictures; limits in seconds and MiB;
+    `robot`: the size of the robots."""
 
     text: str
     file: str
     floor: Optional[Path]
     seconds: float
     memory: int
+    robot: RobotSize = USUAL
 
 
 class Progressing:
@@ -107,6 +113,8 @@ def _solve(given: Work, pipe: Connection) -> None:
     request = SolveRequest(options=SolveOptions(limits=limits, progress=progress))
     scenario = settled(scenario_of(given), request, progress)
     request = request.since(start)
+    if given.floor is not None:
+        scenario = with_spots(scenario, read_ground(given.floor), SPOT_DISTANCE, given.robot)
     try:
         found = promised_of(scenario, request, progress)
     except (Lost, LimitHit) as problem:

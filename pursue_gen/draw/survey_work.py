@@ -12,7 +12,6 @@ from pursue_gen.draw.solve_work import ERRORS, Work, sentences, working
 from pursue_gen.drawing.ground import read_ground
 from pursue_gen.language.formatter import format_text
 from pursue_gen.workspace.map_check import read_placed
-from pursue_gen.workspace.robot_size import USUAL, RobotSize
 
 SURVEYED = "surveyed"
 
@@ -21,11 +20,10 @@ SURVEYED = "surveyed"
 class SurveyWork(Work):
     """A text whose ways are to be measured, on the map `floor`.
 
-    `robot`: the size of the robots, but for their `radius` in metres; `speed`: metres per second of all robots, None:
+    `radius`: that of `robot`, in metres, whatever it was; `speed`: metres per second of all robots, None:
     no travel times; `ways`: those that are missing are added.
     """
 
-    robot: RobotSize = USUAL
     radius: float = 0.3
     speed: Optional[float] = None
     ways: bool = False

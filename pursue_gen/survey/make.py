@@ -114,7 +114,7 @@ def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options
         *found_wrong.without_room(scenario, spots),
         *found_wrong.shut_in_places(placed, grid, lines, options.robot.radius, options.room),
         *found_wrong.other_unit(scenario, _compared(scenario, ways), _timed(with_new, ways), options.unit),
-        *check_spots(placed, ground, 0, options.robot),
+        *check_spots(placed, ground, 0, options.robot, plan.is_joined),
     ]
     proposals = [work.proposed(*pair) for pair in missing if pair not in new]
     poses = {place: {robot: pose for robot, pose in found if pose is not None} for place, found in spots.items()}

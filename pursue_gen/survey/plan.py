@@ -51,6 +51,13 @@ class Plan:
         found = [(_near(route.bends, at), name) for name, at in self.places.items() if name not in (a, b)]
         return [name for (apart, _), name in sorted(found, key=lambda one: one[0][1]) if apart < self.room]
 
+    def is_joined(self, point: Point) -> bool:
+        """Return True if the centre of a robot can get to a point of the map from most places."""
+        grid, part = self._graph.grid, self.parts()
+        if not (part and grid.is_free(grid.cell(*point))):
+            return not part
+        return math.isfinite(self._routes.estimate(self.places[part[0][0]], point))
+
     def parts(self) -> List[List[str]]:
         """The places, by what can be reached from each other; the largest part first."""
         parts: List[List[str]] = []

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import FrozenSet, Iterator, List, Optional, Sequence, Tuple
+from typing import Callable, FrozenSet, Iterator, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, warning
-from pursue_gen.drawing.clearance import Clearance
+from pursue_gen.drawing.clearance import Clearance, Point
 from pursue_gen.drawing.ground import FREE, OCCUPIED, OUTSIDE, UNKNOWN, Ground
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Pose, Scenario
+from pursue_gen.workspace.map_spots import fit_on, is_seen
 from pursue_gen.workspace.robot_size import USUAL, RobotSize
-from pursue_gen.workspace.spots import placing
+from pursue_gen.workspace.spots import Fit, placing
 
 _NEAR, _FAR = 1.5, 5.0
 """Metres around a point in which room is looked for that planners like, and any room at all."""
@@ -43,15 +44,20 @@ def but_for_ways(findings: Sequence[Diagnostic]) -> Tuple[Diagnostic, ...]:
 
 
 def check_spots(
-    scenario: Scenario, ground: Ground, distance: float, robot: RobotSize = USUAL
+    scenario: Scenario,
+    ground: Ground,
+    distance: float,
+    robot: RobotSize = USUAL,
+    may_be: Callable[[Point], bool] = lambda point: True,
 ) -> Tuple[Diagnostic, ...]:
     """A warning for each place or spot that is not on free ground, has too little room for a robot, or is too near
     another one, with the nearest point at which there is room; places without a pose are left out.
 
-    `distance`: metres between the robots at one place.
+    `distance`: metres between the robots at one place; those without a pose of their own stand where there is room.
+    `may_be`: whether a point (metres) may be proposed.
     """
-    points = tuple(_points(scenario, distance))
-    look = _Look(ground, Clearance(ground), robot, points)
+    points = tuple(_points(scenario, distance, fit_on(ground, robot)))
+    look = _Look(ground, Clearance(ground), robot, points, may_be)
     found = []
     for number, point in enumerate(points):
         finding = look.on_ground(point) or look.room(point)
@@ -91,6 +97,7 @@ class _Look:
     clearance: Clearance
     robot: RobotSize
     points: Tuple[_Point, ...]
+    may_be: Callable[[Point], bool]
 
     def on_ground(self, point: _Point) -> Optional[Diagnostic]:
         """A point that is not on free ground."""
@@ -140,15 +147,21 @@ class _Look:
             return f"move it: near it there is no room for a robot that needs {self.robot.needed:g} m"
         return self._move(point, better)
 
-    def _better(self, point: _Point, radius: float, reach: float) -> Optional[Tuple[float, float]]:
-        """The nearest point that is farther from obstacles than a radius, and far enough from all other points."""
+    def _better(self, point: _Point, radius: float, reach: float) -> Optional[Point]:
+        """The nearest point that is farther from obstacles than a radius, far enough from all other points, and not
+        beyond a wall if there is such a one."""
+        x, y = point.pose.x, point.pose.y
 
-        def is_apart(at: Tuple[float, float]) -> bool:
-            return all(one is point or one.apart(*at) >= self.robot.apart for one in self.points)
+        def is_apart(at: Point) -> bool:
+            return self.may_be(at) and all(one is point or one.apart(*at) >= self.robot.apart for one in self.points)
 
-        return self.clearance.nearest(point.pose.x, point.pose.y, radius, reach, is_apart)
+        def is_here(at: Point) -> bool:
+            return is_apart(at) and is_seen(self.ground, (x, y), at)
 
-    def _move(self, point: _Point, to: Tuple[float, float]) -> str:
+        here = self.clearance.nearest(x, y, radius, reach, is_here) if self.ground.at(x, y) == FREE else None
+        return here or self.clearance.nearest(x, y, radius, reach, is_apart)
+
+    def _move(self, point: _Point, to: Point) -> str:
         x, y = (round(number, 3) + 0.0 for number in to)
         where = f"there is room at {x:.10g}, {y:.10g}, {point.apart(x, y):.2f} m from there"
         if not point.unwritten:
@@ -171,9 +184,9 @@ def _extent(ground: Ground) -> str:
     return f"the map reaches from {left:.1f} to {right:.1f} in x and from {low:.1f} to {high:.1f} in y"
 
 
-def _points(scenario: Scenario, distance: float) -> Iterator[_Point]:
+def _points(scenario: Scenario, distance: float, fit: Fit) -> Iterator[_Point]:
     """The poses of the places, and the spots of the robots that may be there where they are other points."""
-    where, present = placing(scenario, distance), robots_at(scenario)
+    where, present = placing(scenario, distance, fit), robots_at(scenario)
     for poi in scenario.pois:
         own = {spot.robot.name: spot.robot.span for spot in poi.spots}
         spots = {robot: where.spots[robot][poi.name] for robot in present[poi.name]}

@@ -6,7 +6,7 @@ import math
 from collections import defaultdict
 from dataclasses import dataclass, replace
 from itertools import compress, count, islice
-from typing import DefaultDict, Dict, Iterable, Iterator, List, Mapping, Sequence, Tuple
+from typing import Callable, DefaultDict, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, counted, warning
 from pursue_gen.drawing.layout import poses
@@ -19,11 +19,15 @@ SPOT_DISTANCE = 0.8
 
 _DECIMALS = 3
 _ROUNDING = 0.002  # metres by which two rounded spots may be nearer
+_RINGS, _ANGLES = 4, 12  # around a place that are tried on a map, and directions on the first of them
 _ROOM = 4  # spots that are tried for each robot until it may be near another place
 
 Point = Tuple[float, float]
 Table = Mapping[str, Pose]
 """place → pose."""
+Fit = Callable[[Pose, Pose], int]
+"""How well a robot stands at a spot beside the pose of a place: from 0 (not at all) to `BEST`."""
+BEST = 2
 
 
 @dataclass(frozen=True)
@@ -39,19 +43,24 @@ class Placing:
     distance: float
 
 
-def placing(scenario: Scenario, distance: float) -> Placing:
+def placing(scenario: Scenario, distance: float, fit: Optional[Fit] = None) -> Placing:
     """The poses of a scenario, computed ones for places without, and the robots' spots."""
     places, computed = poses(scenario)
-    return Placing(places, spots(scenario, places, distance), computed, distance)
+    return Placing(places, spots(scenario, places, distance, fit), computed, distance)
 
 
-def spots(scenario: Scenario, places: Table, distance: float) -> Dict[str, Dict[str, Pose]]:
+def spots(
+    scenario: Scenario, places: Table, distance: float, fit: Optional[Fit] = None
+) -> Dict[str, Dict[str, Pose]]:
     """robot → place → the pose to which the robot is sent there; `places` has the places' own poses.
 
     A pose that the scenario gives for a robot stays as it is. Of the other robots that may be at a place, the first has
     the place's pose, and so has each that is never there together with one that has it. The rest stand beside it, left
     and right in turn, `distance` metres from each other and, where there is room, from the poses of other places. All
     look in the same direction. Positions are rounded to millimetres. With distance 0 all have the place's pose.
+
+    `fit`: how well a robot stands at a spot beside a pose that a person has given. Those that fit best come first, then
+    those nearer to the place, and beside it before any other direction; where nothing fits all is as without.
     """
     own = {poi.name: {spot.robot.name: spot.pose for spot in poi.spots} for poi in scenario.pois}
     found = {
@@ -67,16 +76,19 @@ def spots(scenario: Scenario, places: Table, distance: float) -> Dict[str, Dict[
     for poi in scenario.pois:
         groups = _groups(scenario, poi, present[poi.name])[1:]
         here = _Taken(distance, given[poi.name])
-        for robots, spot in zip(groups, _beside(places[poi.name], distance, here, everywhere, _ROOM * len(groups))):
+        free = _beside(places[poi.name], distance, here, everywhere, _ROOM * len(groups))
+        if fit is not None and poi.pose is not None:
+            free = _fitting(poi.pose, distance, fit, everywhere, free)
+        for robots, spot in zip(groups, free):
             found.update({robot: {**found[robot], poi.name: spot} for robot in robots})
             everywhere.add(spot)
     return found
 
 
-def moved(scenario: Scenario, distance: float) -> List[str]:
+def moved(scenario: Scenario, distance: float, fit: Optional[Fit] = None) -> List[str]:
     """A sentence for each place whose pose a person has given and some robots are sent beside: which, and how far."""
     found, present = [], robots_at(scenario)
-    where = placing(scenario, distance)
+    where = placing(scenario, distance, fit)
     for poi in scenario.pois:
         groups = _groups(scenario, poi, present[poi.name])
         if poi.pose is None or len(groups) < 2 or distance <= 0:
@@ -84,7 +96,7 @@ def moved(scenario: Scenario, distance: float) -> List[str]:
         away = []
         for robot in (robot for robots in groups[1:] for robot in robots):
             spot = where.spots[robot][poi.name]
-            away.append(f"{robot} {math.dist((spot.x, spot.y), (poi.pose.x, poi.pose.y)):g} m")
+            away.append(f"{robot} {round(math.dist((spot.x, spot.y), (poi.pose.x, poi.pose.y)), _DECIMALS):g} m")
         first = " and ".join(groups[0])
         found.append(f"at {poi.name} {first} has the pose of the place; beside it: {', '.join(away)} (--spot-distance)")
     return found
@@ -164,13 +176,40 @@ def _beside(pose: Pose, distance: float, here: _Taken, everywhere: _Taken, most:
     yield from (spot for spot in line if not here.near(spot))
 
 
+def _fitting(pose: Pose, distance: float, fit: Fit, everywhere: _Taken, others: Iterator[Pose]) -> Iterator[Pose]:
+    """The spots around a pose that fit, the best ones first, as far as they are free; then the others."""
+    around = [(fit(pose, spot), spot) for spot in _rings(pose, distance)]
+    used: List[Point] = []
+    for wanted in range(BEST, 0, -1):
+        for level, spot in around:
+            if level == wanted and not everywhere.near(spot):
+                used.append((spot.x, spot.y))
+                yield spot
+    for spot in others:
+        if all(math.dist(one, (spot.x, spot.y)) >= distance - _ROUNDING for one in used):
+            yield spot
+
+
+def _rings(pose: Pose, distance: float) -> Iterator[Pose]:
+    """The points of some rings around a pose, the nearest first, and of each ring those beside it first."""
+    for ring in range(1, _RINGS + 1):
+        angles = [math.tau * k / (_ANGLES * ring) for k in range(_ANGLES * ring)]
+        for angle in sorted(angles, key=lambda one: (round(abs(math.cos(one)), 9), math.sin(one) < 0)):
+            yield _at(pose, ring * distance, angle)
+
+
 def _line(pose: Pose, distance: float) -> Iterator[Pose]:
     """The points on both sides of a pose, the nearest first, the left one before the right one."""
-    yaw = math.atan2(2 * (pose.qw * pose.qz + pose.qx * pose.qy), 1 - 2 * (pose.qy * pose.qy + pose.qz * pose.qz))
     for steps in count(1):
         for offset in (steps * distance, -steps * distance):
-            x, y = pose.x - offset * math.sin(yaw), pose.y + offset * math.cos(yaw)
-            yield replace(pose, x=_rounded(x), y=_rounded(y))
+            yield _at(pose, offset, math.pi / 2)
+
+
+def _at(pose: Pose, distance: float, angle: float) -> Pose:
+    """The point so far from a pose, in a direction seen from its own (radians)."""
+    yaw = math.atan2(2 * (pose.qw * pose.qz + pose.qx * pose.qy), 1 - 2 * (pose.qy * pose.qy + pose.qz * pose.qz))
+    x, y = pose.x + distance * math.cos(yaw + angle), pose.y + distance * math.sin(yaw + angle)
+    return replace(pose, x=_rounded(x), y=_rounded(y))
 
 
 def _rounded(metres: float) -> float:

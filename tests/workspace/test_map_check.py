@@ -22,6 +22,7 @@ ROWS = [
     [WALL, FREE, FREE, UNKNOWN],
     [WALL, FREE, FREE, UNKNOWN],
 ]
+CELL = [[WALL, WALL, WALL], [WALL, FREE, WALL], [WALL, WALL, WALL]]
 YAML = "image: floor.pgm\nresolution: 1.0\norigin: [10, 20, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
 
 
@@ -71,13 +72,13 @@ def test_the_settings_of_the_map_count(tmp_path: Path) -> None:
 
 
 def test_the_spots_of_robots_are_checked_too(tmp_path: Path) -> None:
-    floor = floor_of(tmp_path)
     pose = "//[11.5, 21.5, 0, 0, 0, 0, 1]"  # beside it on the left is the wall, on the right there is room
-    (left,) = told(floor, pose, robots=3)
-    assert left == "the spot of bot2 at a (11.5, 22.5) is in an obstacle of the map"
-    assert told(floor, pose, robots=2, distance=0.4) == []
-    (own,) = told(floor, f"{pose} bot2 [9, 9, 0, 0, 0, 0, 1]", robots=2)
+    assert told(floor_of(tmp_path), pose, robots=3) == []
+    (own,) = told(floor_of(tmp_path), f"{pose} bot2 [9, 9, 0, 0, 0, 0, 1]", robots=2)
     assert own == "the spot of bot2 at a (9, 9) is off the map"
+    left = told(floor_of(tmp_path, rows=CELL), pose, robots=2)
+    assert left == ["the spot of bot2 at a (11.5, 22.5) is in an obstacle of the map"]
+    assert told(floor_of(tmp_path, rows=CELL), pose, robots=2, distance=0.4) == []
 
 
 def test_the_pose_of_a_place_to_which_no_robot_is_sent_does_not_count(tmp_path: Path) -> None:
@@ -141,7 +142,7 @@ def test_two_robots_do_not_stand_in_each_other(tmp_path: Path) -> None:
 
 def test_check_reports_them_with_the_other_findings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    floor_of(tmp_path)
+    floor_of(tmp_path, rows=CELL)
     text = 'poi "a" //[11.5, 21.5, 0, 0, 0, 0, 2]\nevent "work"\n'
     text += "".join(f'agent "{bot}" controllable mobile 1 location a can_do work\n' for bot in ("bot1", "bot2"))
     Path("two.pur").write_text(text + "reach_objective: do work\n")
@@ -149,7 +150,7 @@ def test_check_reports_them_with_the_other_findings(tmp_path: Path, monkeypatch:
     done = pursue("check", "two.pur", "--map", "map.yaml")
     assert (done.status, re.findall("warning ([A-Z0-9]+)", done.out)) == (0, ["PML120", "WSP008"])
     assert "two.pur:1:5: warning WSP008: the spot of bot2 at a (11.5, 22.3)" in done.out
-    assert "write a pose for it behind that of a: bot2 [12.5, 21.5, 0, 0, 0, 0, 1]" in done.out
+    assert "move it: near it there is no room for a robot that needs 0.4 m" in done.out
     assert "0 errors, 2 warnings" in done.err
     assert "WSP008" not in pursue("check", "two.pur", "--map", "map.yaml", "--spot-distance", "0.4").out
     both = pursue("check", "bad.pur", "two.pur", "--map", "map.yaml", "--json")
