@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, List, Optional, Tuple
 import typer
 
 from pursue_gen.cli.console import ended, guarded, info, show, suggest
+from pursue_gen.cli.on_map import on_map
 from pursue_gen.cli.options import ROBOT, SPOT_DISTANCE
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, as_json, counted
 from pursue_gen.files import shell_quoted
@@ -79,7 +80,7 @@ def _on_map(files: List[Path], floor: Path, spot_distance: float, robot: List[st
     PursueError for a map that cannot be used."""
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.language.parser import read_text
-    from pursue_gen.workspace.map_check import check_spots, read_placed
+    from pursue_gen.workspace.map_check import read_placed
     from pursue_gen.workspace.map_spots import fit_on
     from pursue_gen.workspace.robot_size import read_size
 
@@ -87,5 +88,5 @@ def _on_map(files: List[Path], floor: Path, spot_distance: float, robot: List[st
     found: List[Diagnostic] = []
     for file in files:
         with contextlib.suppress(PursueError):  # its errors are reported
-            found += check_spots(read_placed(read_text(str(file)), str(file)), ground, spot_distance, size)
+            found += on_map(read_placed(read_text(str(file)), str(file)), ground, spot_distance, size)
     return found, fit_on(ground, size)

@@ -11,6 +11,7 @@ import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.inputs import scenario_from
+from pursue_gen.cli.on_map import on_map
 from pursue_gen.cli.options import DEFAULT_DISTANCE, JSON, REQUEST, ROBOT, SCENARIO, with_request
 from pursue_gen.diagnostics import counted, error, usage_error
 from pursue_gen.files import shell_quoted
@@ -70,7 +71,6 @@ def report(
     from pursue_gen.drawing.floor_picture import read_floor
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.report.make import ReportOptions
-    from pursue_gen.workspace.map_check import check_spots
     from pursue_gen.workspace.map_spots import with_spots
     from pursue_gen.workspace.robot_size import read_size
 
@@ -95,7 +95,7 @@ def report(
     read = scenario_from(scenario, request)
     if floor is not None:
         ground = read_ground(floor)
-        show(check_spots(read, ground, DEFAULT_DISTANCE, size))
+        show(on_map(read, ground, DEFAULT_DISTANCE, size))
         read = with_spots(read, ground, DEFAULT_DISTANCE, size)
     made = _made(read, options, solving)
     if pictures is not None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, List, Optional
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
+from pursue_gen.cli.on_map import on_map
 from pursue_gen.cli.options import EXPLAIN, MISSION, REQUEST, ROBOT, SCENARIO, SPOT_DISTANCE, Controllers, with_request
 from pursue_gen.files import shell_quoted
 
@@ -50,7 +51,6 @@ def ws(
     from pursue_gen.drawing.floor_picture import read_floor
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.workspace.make import Extras, make_workspace
-    from pursue_gen.workspace.map_check import check_spots
     from pursue_gen.workspace.map_spots import with_spots
     from pursue_gen.workspace.robot_size import read_size
 
@@ -61,7 +61,7 @@ def ws(
     request = request.since(start)
     if floor is not None:
         ground = read_ground(floor)
-        show(check_spots(read, ground, spot_distance, size))
+        show(on_map(read, ground, spot_distance, size))
         read = with_spots(read, ground, spot_distance, size)
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")

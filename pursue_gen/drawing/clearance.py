@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Callable, Optional, Tuple
+from typing import Callable, Optional, Sequence, Tuple
 
 from pursue_gen.drawing.ground import Ground
 
@@ -82,6 +82,21 @@ class Clearance:
                 if self._free.find(0, here - wide, here + wide + 1) >= 0:
                     return False
         return True
+
+
+def to_line(line: Sequence[Point], point: Point) -> Tuple[float, float]:
+    """How near a line with bends comes to a point, and how far along the line that is."""
+    best, along = (math.inf, 0.0), 0.0
+    for a, b in zip(line, line[1:]):
+        size = math.dist(a, b)
+        share = 0.0
+        if size > 0:
+            share = ((point[0] - a[0]) * (b[0] - a[0]) + (point[1] - a[1]) * (b[1] - a[1])) / size**2
+            share = min(1.0, max(0.0, share))
+        at = a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])
+        best = min(best, (math.dist(at, point), along + share * size))
+        along += size
+    return best
 
 
 @lru_cache(maxsize=2)

@@ -2,33 +2,48 @@
 
 from __future__ import annotations
 
+import math
 from typing import AbstractSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, warning
+from pursue_gen.drawing.clearance import Clearance
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Connection, Pose, Scenario
 from pursue_gen.survey.copying import Movement
 from pursue_gen.survey.grid import Grid
 from pursue_gen.survey.plan import Plan
-from pursue_gen.survey.spots import Ways, exits_of, shut_in
+from pursue_gen.survey.spots import exits_of, shut_in
+from pursue_gen.workspace.map_check import Ways
 
 _SOME = 8  # places that a message lists
+_REACH = 5.0  # metres around a place in which a point that can be reached is looked for
 
 
-def apart(scenario: Scenario, plan: Plan) -> Iterator[Diagnostic]:
-    """Ways whose ends cannot be reached from each other, and places that cannot be reached from most others."""
+def apart(scenario: Scenario, plan: Plan, clearance: Clearance, needed: float) -> Iterator[Diagnostic]:
+    """Ways whose ends cannot be reached from each other, and places that cannot be reached from most others; `needed`:
+    how far from obstacles a place has to be (metres)."""
     spans = {poi.name: poi.span for poi in scenario.pois}
-    hint = "look for a door that is closed or narrow on the map, clean the map, or try a smaller --radius"
+    first, *others = plan.parts() or [[]]
+
+    def hint(names: Iterable[str]) -> str:
+        found = "look for a door that is closed or narrow on the map, clean the map, or try a smaller --radius"
+        for name in names:
+            point = None if name in first else clearance.nearest(*plan.places[name], needed, _REACH, plan.is_joined)
+            if point is not None:
+                metres = math.dist(point, plan.places[name])
+                return f"{first[0]} reaches {point[0]:.2f}, {point[1]:.2f}, {metres:.2f} m from {name}; or {found}"
+        return found
+
     named = set()
     for way in scenario.connections:
         if {way.a, way.b} <= set(plan.places) and plan.route(way.a, way.b) is None:
             named |= {way.a, way.b}
-            yield warning("MAP004", f"on the map a robot cannot get from {way.a} to {way.b}", way.span, hint)
-    first, *others = plan.parts() or [[]]
+            message = f"on the map a robot cannot get from {way.a} to {way.b}"
+            yield warning("MAP004", message, way.span, hint((way.a, way.b)))
     for part in others:
         if not named.intersection(part):
             message = f"on the map a robot cannot get from {_listed(first)} to {_listed(part)}"
-            yield warning("MAP004", message, spans[part[0]], hint)
+            yield warning("MAP004", message, spans[part[0]], hint(part))
 
 
 def crossing(scenario: Scenario, plan: Plan) -> Iterator[Diagnostic]:

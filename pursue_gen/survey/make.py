@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Severity, counted, error, in_order, usage_error
+from pursue_gen.drawing.clearance import Clearance
 from pursue_gen.drawing.ground import Ground
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.checks import check_reading
@@ -22,9 +23,10 @@ from pursue_gen.survey.graph import graph_of
 from pursue_gen.survey.grid import Grid, grid_of
 from pursue_gen.survey.plan import Pair, Plan
 from pursue_gen.survey.routes import Route, Routes
-from pursue_gen.survey.spots import Spots, Standing, Ways, proposed_spots
+from pursue_gen.survey.spots import Spots, Standing, proposed_spots
 from pursue_gen.survey.times import Drive, window
-from pursue_gen.workspace.map_check import check_spots
+from pursue_gen.workspace.map_check import Ways, check_spots
+from pursue_gen.workspace.map_spots import with_spots
 from pursue_gen.workspace.robot_size import USUAL, RobotSize
 
 MOST_PLACES = 200
@@ -109,16 +111,50 @@ def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options
     ways = {way: work.way(way, given=(way.a, way.b) not in new) for way in with_new.connections}
     text, errors = _copy(work, ways, spots, copy or f"the copy of {scenario.file}")
     findings = [
-        *found_wrong.apart(scenario, plan),
-        *found_wrong.crossing(scenario, plan),
+        *_found_on_map(placed, scenario, ground, _OnMap(grid, plan, lines), options, 0),
         *found_wrong.without_room(scenario, spots),
-        *found_wrong.shut_in_places(placed, grid, lines, options.robot.radius, options.room),
         *found_wrong.other_unit(scenario, _compared(scenario, ways), _timed(with_new, ways), options.unit),
-        *check_spots(placed, ground, 0, options.robot, plan.is_joined),
     ]
     proposals = [work.proposed(*pair) for pair in missing if pair not in new]
     poses = {place: {robot: pose for robot, pose in found if pose is not None} for place, found in spots.items()}
     return Survey(text, in_order(findings), errors, (*ways.values(), *proposals), poses)
+
+
+def found_on_map(scenario: Scenario, ground: Ground, distance: float, robot: RobotSize) -> Tuple[Diagnostic, ...]:
+    """What is wrong on a map with a scenario's places, spots and ways, in order; as far as it can be measured.
+
+    `distance`: metres between the robots at one place that have no pose of their own. The pixels of `ground` are known.
+    """
+    options = Options(robot)
+    grid = grid_of(ground, robot.radius)
+    try:
+        plan = _plan(scenario, grid, options)
+    except Invalid:  # too few places, or too many
+        return check_spots(scenario, ground, distance, robot)
+    here = _OnMap(grid, plan, _lines(scenario, plan))
+    placed = with_spots(scenario, ground, distance, robot)
+    return in_order(_found_on_map(placed, scenario, ground, here, options, distance))
+
+
+@dataclass(frozen=True)
+class _OnMap:
+    """A scenario on the map: the grid, its places, and the paths of its ways."""
+
+    grid: Grid
+    plan: Plan
+    lines: Ways
+
+
+def _found_on_map(
+    placed: Scenario, scenario: Scenario, ground: Ground, here: _OnMap, options: Options, distance: float
+) -> Iterator[Diagnostic]:
+    """What is wrong with places, spots and ways; `placed` has a pose for each robot that shares a place."""
+    robot, plan = options.robot, here.plan
+    yield from found_wrong.apart(scenario, plan, Clearance(ground), robot.needed)
+    yield from found_wrong.crossing(scenario, plan)
+    yield from found_wrong.shut_in_places(placed, here.grid, here.lines, robot.radius, options.room)
+    spots = scenario if distance else placed  # those that are not written are called so
+    yield from check_spots(spots, ground, distance, robot, plan.is_joined, here.lines)
 
 
 def _check_robots(scenario: Scenario, options: Options) -> None:

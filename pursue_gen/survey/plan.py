@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import heapq
 import math
+from functools import cached_property
 from itertools import combinations
-from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
+from typing import Dict, Iterable, List, Mapping, Optional, Tuple
 
+from pursue_gen.drawing.clearance import to_line
 from pursue_gen.survey.graph import Graph
 from pursue_gen.survey.grid import Point
 from pursue_gen.survey.routes import Route, Routes
@@ -48,15 +50,21 @@ class Plan:
         route = self.route(a, b)
         if route is None:
             return []
-        found = [(_near(route.bends, at), name) for name, at in self.places.items() if name not in (a, b)]
+        found = [(to_line(route.bends, at), name) for name, at in self.places.items() if name not in (a, b)]
         return [name for (apart, _), name in sorted(found, key=lambda one: one[0][1]) if apart < self.room]
 
     def is_joined(self, point: Point) -> bool:
         """Return True if the centre of a robot can get to a point of the map from most places."""
-        grid, part = self._graph.grid, self.parts()
-        if not (part and grid.is_free(grid.cell(*point))):
-            return not part
-        return math.isfinite(self._routes.estimate(self.places[part[0][0]], point))
+        grid = self._graph.grid
+        if self._most is None or not grid.is_free(grid.cell(*point)):
+            return self._most is None
+        return math.isfinite(self._routes.estimate(self._most, point))
+
+    @cached_property
+    def _most(self) -> Optional[Point]:
+        """One of the places of the largest part."""
+        parts = self.parts()
+        return self.places[parts[0][0]] if parts else None
 
     def parts(self) -> List[List[str]]:
         """The places, by what can be reached from each other; the largest part first."""
@@ -127,18 +135,3 @@ class _Ways:
                     best[other] = far
                     heapq.heappush(queue, (far, other))
         return False
-
-
-def _near(line: Sequence[Point], point: Point) -> Tuple[float, float]:
-    """How near a line with bends comes to a point, and how far along the line that is."""
-    best, along = (math.inf, 0.0), 0.0
-    for a, b in zip(line, line[1:]):
-        size = math.dist(a, b)
-        share = 0.0
-        if size > 0:
-            share = ((point[0] - a[0]) * (b[0] - a[0]) + (point[1] - a[1]) * (b[1] - a[1])) / size**2
-            share = min(1.0, max(0.0, share))
-        at = a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])
-        best = min(best, (math.dist(at, point), along + share * size))
-        along += size
-    return best

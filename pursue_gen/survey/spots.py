@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from itertools import islice
-from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
+from typing import Dict, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 from scipy import ndimage
@@ -15,6 +15,7 @@ from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Poi, Pose, Scenario
 from pursue_gen.survey.grid import Array, Grid, Point
 from pursue_gen.survey.times import yaw_of
+from pursue_gen.workspace.map_check import Ways
 
 _REACH = 4
 """How far from a place its spots are looked for: so many times the room of a robot, and 3 m at least."""
@@ -43,8 +44,6 @@ class Standing:
 
 Spots = Dict[str, List[Tuple[str, Optional[Pose]]]]
 """place → robots without a pose of their own there, with the spot that is proposed; None: there is no room."""
-Ways = Mapping[Tuple[str, str], Sequence[Point]]
-"""The two places of a way → the bends of its path, from the first to the second (metres)."""
 
 
 def proposed_spots(

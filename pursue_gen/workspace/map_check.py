@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Callable, FrozenSet, Iterator, List, Optional, Sequence, Tuple
+from typing import Callable, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, warning
-from pursue_gen.drawing.clearance import Clearance, Point
+from pursue_gen.drawing.clearance import Clearance, Point, to_line
 from pursue_gen.drawing.ground import FREE, OCCUPIED, OUTSIDE, UNKNOWN, Ground
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.checks import check_reading
@@ -16,6 +16,9 @@ from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.workspace.map_spots import fit_on, is_seen
 from pursue_gen.workspace.robot_size import USUAL, RobotSize
 from pursue_gen.workspace.spots import Fit, placing
+
+Ways = Mapping[Tuple[str, str], Sequence[Point]]
+"""The two places of a way → the bends of its path, from the first to the second (metres)."""
 
 _NEAR, _FAR = 1.5, 5.0
 """Metres around a point in which room is looked for that planners like, and any room at all."""
@@ -49,27 +52,31 @@ def check_spots(
     distance: float,
     robot: RobotSize = USUAL,
     may_be: Callable[[Point], bool] = lambda point: True,
+    ways: Optional[Ways] = None,
 ) -> Tuple[Diagnostic, ...]:
     """A warning for each place or spot that is not on free ground, has too little room for a robot, or is too near
     another one, with the nearest point at which there is room; places without a pose are left out.
 
     `distance`: metres between the robots at one place; those without a pose of their own stand where there is room.
-    `may_be`: whether a point (metres) may be proposed.
+    `may_be`: whether a point (metres) may be proposed. `ways`: their paths, where they are known; spots on the way of
+    others are warned about then.
     """
     points = tuple(_points(scenario, distance, fit_on(ground, robot)))
-    look = _Look(ground, Clearance(ground), robot, points, may_be)
+    look = _Look(ground, Clearance(ground), robot, points, may_be, ways or {})
+    present = robots_at(scenario)
     found = []
     for number, point in enumerate(points):
         finding = look.on_ground(point) or look.room(point)
         found += [finding] if finding else []
         found += look.neighbour(point, points[:number])
+        found += look.on_a_way(point, present)
     return tuple(found)
 
 
 @dataclass(frozen=True)
 class _Point:
     """Where robots are sent: what it is in words, who is sent there (nobody: a place that no robot gets to), and whose
-    spot has to be written to change it; "": the pose stands there."""
+    spot has to be written to change it; "": the pose stands there. `is_spot`: of one robot, not the pose of a place."""
 
     what: str
     pose: Pose
@@ -77,6 +84,7 @@ class _Point:
     place: str
     robots: FrozenSet[str] = frozenset()
     unwritten: str = ""
+    is_spot: bool = True
 
     def __str__(self) -> str:
         return f"{self.what} ({self.pose.x:g}, {self.pose.y:g})"
@@ -98,6 +106,7 @@ class _Look:
     robot: RobotSize
     points: Tuple[_Point, ...]
     may_be: Callable[[Point], bool]
+    ways: Ways
 
     def on_ground(self, point: _Point) -> Optional[Diagnostic]:
         """A point that is not on free ground."""
@@ -140,6 +149,22 @@ class _Look:
         hint = f"{self.remedy(point)}; or keep robots from being at both at once (objective: avoid …); {_SMALLER}"
         return [warning("MAP005", message, point.span, hint)]
 
+    def on_a_way(self, point: _Point, present: Mapping[str, Sequence[str]]) -> List[Diagnostic]:
+        """The nearest way of other robots that a robot's spot is on; ways through places are told of the ways."""
+        if not point.is_spot:
+            return []
+        near = [
+            (to_line(line, (point.pose.x, point.pose.y))[0], a, b)
+            for (a, b), line in self.ways.items()
+            if point.place not in (a, b) and set(present[a]) & set(present[b]) - point.robots
+        ]
+        metres, a, b = min(near, default=(math.inf, "", ""))
+        if metres >= self.robot.apart - _TOUCH:
+            return []
+        message = f"{point} is {metres:.2f} m from the way from {a} to {b}: who stands there is in the way of others, "
+        message += f"who need {self.robot.apart:g} m"
+        return [warning("MAP006", message, point.span, f"{self.remedy(point)}; {_SMALLER}")]
+
     def remedy(self, point: _Point) -> str:
         """What to do about a point where there is too little room."""
         better = self._better(point, self.robot.wanted, _NEAR) or self._better(point, self.robot.needed, _FAR)
@@ -148,15 +173,18 @@ class _Look:
         return self._move(point, better)
 
     def _better(self, point: _Point, radius: float, reach: float) -> Optional[Point]:
-        """The nearest point that is farther from obstacles than a radius, far enough from all other points, and not
-        beyond a wall if there is such a one."""
+        """The nearest point that is farther from obstacles than a radius, far enough from all other points; if there
+        is such a one, not on the way of others and not beyond a wall."""
         x, y = point.pose.x, point.pose.y
+
+        lines = [line for ends, line in self.ways.items() if point.place not in ends]
 
         def is_apart(at: Point) -> bool:
             return self.may_be(at) and all(one is point or one.apart(*at) >= self.robot.apart for one in self.points)
 
         def is_here(at: Point) -> bool:
-            return is_apart(at) and is_seen(self.ground, (x, y), at)
+            aside = all(to_line(line, at)[0] >= self.robot.apart for line in lines)
+            return aside and is_apart(at) and is_seen(self.ground, (x, y), at)
 
         here = self.clearance.nearest(x, y, radius, reach, is_here) if self.ground.at(x, y) == FREE else None
         return here or self.clearance.nearest(x, y, radius, reach, is_apart)
@@ -192,7 +220,7 @@ def _points(scenario: Scenario, distance: float, fit: Fit) -> Iterator[_Point]:
         spots = {robot: where.spots[robot][poi.name] for robot in present[poi.name]}
         if poi.pose is not None and (not spots or set(spots) - set(own)):
             robots = frozenset(robot for robot, spot in spots.items() if spot == poi.pose)
-            yield _Point(f"the pose of {poi.name}", poi.pose, poi.span, poi.name, robots)
+            yield _Point(f"the pose of {poi.name}", poi.pose, poi.span, poi.name, robots, is_spot=False)
         for robot, spot in spots.items():
             what = f"the spot of {robot} at {poi.name}"
             if robot in own:

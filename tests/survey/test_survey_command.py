@@ -163,6 +163,37 @@ def test_places_too_near_for_two_robots_and_ways_through_third_places_are_report
     assert "MAP005" not in codes(surveyed("--radius", "0.15", text=near))
 
 
+def test_a_spot_on_the_way_of_others_is_told_where_it_is_not() -> None:
+    text = TEXT.replace("//[1.0, 1.0, 0, 0, 0, 0, 1]", "//[1.0, 1.0, 0, 0, 0, 0, 1] bot2 [9.5, 3.3, 0, 0, 0, 0, 1]")
+    done = surveyed(text=text)
+    told = r"rooms\.pur:2:\d+: warning MAP006: the spot of bot2 at desk \(9\.5, 3\.3\) is 0\.\d\d m from the way from "
+    assert codes(done) == ["MAP006"] and re.search(told + "hall to shelf", done.err)
+    x, y = re.search(r"there is room at ([\d.]+), ([\d.]+), ", done.err).groups()  # type: ignore[union-attr]
+    assert codes(surveyed(text=text.replace("[9.5, 3.3,", f"[{x}, {y},"))) == []
+    one = text.replace('agent "bot1" controllable', 'agent "bot1"')
+    assert codes(surveyed(text=one)) == [], "nobody else drives there"
+
+
+def test_check_and_ws_say_on_a_map_what_survey_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = TEXT.replace("connect hall and shelf distance 5.8", "connect desk and shelf distance 12")
+    text = text.replace("//[6.0, 3.0, 0, 0, 0, 0, 1]", "//[6.0, 3.0, 0, 0, 0, 0, 1] bot2 [9.5, 3.3, 0, 0, 0, 0, 1]")
+    text = text.replace("//[11.0, 5.0", "//[11.55, 5.0")
+    done = surveyed(text=text, status=0)
+    checked = pursue("check", "rooms.pur", "--map", "map.yaml")
+    assert {"MAP003", "MAP006"} <= set(codes(done))
+    assert set(codes(done)) - {"MAP008"} == set(re.findall(r"warning (MAP\d{3})", checked.out))
+    monkeypatch.setitem(sys.modules, "scipy", None)
+    alone = pursue("check", "rooms.pur", "--map", "map.yaml")
+    assert "MAP003" in alone.out and "MAP006" not in alone.out and "Ways are not looked at" in alone.err
+
+
+def test_a_place_behind_a_closed_door_is_told_the_nearest_point_that_can_be_reached(folder: Path) -> None:
+    write(folder, drawn((12, 6), [(7.9, 0.0, 8.1, 6.0)], resolution=CELL), CELL)
+    done = surveyed(text=TEXT.replace("//[11.0, 5.0", "//[8.6, 5.0"))
+    assert codes(done) == ["MAP004"] and "a robot cannot get from hall to shelf" in done.err
+    assert re.search(r"help: desk reaches 7\.45, 5\.05, 1\.15 m from shelf; or look for a door", done.err)
+
+
 def test_missing_ways_are_proposed_and_written_on_demand() -> None:
     text = TEXT.replace("connect hall and shelf distance 5.8\n", "connect desk and shelf distance 12\n")
     assert "hall - shelf" in surveyed(text=text).out and "connect hall and shelf" not in copied()

@@ -1,0 +1,30 @@
+"""What commands with `--map` say of a scenario's places, spots and ways."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Tuple
+
+from pursue_gen.cli.console import info
+
+if TYPE_CHECKING:
+    from pursue_gen.diagnostics import Diagnostic
+    from pursue_gen.drawing.ground import Ground
+    from pursue_gen.language.scenario import Scenario
+    from pursue_gen.workspace.robot_size import RobotSize
+
+
+def on_map(scenario: Scenario, ground: Ground, distance: float, robot: RobotSize) -> Tuple[Diagnostic, ...]:
+    """The findings of `survey`, without measuring; of the points alone where its packages or the pixels are missing."""
+    from pursue_gen.workspace.map_check import check_spots
+
+    if ground.cells is not None:
+        try:
+            import scipy
+
+            from pursue_gen.survey.make import found_on_map
+        except ImportError:
+            info("Ways are not looked at on the map without numpy and scipy: pip install 'pursue-gen[survey]'")
+        else:
+            del scipy
+            return found_on_map(scenario, ground, distance, robot)
+    return check_spots(scenario, ground, distance, robot)
