@@ -6,7 +6,7 @@ import contextlib
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, List, Optional, Tuple
+from typing import TYPE_CHECKING, Dict, List, Optional, Tuple
 
 import typer
 
@@ -36,9 +36,10 @@ def check(
     """
     from pursue_gen.solving.inputs import findings_in, outcome_of
 
-    findings, fit = [finding for file in files for finding in findings_in(file)], None
+    findings = [finding for file in files for finding in findings_in(file)]
+    fits: Dict[Path, Fit] = {}
     if floor is not None:
-        more, fit = _on_map(files, floor, spot_distance, robot)
+        more, fits = _on_map(files, floor, spot_distance, robot)
         findings += more
     if as_json_:
         print(json.dumps([as_json(finding) for finding in findings], indent=1))
@@ -51,7 +52,7 @@ def check(
         suggest(f"pursue-gen explain {problem.diagnostics[0].code}")
         raise ended(problem)
     for file in files:
-        for sentence in (*_periods(file), *_moved(file, spot_distance, fit)):
+        for sentence in (*_periods(file), *_moved(file, spot_distance, fits.get(file))):
             info(f"{file}: {sentence}")
     suggest(f"pursue-gen ws {shell_quoted(files[0])}")
 
@@ -75,7 +76,9 @@ def _moved(file: Path, distance: float, fit: Optional[Fit]) -> List[str]:
     return moved(scenario, distance, fit) if several and any(poi.pose for poi in scenario.pois) else []
 
 
-def _on_map(files: List[Path], floor: Path, spot_distance: float, robot: List[str]) -> Tuple[List[Diagnostic], Fit]:
+def _on_map(
+    files: List[Path], floor: Path, spot_distance: float, robot: List[str]
+) -> Tuple[List[Diagnostic], Dict[Path, Fit]]:
     """The findings on the map, for scenarios that lack nothing but ways, and how well spots fit there. Raises
     PursueError for a map that cannot be used."""
     from pursue_gen.drawing.ground import read_ground
@@ -86,7 +89,10 @@ def _on_map(files: List[Path], floor: Path, spot_distance: float, robot: List[st
 
     ground, size = read_ground(floor), read_size(robot)
     found: List[Diagnostic] = []
+    fits: Dict[Path, Fit] = {}
     for file in files:
         with contextlib.suppress(PursueError):  # its errors are reported
-            found += on_map(read_placed(read_text(str(file)), str(file)), ground, spot_distance, size)
-    return found, fit_on(ground, size)
+            more, ways = on_map(read_placed(read_text(str(file)), str(file)), ground, spot_distance, size)
+            found += more
+            fits[file] = fit_on(ground, size, ways)
+    return found, fits

@@ -10,11 +10,15 @@ if TYPE_CHECKING:
     from pursue_gen.diagnostics import Diagnostic
     from pursue_gen.drawing.ground import Ground
     from pursue_gen.language.scenario import Scenario
+    from pursue_gen.workspace.map_spots import Ways
     from pursue_gen.workspace.robot_size import RobotSize
 
 
-def on_map(scenario: Scenario, ground: Ground, distance: float, robot: RobotSize) -> Tuple[Diagnostic, ...]:
-    """The findings of `survey`, without measuring; of the points alone where its packages or the pixels are missing."""
+def on_map(
+    scenario: Scenario, ground: Ground, distance: float, robot: RobotSize
+) -> Tuple[Tuple[Diagnostic, ...], Ways]:
+    """The findings of `survey`, and the paths of the ways; of the points alone, and no paths, where its packages or the
+    pixels are missing."""
     from pursue_gen.workspace.map_check import check_spots
 
     if ground.cells is not None:
@@ -27,4 +31,4 @@ def on_map(scenario: Scenario, ground: Ground, distance: float, robot: RobotSize
         else:
             del scipy
             return found_on_map(scenario, ground, distance, robot)
-    return check_spots(scenario, ground, distance, robot)
+    return check_spots(scenario, ground, distance, robot), {}

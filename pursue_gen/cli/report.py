@@ -90,13 +90,14 @@ def report(
     if html and not force:
         _check_target(target)
     size = read_size(robot)
-    under = None if floor is None else read_floor(floor)
-    options = ReportOptions(reach_obj, runs if html else 0, under)
+    options = ReportOptions(reach_obj, runs if html else 0)
     read = scenario_from(scenario, request)
     if floor is not None:
         ground = read_ground(floor)
-        show(on_map(read, ground, DEFAULT_DISTANCE, size))
-        read = with_spots(read, ground, DEFAULT_DISTANCE, size)
+        findings, paths = on_map(read, ground, DEFAULT_DISTANCE, size)
+        show(findings)
+        options = replace(options, floor=replace(read_floor(floor), paths=paths))
+        read = with_spots(read, ground, DEFAULT_DISTANCE, size, paths)
     made = _made(read, options, solving)
     if pictures is not None:
         _write_pictures(made, pictures)

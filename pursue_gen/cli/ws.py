@@ -61,8 +61,9 @@ def ws(
     request = request.since(start)
     if floor is not None:
         ground = read_ground(floor)
-        show(on_map(read, ground, spot_distance, size))
-        read = with_spots(read, ground, spot_distance, size)
+        findings, ways = on_map(read, ground, spot_distance, size)
+        show(findings)
+        read = with_spots(read, ground, spot_distance, size, ways)
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")
     found = solve_and_print(read, request, explain)

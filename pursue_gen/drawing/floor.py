@@ -6,9 +6,9 @@ import base64
 import math
 import re
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Dict, Optional, Tuple
+from typing import Any, Dict, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing.png_pixels import pixels
@@ -26,7 +26,8 @@ _MODES = ("trinary", "scale", "raw")
 class Floor:
     """A floor plan. `uri`: the picture as data; `width`, `height` in pixels; `resolution` in metres per pixel.
 
-    `x`, `y` (metres) and `yaw` (radians) say where its lower left corner is on the map, and how it is turned.
+    `x`, `y` (metres) and `yaw` (radians) say where its lower left corner is on the map, and how it is turned. `paths`
+    are those of ways, as far as they are known: the two places → the bends, from the first to the second (metres).
     """
 
     uri: str
@@ -36,6 +37,7 @@ class Floor:
     x: float
     y: float
     yaw: float
+    paths: Mapping[Tuple[str, str], Sequence[Tuple[float, float]]] = field(default_factory=dict)
 
     @property
     def picture(self) -> bytes:

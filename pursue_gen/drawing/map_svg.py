@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Dict, Iterator, List, Mapping, Optional, Tuple
+from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.look import QUIET, AgentLook, agent_looks, mark, svg, tag, text
@@ -39,7 +39,10 @@ def draw(
     places = {name: paper.point(pose.x, pose.y) for name, pose in poses.items()}
     looks = agent_looks([agent.name for agent in scenario.agents])
     body = [paper.floor(floor)] if floor else []
-    body += [part for c in scenario.connections for part in _connection(places[c.a], places[c.b], c)]
+    for way in scenario.connections:
+        path = floor.paths.get((way.a, way.b), ()) if floor else ()
+        inner = [paper.point(*bend) for bend in path[1:-1]]
+        body += _connection([places[way.a], *inner, places[way.b]], way)
     body += [_poi(scenario.shown(name), places[name]) for name in sorted(places)]
     for agent_name, table in (spots or {}).items():
         beside = [pose for place, pose in table.items() if pose != poses[place]]
@@ -101,19 +104,35 @@ class Paper:
         return tag("g", tag("image", opacity=0.6, preserveAspectRatio="none", **picture), transform=turn)
 
 
-def _connection(a: Point, b: Point, way: Connection) -> Iterator[str]:
+def _connection(line: Sequence[Point], way: Connection) -> Iterator[str]:
     """A line with its length in the middle; one that goes one way has its length, and an arrow, nearer to its end.
 
     Where it is not always open, the line is dashed and a question mark is behind the length.
     """
     dash = None if way.only_if is None else "7 5"
-    yield tag("line", class_="pg-way", x1=a[0], y1=a[1], x2=b[0], y2=b[1], stroke_dasharray=dash)
+    if len(line) == 2:
+        (x1, y1), (x2, y2) = line
+        yield tag("line", class_="pg-way", x1=x1, y1=y1, x2=x2, y2=y2, stroke_dasharray=dash)
+    else:
+        points = " ".join(f"{x:.2f},{y:.2f}" for x, y in line)
+        yield tag("polyline", class_="pg-way", points=points, stroke_dasharray=dash)
     part = 0.5
     if way.one_way:
         part = 0.42  # two that go opposite ways do not cover each other's lengths
-        yield _arrow(a, b)
-    x, y = a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])
+        yield _arrow(*line[-2:])
+    x, y = along(line, part)
     yield text(x, y + 5, f"{way.distance} ?" if dash else way.distance, "pg-small pg-halo")
+
+
+def along(line: Sequence[Point], part: float) -> Point:
+    """The point after so much of a line with bends, from 0 to 1."""
+    left = part * sum(math.dist(a, b) for a, b in zip(line, line[1:]))
+    for a, b in zip(line, line[1:]):
+        size = math.dist(a, b)
+        if size >= left and size > 0:
+            return a[0] + left / size * (b[0] - a[0]), a[1] + left / size * (b[1] - a[1])
+        left -= size
+    return line[-1]
 
 
 def _arrow(a: Point, b: Point) -> str:

@@ -13,7 +13,7 @@ from pursue_gen.survey.copying import Movement
 from pursue_gen.survey.grid import Grid
 from pursue_gen.survey.plan import Plan
 from pursue_gen.survey.spots import exits_of, shut_in
-from pursue_gen.workspace.map_check import Ways
+from pursue_gen.workspace.map_spots import Ways
 
 _SOME = 8  # places that a message lists
 _REACH = 5.0  # metres around a place in which a point that can be reached is looked for

@@ -25,8 +25,8 @@ from pursue_gen.survey.plan import Pair, Plan
 from pursue_gen.survey.routes import Route, Routes
 from pursue_gen.survey.spots import Spots, Standing, proposed_spots
 from pursue_gen.survey.times import Drive, window
-from pursue_gen.workspace.map_check import Ways, check_spots
-from pursue_gen.workspace.map_spots import with_spots
+from pursue_gen.workspace.map_check import check_spots
+from pursue_gen.workspace.map_spots import Ways, with_spots
 from pursue_gen.workspace.robot_size import USUAL, RobotSize
 
 MOST_PLACES = 200
@@ -120,8 +120,11 @@ def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options
     return Survey(text, in_order(findings), errors, (*ways.values(), *proposals), poses)
 
 
-def found_on_map(scenario: Scenario, ground: Ground, distance: float, robot: RobotSize) -> Tuple[Diagnostic, ...]:
-    """What is wrong on a map with a scenario's places, spots and ways, in order; as far as it can be measured.
+def found_on_map(
+    scenario: Scenario, ground: Ground, distance: float, robot: RobotSize
+) -> Tuple[Tuple[Diagnostic, ...], Ways]:
+    """What is wrong on a map with a scenario's places, spots and ways, in order, and the paths of the ways; as far as
+    it can be measured.
 
     `distance`: metres between the robots at one place that have no pose of their own. The pixels of `ground` are known.
     """
@@ -130,10 +133,10 @@ def found_on_map(scenario: Scenario, ground: Ground, distance: float, robot: Rob
     try:
         plan = _plan(scenario, grid, options)
     except Invalid:  # too few places, or too many
-        return check_spots(scenario, ground, distance, robot)
+        return check_spots(scenario, ground, distance, robot), {}
     here = _OnMap(grid, plan, _lines(scenario, plan))
-    placed = with_spots(scenario, ground, distance, robot)
-    return in_order(_found_on_map(placed, scenario, ground, here, options, distance))
+    placed = with_spots(scenario, ground, distance, robot, here.lines)
+    return in_order(_found_on_map(placed, scenario, ground, here, options, distance)), here.lines
 
 
 @dataclass(frozen=True)

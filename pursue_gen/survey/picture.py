@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Iterator, List, Mapping, Optional, Tuple
+from typing import Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.look import ACCENT, INK, PAPER, QUIET, AgentLook, agent_looks, svg, tag, text
-from pursue_gen.drawing.map_svg import Paper
+from pursue_gen.drawing.map_svg import Paper, along
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.survey.make import Survey, SurveyedWay
 from pursue_gen.survey.times import yaw_of
@@ -55,19 +55,8 @@ def _way(way: SurveyedWay, paper: Paper) -> Iterator[str]:
     line = " ".join(f"{x:.2f},{y:.2f}" for x, y in points)
     dash = "7 5" if way.given is None else None
     yield tag("polyline", points=line, fill="none", stroke=QUIET, stroke_width=2.5, stroke_dasharray=dash)
-    x, y = _middle(points)
+    x, y = along(points, 0.5)
     yield text(x, y - 5, f"{way.metres:.1f} m", "pg-small pg-halo")
-
-
-def _middle(points: List[Tuple[float, float]]) -> Tuple[float, float]:
-    """The point half way along a line."""
-    left = sum(math.dist(a, b) for a, b in zip(points, points[1:])) / 2
-    for a, b in zip(points, points[1:]):
-        size = math.dist(a, b)
-        if size >= left and size > 0:
-            return a[0] + left / size * (b[0] - a[0]), a[1] + left / size * (b[1] - a[1])
-        left -= size
-    return points[-1]
 
 
 def _spots(

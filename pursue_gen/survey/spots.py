@@ -15,7 +15,7 @@ from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Poi, Pose, Scenario
 from pursue_gen.survey.grid import Array, Grid, Point
 from pursue_gen.survey.times import yaw_of
-from pursue_gen.workspace.map_check import Ways
+from pursue_gen.workspace.map_spots import Ways
 
 _REACH = 4
 """How far from a place its spots are looked for: so many times the room of a robot, and 3 m at least."""
@@ -73,7 +73,8 @@ def proposed_spots(
         robots = [robot for robot in present[poi.name] if robot not in own][1:]
         if poi.name not in wanted or poi.pose is None or not robots:
             continue
-        candidates = _Candidates(grid, poi.pose, room, _passing(poi, passed, room), standing)
+        passing = ((_passing(poi, passed, room), room), (_ending(poi, passed), body))
+        candidates = _Candidates(grid, poi.pose, room, passing, standing)
         found[poi.name] = []
         others = [one for one in _given(poi, present[poi.name]) if grid.is_free(grid.cell(*one))]
         exits = exits_of(poi.name, (poi.pose.x, poi.pose.y), ways, room)
@@ -134,8 +135,10 @@ def _given(poi: Poi, present: Sequence[str]) -> List[Point]:
 class _Candidates:
     """The free points around a place from which it can be reached, in the order in which they are wanted."""
 
-    def __init__(self, grid: Grid, pose: Pose, room: float, passed: Array, standing: Optional[Standing]) -> None:
-        """`passed`: points of ways at which robots are in each other's way."""
+    def __init__(
+        self, grid: Grid, pose: Pose, room: float, passed: Iterable[Tuple[Array, float]], standing: Optional[Standing]
+    ) -> None:
+        """`passed`: points of ways, and metres from them within which robots are in each other's way."""
         self._grid, self._room, self._middle = grid, room, grid.cell(pose.x, pose.y)
         reach = max(_LEAST_REACH, _REACH * room)
         found = _connected(grid, self._middle, reach)
@@ -147,7 +150,9 @@ class _Candidates:
         points = np.round(np.column_stack(grid.metres((cells[:, 0], cells[:, 1]))), 3) + 0.0
         x, y = points[:, 0] - pose.x, points[:, 1] - pose.y
         apart = np.hypot(x, y)
-        aside = cKDTree(passed).query(points)[0] >= room if len(passed) else np.ones(len(points), dtype=bool)
+        aside = np.ones(len(points), dtype=bool)
+        for others, least in passed:
+            aside &= cKDTree(others).query(points)[0] >= least if len(others) else True
         ahead = np.abs(x * math.cos(yaw_of(pose)) + y * math.sin(yaw_of(pose)))
         order = np.lexsort((points[:, 1], points[:, 0], np.round(ahead, 3), apart // _NEARLY, ~likes, ~aside))
         self._points = points[order][apart[order] <= reach]
@@ -184,6 +189,11 @@ def _samples(line: Sequence[Point]) -> Array:
     for a, b in zip(line, line[1:]):
         parts.append(np.linspace(a, b, max(1, math.ceil(math.dist(a, b) / _DENSE)) + 1))
     return np.concatenate(parts)
+
+
+def _ending(poi: Poi, ways: Sequence[Tuple[Tuple[str, str], Array]]) -> Array:
+    """The points of the ways that end at a place."""
+    return np.concatenate([np.zeros((0, 2)), *(points for ends, points in ways if poi.name in ends)])
 
 
 def _passing(poi: Poi, ways: Sequence[Tuple[Tuple[str, str], Array]], room: float) -> Array:

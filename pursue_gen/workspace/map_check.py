@@ -13,12 +13,9 @@ from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Pose, Scenario
-from pursue_gen.workspace.map_spots import fit_on, is_seen
+from pursue_gen.workspace.map_spots import NO_WAYS, Ways, fit_on, is_seen, room_on
 from pursue_gen.workspace.robot_size import USUAL, RobotSize
 from pursue_gen.workspace.spots import Fit, placing
-
-Ways = Mapping[Tuple[str, str], Sequence[Point]]
-"""The two places of a way → the bends of its path, from the first to the second (metres)."""
 
 _NEAR, _FAR = 1.5, 5.0
 """Metres around a point in which room is looked for that planners like, and any room at all."""
@@ -52,7 +49,7 @@ def check_spots(
     distance: float,
     robot: RobotSize = USUAL,
     may_be: Callable[[Point], bool] = lambda point: True,
-    ways: Optional[Ways] = None,
+    ways: Ways = NO_WAYS,
 ) -> Tuple[Diagnostic, ...]:
     """A warning for each place or spot that is not on free ground, has too little room for a robot, or is too near
     another one, with the nearest point at which there is room; places without a pose are left out.
@@ -61,8 +58,8 @@ def check_spots(
     `may_be`: whether a point (metres) may be proposed. `ways`: their paths, where they are known; spots on the way of
     others are warned about then.
     """
-    points = tuple(_points(scenario, distance, fit_on(ground, robot)))
-    look = _Look(ground, Clearance(ground), robot, points, may_be, ways or {})
+    points = tuple(_points(scenario, distance, fit_on(ground, robot, ways)))
+    look = _Look(ground, Clearance(ground), robot, points, may_be, ways)
     present = robots_at(scenario)
     found = []
     for number, point in enumerate(points):
@@ -153,17 +150,24 @@ class _Look:
         """The nearest way of other robots that a robot's spot is on; ways through places are told of the ways."""
         if not point.is_spot:
             return []
-        near = [
-            (to_line(line, (point.pose.x, point.pose.y))[0], a, b)
-            for (a, b), line in self.ways.items()
-            if point.place not in (a, b) and set(present[a]) & set(present[b]) - point.robots
-        ]
-        metres, a, b = min(near, default=(math.inf, "", ""))
-        if metres >= self.robot.apart - _TOUCH:
+        here = point.pose.x, point.pose.y
+        near = []
+        for (a, b), line in self.ways.items():
+            metres, room = to_line(line, here)[0], self._room_on((a, b), line, point)
+            if metres < room - _TOUCH and set(present[a]) & set(present[b]) - point.robots:
+                near.append((metres, a, b, room))
+        if not near:
             return []
+        metres, a, b, room = min(near)
         message = f"{point} is {metres:.2f} m from the way from {a} to {b}: who stands there is in the way of others, "
-        message += f"who need {self.robot.apart:g} m"
+        message += f"who need {room:g} m"
         return [warning("MAP006", message, point.span, f"{self.remedy(point)}; {_SMALLER}")]
+
+    def _room_on(self, ends: Tuple[str, str], line: Sequence[Point], point: _Point) -> float:
+        """How far from a way a robot at a point has to stand; a place itself is where its ways end."""
+        if point.place not in ends:
+            return self.robot.apart
+        return room_on(line, line[0] if ends[0] == point.place else line[-1], self.robot) if point.is_spot else 0.0
 
     def remedy(self, point: _Point) -> str:
         """What to do about a point where there is too little room."""
@@ -177,13 +181,13 @@ class _Look:
         is such a one, not on the way of others and not beyond a wall."""
         x, y = point.pose.x, point.pose.y
 
-        lines = [line for ends, line in self.ways.items() if point.place not in ends]
+        rooms = [(line, self._room_on(ends, line, point)) for ends, line in self.ways.items()]
 
         def is_apart(at: Point) -> bool:
             return self.may_be(at) and all(one is point or one.apart(*at) >= self.robot.apart for one in self.points)
 
         def is_here(at: Point) -> bool:
-            aside = all(to_line(line, at)[0] >= self.robot.apart for line in lines)
+            aside = all(to_line(line, at)[0] >= room for line, room in rooms)
             return aside and is_apart(at) and is_seen(self.ground, (x, y), at)
 
         here = self.clearance.nearest(x, y, radius, reach, is_here) if self.ground.at(x, y) == FREE else None

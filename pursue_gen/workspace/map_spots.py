@@ -4,21 +4,31 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from types import MappingProxyType
+from typing import Mapping, Sequence, Tuple
 
-from pursue_gen.drawing.clearance import Clearance, Point
+from pursue_gen.drawing.clearance import Clearance, Point, to_line
 from pursue_gen.drawing.ground import FREE, Ground
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Pose, Ref, Scenario, Spot
 from pursue_gen.workspace.robot_size import RobotSize
-from pursue_gen.workspace.spots import BEST, Fit, placing
+from pursue_gen.workspace.spots import Fit, placing
+
+_SAME = 0.001
+"""Metres by which two points are one."""
 
 
-def with_spots(scenario: Scenario, ground: Ground, distance: float, robot: RobotSize) -> Scenario:
+Ways = Mapping[Tuple[str, str], Sequence[Point]]
+"""The two places of a way → the bends of its path, from the first to the second (metres)."""
+NO_WAYS: Ways = MappingProxyType({})
+
+
+def with_spots(scenario: Scenario, ground: Ground, distance: float, robot: RobotSize, ways: Ways = NO_WAYS) -> Scenario:
     """The scenario with a pose for each robot that is sent beside the pose of a place: where there is room for it.
 
-    Its text stays as it is. `distance`: as for `spots.placing`.
+    Its text stays as it is. `distance`: as for `spots.placing`; `ways`: as far as they are known.
     """
-    where, present = placing(scenario, distance, fit_on(ground, robot)), robots_at(scenario)
+    where, present = placing(scenario, distance, fit_on(ground, robot, ways)), robots_at(scenario)
     pois = []
     for poi in scenario.pois:
         own = {spot.robot.name for spot in poi.spots}
@@ -28,21 +38,32 @@ def with_spots(scenario: Scenario, ground: Ground, distance: float, robot: Robot
     return replace(scenario, pois=tuple(pois))
 
 
-def fit_on(ground: Ground, robot: RobotSize) -> Fit:
+def fit_on(ground: Ground, robot: RobotSize, ways: Ways = NO_WAYS) -> Fit:
     """How well robots of a size stand at spots on a map.
 
-    They need the room to stop and turn, and a straight line on free ground from the place; best they stand outside what
-    is inflated.
+    They need the room to stop and turn, and a straight line on free ground from the place. Better they are not on the
+    way of others, and best outside what is inflated, too.
     """
     clearance, more = Clearance(ground), ground.settings.resolution
 
     def fit(pose: Pose, spot: Pose) -> int:
-        metres = clearance.metres(spot.x, spot.y, robot.wanted + more)
-        if metres <= robot.needed or not is_seen(ground, (pose.x, pose.y), (spot.x, spot.y)):
+        place, here = (pose.x, pose.y), (spot.x, spot.y)
+        metres = clearance.metres(*here, robot.wanted + more)
+        if metres <= robot.needed or not is_seen(ground, place, here):
             return 0
-        return BEST if metres > robot.wanted else BEST - 1
+        is_aside = all(to_line(line, here)[0] >= room_on(line, place, robot) for line in ways.values())
+        return 1 + 2 * is_aside + (metres > robot.wanted)
 
     return fit
+
+
+def room_on(line: Sequence[Point], place: Point, robot: RobotSize) -> float:
+    """How far from a way a robot has to stand at a place (metres): where the way ends there, so that it is not touched.
+
+    Others come near each other there anyway, and slowly.
+    """
+    ends_here = any(math.dist(end, place) < _SAME for end in (line[0], line[-1]))
+    return 2 * robot.radius if ends_here else robot.apart
 
 
 def is_seen(ground: Ground, start: Point, end: Point) -> bool:

@@ -27,7 +27,7 @@ Table = Mapping[str, Pose]
 """place → pose."""
 Fit = Callable[[Pose, Pose], int]
 """How well a robot stands at a spot beside the pose of a place: from 0 (not at all) to `BEST`."""
-BEST = 2
+BEST = 4
 
 
 @dataclass(frozen=True)

@@ -76,6 +76,21 @@ def test_a_floor_plan_lies_under_everything_where_its_yaml_says() -> None:
     assert float(group.attrib["height"]) == pytest.approx(second[1] - third[1], abs=0.02)
 
 
+def test_ways_are_drawn_along_their_paths_on_a_floor_plan() -> None:
+    paths = {("hall", "shop"): ((0.0, 0.0), (0.0, 3.0), (4.0, 3.0), (4.0, 0.0))}
+    floor = Floor("data:image/png;base64,", 60, 60, 0.1, -1.0, -1.0, 0.0, paths)
+    picture = ElementTree.fromstring(draw(SCENARIO, poses((0, 0), (4, 0), (4, 4)), False, floor))
+    (line,) = picture.iter(f"{SVG}polyline")
+    points = [tuple(map(float, point.split(","))) for point in line.attrib["points"].split()]
+    one = points[1][1] - points[0][1]  # 3 m, upwards
+    steps = [(b[0] - a[0], b[1] - a[1]) for a, b in zip(points, points[1:])]
+    assert one < 0 and steps == [pytest.approx(step, abs=0.02) for step in ((0, one), (-4 / 3 * one, 0), (0, -one))]
+    (length,) = (words for words in picture.iter(f"{SVG}text") if words.text == "3")
+    middle = (points[1][0] + points[2][0]) / 2, points[1][1] + 5
+    assert (float(length.attrib["x"]), float(length.attrib["y"])) == pytest.approx(middle, abs=0.02), "half way on it"
+    assert sum(one.get("class") == "pg-way" for one in picture.iter(f"{SVG}line")) == 1, "of the other none is known"
+
+
 def test_spots_beside_a_place_get_the_marks_of_their_robots() -> None:
     where = poses((0, 0), (3, 0), (3, 2))
     plain = draw(SCENARIO, where, False)

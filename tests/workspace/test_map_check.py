@@ -140,6 +140,19 @@ def test_two_robots_do_not_stand_in_each_other(tmp_path: Path) -> None:
     assert found_in(floor, poses, RobotSize(0.17, 0.1), 1) == [], "one robot is at one of them at a time"
 
 
+def test_a_spot_before_its_place_is_in_the_way_of_those_who_come(tmp_path: Path) -> None:
+    floor = floor_of(tmp_path, ROOM_YAML, ROOM)
+    text = 'poi "a" //[2, 2, 0, 0, 0, 0, 1] bot2 [2.9, %s, 0, 0, 0, 0, 1]\npoi "b" //[6, 2, 0, 0, 0, 0, 1]\n'
+    text += 'connect a and b distance 4\nevent "work"\n'
+    text += "".join(f'agent "bot{k}" controllable mobile 1 location a can_do work\n' for k in (1, 2))
+    ways = {("a", "b"): [(2.0, 2.0), (6.0, 2.0)]}
+    for y, told in ((2.3, True), (2.5, False)):
+        made = parse(text % y + "reach_objective: do work\n", "test.pur")
+        found = check_spots(made, floor, 0.8, RobotSize(0.2, 0.1), ways=ways)
+        assert [one.code for one in found if one.code == "MAP006"] == ["MAP006"] * told
+        assert all("is 0.30 m from the way from a to b" in one.message and "need 0.4 m" in one.message for one in found)
+
+
 def test_check_reports_them_with_the_other_findings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     floor_of(tmp_path, rows=CELL)

@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 from typing import Dict, List
 
+import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -69,6 +70,19 @@ def test_a_spot_outside_what_is_inflated_goes_before_one_that_is_nearer() -> Non
     floor = ground([[0, 4.2, 8, 4.4]])
     assert beside(made, floor)["bot2"] == [4, 3.8]
     assert beside(made, floor, RobotSize(0.2, 0.1, 0.6))["bot2"] == [4, 2.2]
+
+
+def test_a_spot_is_not_on_the_way_to_its_place_nor_on_that_of_others() -> None:
+    made = scenario({"a": f"//[4, 3, 0, {EAST}]", "b": f"//[4, 5, 0, {EAST}]", "c": f"//[1, 1, 0, {EAST}]"}, 2)
+    there = {("a", "b"): [(4.0, 3.0), (4.0, 5.0)]}
+    beyond = {("b", "c"): [(4.0, 5.0), (3.6, 2.2), (1.0, 1.0)]}
+    found = []
+    for ways in ({}, there, {("b", "a"): there["a", "b"][::-1]}, {**there, **beyond}):
+        done = with_spots(made, ground([]), 0.8, SIZE, ways)
+        found.append(next((spot.pose.x, spot.pose.y) for spot in done.pois[0].spots))
+    assert found[:3] == [(4, 3.8), (4, 2.2), (4, 2.2)], "left, unless the way comes from there"
+    x, y = found[3]
+    assert math.dist((x, y), (4, 3)) == pytest.approx(0.8, abs=0.01) and x > 4, "away from the other one, too"
 
 
 def test_where_nothing_fits_the_spots_are_as_without_a_map() -> None:
