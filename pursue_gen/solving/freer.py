@@ -129,6 +129,30 @@ def punctual(game: Network, robot: str) -> Network:
     return replace(game, automata=tuple(map(less, game.automata)))
 
 
+def asking_only(game: Network, watching: Collection[str]) -> Network:
+    """The network in which agents whom nobody controls begin nothing of which these automata do not hear, other than
+    movements, unless they have to in time."""
+    heard = {channel for name in watching for channel in _channels(game.automaton(name))}
+
+    def quiet(automaton: Automaton) -> Automaton:
+        bounded = {place.name for place in automaton.locations if place.invariant}
+        known = {e.source for e in automaton.edges if e.sync is not None and e.sync.channel in heard}
+
+        def is_kept(edge: Edge) -> bool:
+            if edge.sync is None or not edge.sync.sends or edge.sync.channel in heard:
+                return True
+            if edge.source == edge.target:
+                return False
+            doing = edge.target in bounded and edge.target in known
+            return edge.source in bounded or is_movement(edge.target) or doing
+
+        edges = (edge for edge in automaton.edges if is_kept(edge))
+        return replace(automaton, edges=tuple(edges))
+
+    nobodys = {a.name for a in game.automata if is_agent(a) and not any(edge.controllable for edge in a.edges)}
+    return replace(game, automata=tuple(quiet(a) if a.name in nobodys else a for a in game.automata))
+
+
 def standing(game: Network) -> Network:
     """The network in which agents whom nobody controls go nowhere unless they have to leave in time."""
     return _standing(game, ())

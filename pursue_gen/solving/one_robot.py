@@ -10,7 +10,7 @@ from itertools import combinations
 from typing import Sequence, Tuple
 
 from pursue_gen.outcomes import LimitHit
-from pursue_gen.solving.freer import punctual, standing, with_one_walk, without_others
+from pursue_gen.solving.freer import asking_only, punctual, standing, with_one_walk, without_others, without_turns
 from pursue_gen.solving.lost_promises import only_promises, watched
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.subgoals import commanded_agents
@@ -43,9 +43,11 @@ def lost_for_one(
         for size in dict.fromkeys((2, len(owned))) if owned else ():
             for some in combinations(owned, size):
                 wanted = Objective(Kind.SAFETY, bad=some)
-                game = cone_of_influence(only_promises(alone, objective, wanted), wanted)
-                parts = [acting_at_most(walk, wanted, 1) for walk in with_one_walk(game, watched(wanted))]
-                parts += [cone_of_influence(punctual(standing(game), robot), wanted), acting_at_most(game, wanted, 1)]
+                game = _game(alone, objective, wanted)
+                walks = tuple(with_one_walk(game, watched(wanted)))
+                parts = [acting_at_most(walk, wanted, 1) for walk in walks]
+                parts += [cone_of_influence(punctual(walk, robot), wanted) for walk in (standing(game), *walks)]
+                parts.append(acting_at_most(game, wanted, 1))
                 if any(_is_lost(part, wanted, reaction, budget, most) for part in parts):
                     return (wanted,)
                 if budget.used_up:
@@ -64,4 +66,11 @@ def _is_lost(game: Network, wanted: Objective, reaction: Fraction, budget: Budge
 def _able(network: Network, objective: Objective, place: Place) -> Tuple[str, ...]:
     """The robots that can do something about what is to be avoided there."""
     wanted = Objective(Kind.SAFETY, bad=(place,))
-    return tuple(commanded_agents(cone_of_influence(only_promises(network, objective, wanted), wanted)))
+    return tuple(commanded_agents(_game(network, objective, wanted)))
+
+
+def _game(network: Network, objective: Objective, wanted: Objective) -> Network:
+    """The game of these promises, in which nobody asks for anything else, and turns of other things are no matter."""
+    game = only_promises(network, objective, wanted)
+    watching = watched(wanted)
+    return cone_of_influence(without_turns(asking_only(game, watching), watching), wanted)

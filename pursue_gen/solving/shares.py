@@ -65,8 +65,8 @@ class Known:
 
 
 def can_be_shared(network: Network, objective: Objective) -> bool:
-    """True for a safety objective with several promises, places to be avoided, that several robots may keep."""
-    return objective.kind is Kind.SAFETY and len(objective.bad) > 1 and len(commanded_agents(network)) > 1
+    """True for a safety objective, places to be avoided, that several robots may keep."""
+    return objective.kind is Kind.SAFETY and len(commanded_agents(network)) > 1
 
 
 def won_in_shares(

@@ -207,7 +207,7 @@ def _with_little_work(
         passed = won_by_passages(game, objective, crowd, reaction, options.since(start))
         if passed is not None:
             return Solution(passed[0], objective, passed[1], reaction)
-    if verdict is None and several:
+    if verdict is None and (several or shared):
         lost = lost_alone(game, objective, reaction, options.since(start)) or excluded_by_a_stay(game, objective)
         known = lost or decided_by_attempts(game, objective, reaction, options.since(start))
         if known:

@@ -29,7 +29,7 @@ from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.tours import Tour, tour_automaton, with_tours
 from pursue_gen.tga.watchers import Watcher, watched_by
 
-PATROL = 6
+PATROL = 4
 """A patrol of so many places is no easy game: tours are looked for first."""
 
 RESERVE = Fraction(1, 10)

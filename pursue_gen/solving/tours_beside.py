@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import AbstractSet, Optional
 
 from pursue_gen.outcomes import LimitHit, NotProven
-from pursue_gen.solving.due_moves import patrols
+from pursue_gen.solving.due_moves import duties, patrols
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
@@ -39,7 +39,7 @@ def won_beside_tours(
     rest = Objective(Kind.SAFETY, bad=tuple(place for place in objective.bad if place[0] not in known))
     if len(visited) < PATROL or not rest.bad:
         return None
-    busy = _needed(network, rest)
+    busy = _needed(network, rest) - _only_ones(network, replace(rest, bad=visited), known)
     tours = tours_of(network, replace(rest, bad=visited), reaction, busy)
     if tours is None:
         return None
@@ -53,6 +53,12 @@ def won_beside_tours(
         proven = prove(network, objective, both, reaction, options=options.since(start))
         return Found(proven, Stats("tours", len(both.blocks), 0, seconds, 0, 0))
     return None
+
+
+def _only_ones(network: Network, visited: Objective, known: AbstractSet[str]) -> AbstractSet[str]:
+    """The robots that alone can make one of these visits."""
+    able = (duty.visits for duty in duties(network, visited, known))
+    return {name for some in able if len(some) == 1 for name in some}
 
 
 def _needed(network: Network, rest: Objective) -> AbstractSet[str]:

@@ -33,7 +33,7 @@ def verdict_text(won: Solution) -> str:
     took = f"; {stats.discrete_states} states in {stats.seconds:.3f} s, {stats.engine} engine" if stats else ""
     kept = "" if won.within is None else f" within {decimal_text(won.within)} time units"
     stages, shares, passages = (len(some) for some in (won.strategy.stages, won.strategy.shares, won.strategy.passages))
-    order = f" in {stages} stages" if stages else f" in {shares} shares" if shares else ""
+    order = f" in {counted(stages, 'stage')}" if stages else f" in {counted(shares, 'share')}" if shares else ""
     order = f" with the order of passage at {counted(passages, 'place')}" if passages else order
     text = f"won{kept}: {rules_text(won.rules)}{took}; {counted(_commands(won), 'command')}{order}, proven"
     return text if won.guarantee is None else f"{text}\n{won.guarantee.in_words()}"

@@ -51,6 +51,16 @@ def test_what_is_lost_is_named(text: str, parts: Tuple[str, ...]) -> None:
     assert [tuple(name for name, _ in part.bad) for part in found] == [parts]
 
 
+def test_one_robot_keeps_a_single_promise_that_several_can() -> None:
+    """The whole game has three robots, and rules that name what other robots do."""
+    before, *_ = lab_scenario(112).partition("objective")
+    network, objective = game(before + "objective: if order1 then drop1 within 133\n")
+    found = decided_by_attempts(network, objective, REACTION, SolveOptions())
+    assert isinstance(found, Found)
+    assert len(found.strategy.shares) == 1
+    assert verify(network, objective, found.strategy, REACTION).ok
+
+
 def test_games_that_less_effort_decided_are_not_played_again() -> None:
     network, objective = game(TWO_PATROLS)
     known = Known()

@@ -58,12 +58,20 @@ def test_whoever_answers_calls_is_not_relied_on_where_it_comes_by_on_a_patrol() 
     assert not report.ok and first.name in report.reason
 
 
+def test_who_alone_can_go_on_a_patrol_goes_though_it_could_answer_calls() -> None:
+    text = with_a_porter(4, " every 162").replace("by any robot", "by bot1")
+    network, objective = game_of(text.replace("mobile 1 location hall1\n", "mobile 1 location hall1 can_do answer\n"))
+    found = won_beside_tours(network, objective, LATE, OPTIONS)
+    assert found is not None
+    assert [tour.robot for tour in found.strategy.tours] == ["bot1"]
+
+
 def test_who_is_needed_elsewhere_has_no_tour() -> None:
     near = "objective: if guest at room3 then any robot at room3 within 40\n"
     for text in (
         with_a_porter(6, " every 162", near),
         with_a_porter(6, " every 162", ""),
-        with_a_porter(5, " every 162"),
+        with_a_porter(3, " every 162"),
     ):
         network, objective = game_of(text)
         assert won_beside_tours(network, objective, LATE, OPTIONS) is None
