@@ -19,9 +19,10 @@ from typing import AbstractSet, Dict, List, Mapping, NamedTuple, Optional, Seque
 from pursue_gen.language.network_names import LOSE
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.solving.found import Found
+from pursue_gen.solving.gaps import gaps, part_of_period, repeated, tour_of
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
-from pursue_gen.solving.rounds import Round, cost, least_wait, rounds
+from pursue_gen.solving.rounds import Round, least_wait, rounds
 from pursue_gen.solving.walkers import Patrol, Walker, patrol_of
 from pursue_gen.synthesis.solve import Stats
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Place, Strategy
@@ -57,10 +58,13 @@ def tours_of(
 ) -> Optional[Strategy]:
     """The same, not proven yet. Robots that are `busy` have no tours, and may be anywhere."""
     patrol = None if network.start else patrol_of(network, objective, reaction, excused=busy)
-    some = None if patrol is None else rounds(
-        [walker.robot for walker in patrol.walkers], patrol.visits, float(1 - RESERVE)
-    )
-    if patrol is None or some is None or _worst(patrol, some) >= 1:
+    if patrol is None:
+        return None
+    some = rounds([walker.robot for walker in patrol.walkers], patrol.visits, float(1 - RESERVE))
+    if some is None:
+        return None
+    some = tuple(repeated(walker, patrol, mine, 1 - RESERVE) for walker, mine in zip(patrol.walkers, some))
+    if _worst(patrol, some) >= 1:
         return None
     return _strategy(network, patrol, some, busy)
 
@@ -75,7 +79,7 @@ def period_of_tours(network: Network, objective: Objective, reaction: Fraction) 
     some = rounds([walker.robot for walker in patrol.walkers], visits)
     if some is None:
         return None
-    return math.floor(_worst(replace(patrol, visits=visits), some) + 1e-6) + 1
+    return math.floor(_worst(replace(patrol, visits=visits), some)) + 1
 
 
 def least_period_of_patrols(network: Network, objective: Objective, reaction: Fraction) -> int:
@@ -88,16 +92,16 @@ def least_period_of_patrols(network: Network, objective: Objective, reaction: Fr
     return math.ceil(wait - 1e-6) if wait < float("inf") else 0
 
 
-def _worst(patrol: Patrol, some: Sequence[Round]) -> float:
+def _worst(patrol: Patrol, some: Sequence[Round]) -> Fraction:
     """The longest time that a place waits, as a part of its period."""
-    return max(cost(each.robot, patrol.visits, mine).part for each, mine in zip(patrol.walkers, some))
+    return max(part_of_period(each, patrol, mine) for each, mine in zip(patrol.walkers, some))
 
 
 def _strategy(
     network: Network, patrol: Patrol, some: Sequence[Round], busy: AbstractSet[str] = frozenset()
 ) -> Optional[Strategy]:
     """The strategy of these rounds, a share for each robot that has one."""
-    tours = [_tour(walker, patrol, mine) for walker, mine in zip(patrol.walkers, some)]
+    tours = [tour_of(walker, patrol, mine) for walker, mine in zip(patrol.walkers, some)]
     met = [set(tour.stops) if tour is not None else {walker.automaton.initial}
            for walker, tour in zip(patrol.walkers, tours)]  # fmt: skip
     blocks: List[Block] = []
@@ -110,10 +114,10 @@ def _strategy(
             return None
         theirs: Set[str] = set().union(*(places for other, places in enumerate(met) if other != number))
         anybody = [not busy.isdisjoint(duty.visits) for duty in patrol.duties]
-        shared = (patrol.duties[k].name for k in mine if anybody[k] or patrol.visits[k].place in theirs)
+        shared = (patrol.duties[k].name for k in dict.fromkeys(mine) if anybody[k] or patrol.visits[k].place in theirs)
         alone = (Watcher(name, (walker.automaton.name,)) for name in shared)
         own = [watcher for watcher in alone if watched_by(network, watcher) is not None]
-        kept = (tour.name, *(watcher.name for watcher in own), *(patrol.duties[k].name for k in mine))
+        kept = (tour.name, *(watcher.name for watcher in own), *(patrol.duties[k].name for k in dict.fromkeys(mine)))
         shares.append(tuple((name, LOSE) for name in kept))
         watchers += own
         stays = _stays(walker, patrol, tour, mine)
@@ -121,31 +125,12 @@ def _strategy(
     return Strategy(tuple(blocks), shares=tuple(shares), watchers=tuple(watchers), tours=tuple(filter(None, tours)))
 
 
-def _tour(walker: Walker, patrol: Patrol, mine: Round) -> Optional[Tour]:
-    """The tour of a round; None for a robot that has none.
-
-    It ends its way around where the last visit is: there it has been everywhere.
-    """
-    if not mine:
-        return None
-    places = [patrol.visits[k].place for k in mine]
-    start = walker.automaton.initial
-    stops = [start, *walker.stops([start, *places])]
-    back = walker.stops([places[-1], places[0]])
-    if not back:
-        return Tour(walker.automaton.name, tuple(stops), len(stops))
-    if places[0] == start:  # where it waits at first it does not in each round
-        return Tour(walker.automaton.name, (*stops, *back), 1)
-    return Tour(walker.automaton.name, (*stops, *back[:-1]), len(walker.stops([start, places[0]])))
-
-
 def _pauses(walker: Walker, patrol: Patrol, mine: Round) -> Tuple[Fraction, Fraction]:
     """How much longer than they have to robots stay at first, and where they have been everywhere, in whole units."""
-    some = cost(walker.robot, patrol.visits, mine)
-    period = min(Fraction(patrol.duties[k].deadline) for k in mine) * (1 - RESERVE)
-    waits = (Fraction(takes).limit_denominator(1000) for takes in (some.first, some.length - walker.robot.stay))
-    first, later = (max(Fraction(0), (period - takes) // patrol.unit * patrol.unit) for takes in waits)
-    return first, later
+    waits = gaps(walker, patrol, mine).items()
+    room = [[Fraction(patrol.duties[k].deadline) * (1 - RESERVE) - gap[n] for k, gap in waits] for n in (0, 1)]
+    first, later = (min(some) // patrol.unit * patrol.unit for some in room)
+    return max(Fraction(0), first), max(Fraction(0), later)
 
 
 def _stays(walker: Walker, patrol: Patrol, tour: Tour, mine: Round) -> Mapping[int, Fraction]:

@@ -12,11 +12,12 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import AbstractSet, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.language.network_names import AT_RISK, LOSE
 from pursue_gen.outcomes import NotProven
 from pursue_gen.solving.due_moves import Duty
+from pursue_gen.solving.gaps import on
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rounds import is_too_late, least_wait
@@ -166,8 +167,7 @@ def _stays(
     late to a place even if it stays nowhere."""
     tour, places = some.tour, [duty.visits[some.tour.robot][0] for duty in some.duties]
     everywhere = max(tour.stops.index(place) for place in places)
-    late = reaction + patrol.unit
-    course, again = _course(network, some, late, now), list(_on(some, tour.again, late))
+    course, again = _course(network, some, patrol.late, now), list(on(some.walker, tour, tour.again, patrol.late))
     room: List[Fraction] = []
     for duty, place in zip(some.duties, places):
         room.append(Fraction(duty.deadline) * (1 - RESERVE) - _longest_gap(tour, again, place))
@@ -189,19 +189,6 @@ def _kept_by(some: _Round, duty: Duty) -> Tuple[str, str]:
     return next(watched, (duty.name, duty.clock))
 
 
-def _on(some: _Round, stop: int, late: Fraction) -> Iterator[Tuple[int, Fraction]]:
-    """The stops that come behind this one until the tour is back where its way around begins, and this one, each with
-    the longest time to it from the one before, when the robot stays nowhere."""
-    tour, ways = some.tour, some.walker.ways
-    for _ in range(2 * len(tour.stops)):
-        following = tour.after(stop)
-        if following is None:
-            return
-        way = ways[tour.stops[stop]][tour.stops[following]]
-        yield following, way.rest + late + way.lasts
-        stop = following
-
-
 def _course(network: Network, some: _Round, late: Fraction, now: Now) -> List[Tuple[int, Fraction]]:
     """The stops that the robot comes to from now on, and when it is there at the latest if it stays nowhere."""
     tour, here, clock = some.tour, network.automaton(some.tour.robot).initial, now.clocks[some.walker.clock]
@@ -214,7 +201,7 @@ def _course(network: Network, some: _Round, late: Fraction, now: Now) -> List[Tu
         lasts = next(way.lasts for led in some.walker.ways.values() for way in led.values() if way.edge.target == here)
         moment = max(now.late, lasts - clock)
         found.append((some.stop, moment))
-    for stop, takes in _on(some, some.stop, late):
+    for stop, takes in on(some.walker, tour, some.stop, late):
         moment += takes
         found.append((stop, moment))
     return found

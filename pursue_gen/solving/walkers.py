@@ -33,12 +33,14 @@ class Way:
 
 @dataclass(frozen=True)
 class Walker:
-    """A robot: its ways by place and next place, and as `rounds` knows it; of each way around where it leads next."""
+    """A robot: its ways by place and next place, and as `rounds` knows it; how long it stays at a place at most before
+    it goes on; from each place to each other one where it goes first."""
 
     automaton: Automaton
     clock: str
     ways: Mapping[str, Mapping[str, Way]]
     robot: Robot
+    stay: Fraction
     following: Mapping[Tuple[str, str], str]
 
     def stops(self, places: Sequence[str]) -> List[str]:
@@ -53,12 +55,14 @@ class Walker:
 
 @dataclass(frozen=True)
 class Patrol:
-    """What tours are to keep: who walks them, the duties, and as `rounds` has these; for how long a command is due."""
+    """What tours are to keep: who walks them, the duties, and as `rounds` has these; for how long a command is due, and
+    how late it takes effect at most."""
 
     walkers: Tuple[Walker, ...]
     duties: Tuple[Duty, ...]
     visits: Tuple[Visit, ...]
     unit: Fraction
+    late: Fraction
 
 
 def patrol_of(
@@ -90,7 +94,7 @@ def patrol_of(
         if len(set(where.values())) != 1:
             return None
         visits.append(Visit(next(iter(where.values())), frozenset(where), float(duty.deadline)))
-    return Patrol(tuple(able), known, tuple(visits), unit)
+    return Patrol(tuple(able), known, tuple(visits), unit, late)
 
 
 def _in_order(network: Network, known: Sequence[Duty]) -> bool:
@@ -124,7 +128,7 @@ def _walker(robot: Automaton, late: Fraction, under_way: bool) -> Optional[Walke
     steps = {a: {b: float(way.rest + late + way.lasts) for b, way in led.items()} for a, led in ways.items()}
     times, following_of = _all_ways(steps)
     stay = min(way.rest for led in ways.values() for way in led.values()) + late
-    return Walker(robot, clock, ways, Robot(robot.initial, times, float(stay)), following_of)
+    return Walker(robot, clock, ways, Robot(robot.initial, times, float(stay)), stay, following_of)
 
 
 def _since(guard: Guard, clock: str) -> Fraction:
