@@ -95,6 +95,6 @@ def test_what_it_cannot_begin_with_is_named(
     (tmp_path / "latin.pur").write_bytes(b"// \xe9\n")
     monkeypatch.chdir(tmp_path)
     with pytest.raises(typer.Exit) as caught:
-        draw([Path(name) for name in arguments], port=0, browser=False, limit=10.0, force=False)
+        draw([Path(name) for name in arguments], port=0, browser=False, limit=10.0, robot=[], force=False)
     out, said = capsys.readouterr()
     assert (caught.value.exit_code, out) == (2, "") and words in said and "help:" in said
