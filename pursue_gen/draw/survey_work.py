@@ -30,7 +30,8 @@ class SurveyWork(Work):
 
 
 def survey(given: SurveyWork, pipe: Connection) -> None:
-    """Sends {"verdict": "surveyed", "lines": …, "surveyed": the text with what was measured}, or why not."""
+    """Sends {"verdict": "surveyed", "lines": …, "surveyed": the text with what was measured, "paths": of the ways, with
+    their bends in metres}, or why not."""
     with working(pipe):
         pipe.send({"progress": "measuring"})
         try:
@@ -54,4 +55,5 @@ def _measured(given: SurveyWork, floor: Path) -> Dict[str, Any]:
     options = Options(replace(given.robot, radius=given.radius), ways=given.ways, drive=Drive(speeds))
     found = surveyed(scenario, read_ground(floor, whole=True), floor.name, options)
     lines = [*sentences(found.findings), *table(found)]
-    return {"verdict": SURVEYED, "lines": lines, "surveyed": format_text(found.text, given.file)}
+    paths = [{"a": way.a, "b": way.b, "line": way.line} for way in found.ways if way.line]
+    return {"verdict": SURVEYED, "lines": lines, "surveyed": format_text(found.text, given.file), "paths": paths}

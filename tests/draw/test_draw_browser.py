@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import sys
 import threading
 from contextlib import contextmanager
@@ -221,6 +222,23 @@ def test_the_tutorials_scenario_is_drawn_from_nothing_and_won(there: Browser, tm
         there.click("#save")
         there.wait("document.getElementById('status').textContent.startsWith('Saved')")
         assert file.read_text(encoding="utf-8") == made
+        assert there.complaints == []
+
+
+@pytest.mark.skipif(not find_spec("scipy"), reason="scipy is not installed")
+def test_ways_that_were_measured_follow_their_paths_until_a_place_moves(there: Browser, tmp_path: Path) -> None:
+    for file in (ROOT / "docs" / "survey").iterdir():
+        shutil.copy(file, tmp_path)
+    with drawn(there, tmp_path / "three_rooms.pur", tmp_path / "three_rooms.yaml"):
+        bends = "[...document.querySelectorAll('#plan polyline.line')].map((one) => one.points.numberOfItems)"
+        assert there.value(bends) == [2, 2]
+        there.click("#measure")
+        there.wait("document.getElementById('text').value.includes('// survey: ')")
+        there.wait(f"Math.min(...{bends}) > 2")
+        there.press(*at(there, "desk"))
+        fill(there, "field-x", "1.5")
+        there.wait(f"{bends}.filter((number) => number === 2).length === 2")  # those that end there
+        assert max(there.value(bends)) > 2
         assert there.complaints == []
 
 

@@ -289,6 +289,8 @@ def test_ways_are_measured_on_the_map_as_survey_does(tmp_path: Path) -> None:
     copy = surveyed(read_placed(text, rooms.name), ground, "three_rooms.yaml", options).text
     assert done["surveyed"] == format_text(copy, "copy.pur")
     assert any(line.startswith("hall - shelf") for line in done["lines"])
+    path = next(one["line"] for one in done["paths"] if (one["a"], one["b"]) == ("desk", "hall"))
+    assert len(path) > 2 and [list(path[0]), list(path[-1])] == [[1.0, 1.0], [6.0, 2.5]]
     page.answer("survey", {"text": "poi", **settings})
     done = until(lambda: page.answer("job", {})["state"] == "ended" and page.answer("job", {}), "the end")
     assert done["verdict"] == "errors" and "surveyed" not in done

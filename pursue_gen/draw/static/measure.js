@@ -21,6 +21,7 @@ function take(answer, text) {
     byId("measured").hidden = false;
     byId("measured").textContent = answer.lines.join("\n");
     if (!answer.surveyed) return;
+    state.paths = answer.paths;
     if (state.text === text) replace(answer.surveyed);
     else say("The text was changed meanwhile: measure again.", true);
   } else if (answer.state === "running") {

@@ -34,23 +34,24 @@ export function draw() {
   const key = plan.contains(focused) && focused !== plan ? focused.dataset.key : null;
   const at = new Map(state.view.places.map((one) => [one.name, toScreen(one.x, one.y)]));
   const ways = state.view.ways.filter((way) => at.has(way.a) && at.has(way.b));
-  const taken = new Taken(ways.map((way) => ({ a: at.get(way.a), b: at.get(way.b) })));
+  const lines = new Map(ways.map((way) => [way, lineOf(way, at)]));
+  const taken = new Taken(ways.flatMap((way) => parts(lines.get(way))));
   for (const point of at.values()) taken.add({ x: point.x - 13, y: point.y - 13, w: 26, h: 26 });
   for (const spot of state.view.places.flatMap((one) => one.spots)) {
     const point = toScreen(spot.x, spot.y);
     taken.add({ x: point.x - 7, y: point.y - 7, w: 14, h: 14 });
   }
   const names = state.view.places.map((place) => namesOf(place, at.get(place.name), taken));
-  const lengths = ways.map((way) => lengthOf(way, ends(way, at), taken));
+  const lengths = ways.map((way) => lengthOf(way, longest(lines.get(way)), taken));
   plan.replaceChildren(
     ...ground(),
-    ...ways.map((way) => drawnWay(way, ends(way, at))),
+    ...ways.map((way) => drawnWay(way, lines.get(way))),
     ...rubber(at),
     ...state.view.places.map((place) => drawnPlace(place, at.get(place.name))),
     ...state.view.places.flatMap((place) => place.spots.map((spot) => drawnSpot(place, spot))),
     ...lengths.filter((one) => one !== null),
     ...names,
-    ...travellers(ways, at),
+    ...travellers(ways, lines),
   );
   const again = key && plan.querySelector(`[data-key="${CSS.escape(key)}"]`);
   if (again) again.focus({ preventScroll: true });
@@ -100,17 +101,36 @@ function ends(way, at) {
   return [{ x: a.x - dx, y: a.y - dy }, { x: b.x - dx, y: b.y - dy }];
 }
 
-function drawnWay(way, [a, b]) {
+// The points of a way: a straight line, or the path that was measured, as long as its places are where they were then.
+function lineOf(way, at) {
+  const [a, b] = ends(way, at);
+  const path = state.paths.find((one) => one.a === way.a && one.b === way.b);
+  const isAt = (place, [x, y]) => Math.hypot(place.x - x, place.y - y) < 0.01;
+  const fits = path && isAt(placeNamed(way.a), path.line[0]) && isAt(placeNamed(way.b), path.line[path.line.length - 1]);
+  return fits ? [a, ...path.line.slice(1, -1).map(([x, y]) => toScreen(x, y)), b] : [a, b];
+}
+
+function parts(line) {
+  return line.slice(1).map((b, number) => ({ a: line[number], b }));
+}
+
+function longest(line) {
+  const far = ({ a, b }) => Math.hypot(b.x - a.x, b.y - a.y);
+  const found = parts(line).reduce((one, other) => (far(other) > far(one) ? other : one));
+  return [found.a, found.b];
+}
+
+function drawnWay(way, line) {
   const key = `${way.a} ${way.b} ${way.one_way}`;
-  const line = { x1: a.x, y1: a.y, x2: b.x, y2: b.y };
+  const points = line.map((one) => `${one.x},${one.y}`).join(" ");
   const words = `way from ${way.a} to ${way.b}, ${way.distance} long${way.one_way ? ", one way" : ""}`;
   const group = svg(
     "g",
     { class: `way${isSelected("way", key) ? " selected" : ""}`, "data-key": key, tabindex: 0, role: "button", "aria-label": words },
-    svg("line", { class: "hit", ...line }),
-    svg("line", { class: `line${way.only_if ? " conditional" : ""}`, ...line }),
+    svg("polyline", { class: "hit", points }),
+    svg("polyline", { class: `line${way.only_if ? " conditional" : ""}`, points }),
   );
-  if (way.one_way) group.append(arrow(a, b));
+  if (way.one_way) group.append(arrow(...line.slice(-2)));
   return group;
 }
 
@@ -138,11 +158,11 @@ function rubber(at) {
 }
 
 // Who is on a way in a game, in its middle: marks beside each other.
-function travellers(ways, at) {
+function travellers(ways, lines) {
   const playing = state.playing || {};
   const found = [];
   for (const way of ways) {
-    const [a, b] = ends(way, at);
+    const [a, b] = longest(lines.get(way));
     const on = state.view.agents.filter((one) => {
       const where = playing[one.name] || [];
       return where.length === 2 && where.includes(way.a) && where.includes(way.b);
