@@ -240,16 +240,21 @@ def _played(searches: Searches, prompt: bool, exact: bool, limit: int, monitor: 
 
 
 def _safe(searches: Searches, closed: bool, limit: int, monitor: LimitMonitor) -> Report:
-    """The same for a safety game, where it may be quicker to see that no play leaves what a strategy covers."""
-    size = _size(searches.loop.strategy)
+    """The same for a safety game, where it may be quicker to see that no play leaves what a strategy covers.
+
+    Nor does extrapolation lead out of it then, as it may on a walk.
+    """
+    size, walked = _size(searches.loop.strategy), None
     if not closed and size <= _LARGE:
-        report = _played(searches, False, False, min(limit, _SOON), monitor)
-        if limit <= _SOON or not report.reason.startswith("limit"):
-            return report
+        walked = _played(searches, False, False, min(limit, _SOON), monitor)
+        if walked.ok or (limit <= _SOON and walked.reason.startswith("limit")):
+            return walked
     if size <= limit:
         found = searches.covered(monitor)
         if found is not None:
             return _report(searches.loop.arena, found)
+    if walked is not None and not walked.reason.startswith("limit"):
+        return walked
     return _played(searches, False, False, limit, monitor)
 
 

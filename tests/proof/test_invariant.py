@@ -10,15 +10,21 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from benchmarks.lab_scenarios import Size, lab_scenario
+from pursue_gen.language import parse
 from pursue_gen.proof import checker
 from pursue_gen.proof.checker import pruned, verify
 from pursue_gen.proof.closed_loop import ClosedLoop
 from pursue_gen.proof.left_out import named_part
 from pursue_gen.proof.native.search import searches_of
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.policies import won_by_policy
+from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
 from tests.proof.test_checker import SAFETY, automaton, block, edge, moves, network
 from tests.proof.test_checker_random import _all_keys, _changed, networks
@@ -136,3 +142,14 @@ def test_a_command_on_its_way_is_followed_to_the_end_of_its_delay():
 def test_a_strategy_that_does_not_know_the_start_does_not_pass():
     late = Strategy((block(CAREFUL, "a", ["x>1,x<2"], ("x>=2,x<=3", LEAVE)), block(CAREFUL, "b", [""])))
     assert not covered(CAREFUL, SAFETY, late, Fraction(0))
+
+
+@needs_native
+def test_what_is_not_left_though_extrapolation_leads_out_of_it_is_proven() -> None:
+    """The clock of the robot's rest is beyond all bounds there, and forgotten: then a person seems to come too soon."""
+    text = lab_scenario(355329724, Size(places=4, robots=1, people=2, promises=2))
+    scenario = parse(text, "lab.pur", "lab")
+    game, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
+    found = won_by_policy(game, objective, Rules().reaction, 10_000_000, SolveOptions())
+    assert found is not None
+    assert verify(game, objective, found.strategy, Rules().reaction).ok
