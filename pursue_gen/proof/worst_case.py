@@ -66,11 +66,19 @@ def with_counter(network: Network) -> Network:
 def with_deadline(network: Network, objective: Objective, bound: int) -> Network:
     """The network in which the goal has to be reached while the counting clock is at most `bound` time units.
 
-    It must have such a clock (see `with_counter`). Of several locations of the goal each bounds the clock: where one
-    waits for another at the deadline, time is blocked and nobody is obliged to move, which does not reach the goal.
+    It must have such a clock (see `with_counter`).
     """
     clock = counting_clock(network)
     assert clock is not None
+    return with_clock_limit(network, objective, clock, bound)
+
+
+def with_clock_limit(network: Network, objective: Objective, clock: str, bound: int) -> Network:
+    """The network in which the goal has to be reached while the clock is at most `bound` time units.
+
+    Of several locations of the goal each bounds the clock: where one waits for another at the deadline, time is blocked
+    and nobody is obliged to move, which does not reach the goal.
+    """
     limit = ClockBound(clock, "<=", bound)
 
     def limited(automaton: Automaton, location: Location) -> Location:

@@ -19,6 +19,7 @@ from pursue_gen.proof.worst_case import counting_clock, worst_case
 from pursue_gen.replanning.request import Request, read_request
 from pursue_gen.replanning.start import around, network_from, passed_bounds, start_clocks
 from pursue_gen.replanning.tours import followers, tours_from_here
+from pursue_gen.replanning.waiting import sooner
 from pursue_gen.solving.due_moves import patrols
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
@@ -69,7 +70,7 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
         game = played(ideal, request.rules)
     except PursueError as problem:  # a slack that is none
         raise PursueError(problem.diagnostics) from None
-    network = network_from(game, request)
+    network = network_from(game, request, told_apart=bool(request.awaited))
     reason = _reason_lost(network, objective, request.scenario)
     if reason:
         return _lost(reason)
@@ -101,6 +102,8 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
             network, objective, verdict.strategy, request.rules.reaction, verdict.ranks, left, states=states or LIMIT,
             otherwise=verdict.cautious,
         )  # fmt: skip
+        if request.awaited:
+            strategy = sooner(strategy, network, objective, request.rules.reaction, limits.since(start))
     except NotProven as problem:
         return _lost(f"the plan that was found is not proven: {quoted(str(problem))}")
     except PursueError as problem:
@@ -151,7 +154,7 @@ def _won(strategy: Strategy, network: Network, request: Request, timed: Optional
 def _takes(strategy: Strategy, network: Network, objective: Objective, request: Request) -> Optional[Dict[str, float]]:
     """In how many time units at most the plan comes to the goal, from when it comes into force on: if that is not
     `early` time units before its begin, nor `late` ones after. None where that is not quickly found out."""
-    if request.turning:  # their clocks begin with the plan
+    if request.turning or request.awaited:  # their clocks begin with the plan; it takes as long as these are late
         return None
     clock = counting_clock(network)
     for share, late in _MOMENTS:
@@ -197,7 +200,7 @@ def _cannot_be_met(game: Network, request: Request) -> str:
             missed = stated(request.scenario).get(name)
             what = _objectives(request.scenario, [missed] if missed else None)
             return f"{what} cannot be met any more: its time is over"
-    absent = [name for name in agents if name in request.excused or name in over]
+    absent = [name for name in agents if name in request.excused or (name in over and name not in request.awaited)]
     without = [f"without relying on {' and '.join(map(marked, absent))}"] if absent else []
     for a, b, *alone in sorted(request.blocked):
         for_whom = "".join(f" for {marked(name)}" for name in alone)

@@ -25,8 +25,9 @@ class Request:
 
     Clocks are in time units, `ahead` of which pass before the plan begins. Nothing is expected of the agents that are
     `excused`, nobody is sent along the ways in `blocked` (in alphabetical order; the agent behind a way, if there is
-    one, alone is not), and who is `turning` may be back at any time. It may take so many `seconds`, 0: any number.
-    `follows`: the watchers and tours of the workspace's plan, in its lines; their automata are in the state.
+    one, alone is not), who is `turning` may be back at any time, and who is in `awaited` is late, and goes on within so
+    many time units. It may take so many `seconds`, 0: any number. `follows`: the watchers and tours of the workspace's
+    plan, in its lines; their automata are in the state.
     """
 
     scenario: Scenario
@@ -40,6 +41,7 @@ class Request:
     excused: FrozenSet[str]
     blocked: FrozenSet[Tuple[str, ...]]
     turning: FrozenSet[str]
+    awaited: Mapping[str, Fraction]
     seconds: float
     follows: Tuple[str, ...] = ()
 
@@ -74,6 +76,7 @@ def read_request(data: object) -> Request:
         excused=_agents(_of(request, "excused", "the request"), "excused", scenario),
         blocked=_ways(request.get("blocked", ()), scenario),
         turning=_agents(request.get("turning", ()), "turning", scenario),
+        awaited=_awaited(request.get("awaited"), scenario),
         seconds=float(seconds),
         follows=_lines(game.get("follows", ())),
     )
@@ -117,6 +120,11 @@ def _agents(data: object, name: str, scenario: Scenario) -> FrozenSet[str]:
     for agent in sorted(set(data) - set(agents)):
         raise wrong(f"{agent} is {name}", f"agents: {', '.join(agents)}")
     return frozenset(data)
+
+
+def _awaited(data: object, scenario: Scenario) -> Mapping[str, Fraction]:
+    late = {} if data is None else _object(data, "awaited")
+    return {name: _time(late[name], name) for name in sorted(_agents(list(late), "awaited", scenario))}
 
 
 def _ways(data: object, scenario: Scenario) -> FrozenSet[Tuple[str, ...]]:

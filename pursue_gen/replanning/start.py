@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations
 from math import ceil
-from typing import AbstractSet, Dict, List, Mapping, Tuple, TypeVar
+from typing import AbstractSet, Dict, List, Mapping, Optional, Tuple, TypeVar
 
 from pursue_gen.language.network_names import agent_clock, agent_position, going
 from pursue_gen.language.numbers import Number
@@ -25,9 +25,9 @@ def network_from(network: Network, request: Request, told_apart: bool = False) -
     """The network in the state of the request, `ahead` time units later, without the moves that cannot be relied on.
 
     Whoever is excused gets no command where it is and ends what it does at any time or never; whoever is there longer
-    than the model allows may stay; who is turning may be back too early; nobody is sent along a blocked way.
-    `told_apart`: also clocks that are above all that the network compares them with. Raises PursueError (exit status 2)
-    for a place that the network does not have.
+    than the model allows may stay, but who is awaited not for ever; who is turning may be back too early; nobody is
+    sent along a blocked way. `told_apart`: also clocks that are above all that the network compares them with. Raises
+    PursueError (exit status 2) for a place that the network does not have.
     """
     locations, values, clocks = _place(network, request)
     agents = {agent.name for agent in request.scenario.agents}
@@ -39,7 +39,7 @@ def network_from(network: Network, request: Request, told_apart: bool = False) -
         if automaton.name in request.excused:
             moved = _idle(_unbounded(moved, here), here, clocks)
         elif automaton.name in agents and passed_bounds(automaton, here, clocks):
-            moved = _unbounded(moved, here)
+            moved = _awaited(moved, here, clocks, request) or _unbounded(moved, here)
         if automaton.name in request.turning:
             moved = _idle(moved, here, clocks)
         automata.append(_without_ways(moved, request) if automaton.name in agents else moved)
@@ -119,6 +119,22 @@ def _known(table: Mapping[str, T], name: str, what: str) -> T:
 def _unbounded(automaton: Automaton, here: str) -> Automaton:
     """It may stay where it is for ever."""
     locations = (replace(place, invariant=()) if place.name == here else place for place in automaton.locations)
+    return replace(automaton, locations=tuple(locations))
+
+
+def _awaited(
+    automaton: Automaton, here: str, clocks: Mapping[str, Fraction], request: Request
+) -> Optional[Automaton]:
+    """It may stay where it is for as long as it is awaited; None where it is not any more when the plan begins."""
+    left = request.awaited.get(automaton.name, Fraction(-1)) - request.ahead
+    if left < 0:
+        return None
+    passed = passed_bounds(automaton, here, clocks)
+    late = {bound: replace(bound, bound=ceil(clocks[bound.clock] + left)) for bound in passed}
+    locations = (
+        replace(place, invariant=tuple(late.get(bound, bound) for bound in place.invariant))
+        if place.name == here else place for place in automaton.locations
+    )  # fmt: skip
     return replace(automaton, locations=tuple(locations))
 
 

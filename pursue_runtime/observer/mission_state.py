@@ -56,6 +56,7 @@ class MissionState:
         self.late: Set[str] = set()
         self.lost: Dict[str, str] = {}  # and why
         self.silent: Set[str] = set()
+        self._relying = -1  # after so many moves there was no plan without those who are late
         self._told = Told()  # what was logged of the reason since the mission holds
         self.ways = Ways(model)
         self.robots = Robots(model)

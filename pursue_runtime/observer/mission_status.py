@@ -5,16 +5,18 @@ from __future__ import annotations
 from typing import Any, Dict, List, Mapping, Optional
 
 from pursue_runtime.data import DataError
-from pursue_runtime.model import Model
+from pursue_runtime.locations import is_under_way
+from pursue_runtime.model import Model, Position
 from pursue_runtime.observer import life
 from pursue_runtime.observer.assumptions import broken_reason
-from pursue_runtime.observer.mission_state import MissionState
+from pursue_runtime.observer.mission_state import ACTING, MissionState
 from pursue_runtime.observer.planning import PlanRequest, covers, is_uncovered
 from pursue_runtime.observer.uncovered import uncovered_position, uncovered_reason
 from pursue_runtime.sentences import as_sentence, in_words, marked
 from pursue_runtime.state import ENDED, HOLDING, LIVE, RUNNING, SystemState
 from pursue_runtime.state_checks import adoptable
-from pursue_runtime.strategy import Entry
+from pursue_runtime.strategy import Cover, Entry
+from pursue_runtime.zones import due
 
 COVER_GRACE = 2.0
 """Seconds for which clocks may be outside what the strategy covers while no agent is late: words may be lost, and are
@@ -53,14 +55,20 @@ class MissionStatus(MissionState):
             found = self._planning.on_plan(number, answer)
         except (DataError, KeyError, TypeError) as problem:
             return self.on_no_plan(number, f"the plan cannot be read: {problem}", now)
-        if found:
+        proposal = self._planning.proposal
+        if found and self.status == RUNNING and proposal and not self._has_commands(proposal.cover, self.position(now)):
+            self._planning.refuse("nothing can be done before who is late goes on")
+        elif found:
             self._log("info", f"plan {number} goes to the controllers")
         return self._put_plan_in_force(now)
 
     def on_no_plan(self, number: int, why: str, now: float) -> List[SystemState]:
         """Take that there is no plan for the request of this number: stop, unless an agent is only late."""
-        if self._planning.on_no_plan(number, why):
+        request = self._planning.on_no_plan(number, why)
+        if request is not None and request.turning:
             self.ways.turns.clear()  # a plan without these robots is the next to look for
+        elif request is not None and not request.awaited:
+            self._relying = self.counts["taken"]  # then one that relies on those who are late
         return self._status_changes(now)
 
     def on_long_search(self, number: int, seconds: float, now: float) -> List[SystemState]:
@@ -82,6 +90,7 @@ class MissionStatus(MissionState):
         self.late, self.lost, self.silent = set(state.late), dict.fromkeys(state.lost, "was lost before"), set()
         self._early, self._warned = {}, False
         self.ways.turns.clear()
+        self._relying = -1
         self._planning.adopt(self.late.union(self.lost))
         self.robots.adopt(state)
         self.orders.adopt(state.orders, now)
@@ -128,7 +137,9 @@ class MissionStatus(MissionState):
                 self._log("warn", in_words(trouble))
             self._warned, trouble = True, ""
         reasons = waits + [f"{node} is silent" for node in sorted(self.silent)]
-        if not trouble:
+        if not trouble and not reasons and self._stands_idle(now):
+            self._request_plan(now, meanwhile=True)
+        elif not trouble:
             self._planning.reset()
         elif self._request_plan(now):
             reasons.append(f"{trouble}; {self._planning.progress()}")
@@ -183,15 +194,38 @@ class MissionStatus(MissionState):
 
     # New plans --------------------------------------------------------------------------------------------------------
 
-    def _request_plan(self, now: float) -> bool:
-        """Request another plan from here; return False if there is none."""
+    def _request_plan(self, now: float, meanwhile: bool = False) -> bool:
+        """Request another plan from here, or for what to do while somebody is late; return False if there is none."""
         position = Model.after(tuple(self.ways.turns.values()), self.position(now))
         gone = frozenset(self.late | set(self.lost))
-        excused = gone - set(self.ways.turns)
+        awaited = self._awaited(position) if meanwhile or self._relying == self.counts["taken"] else {}
+        excused = gone - set(self.ways.turns) - set(awaited)
         ends = [delay for name, delay in self._bounds(position) if name not in gone]
         ahead = max(0.0, min([self._planning.lead_time / self._unit, *ends]))
-        self._planning.request_plan(self.counts["taken"], position, now, ahead, excused, self.ways)
+        self._planning.request_plan(self.counts["taken"], position, now, ahead, excused, awaited, self.ways)
         return not self._planning.no_plan_reason
+
+    def _awaited(self, position: Position) -> Dict[str, float]:
+        """Return the agents that are late, and the time units until each counts as lost."""
+        late = {name: delay + self._lost_after for name, delay in self._late_agents(position)}
+        return {name: left for name, left in late.items() if name not in self.ways.turns}
+
+    def _stands_idle(self, now: float) -> bool:
+        """Return True while nobody does anything but agents that are late, and the plan in force waits for them."""
+        position = self.position(now)
+        late = {name for name, _ in self._late_agents(position)}
+        others = [each.name for each in self.model.of_kind(*ACTING) if each.name not in late.union(self.lost)]
+        if not late or self._cover is None or self._on_uncovered != "plan":
+            return False
+        busy = any(is_under_way(position.locations[name]) for name in others)
+        return not busy and not self._has_commands(self._cover, position)
+
+    @staticmethod
+    def _has_commands(cover: Cover, position: Position) -> bool:
+        """Return True if the plan has a command here, now or later while only time passes."""
+        found = cover.find(SystemState(0, 0.0, *position))
+        zones = [zone for covered in found for zones in covered.commands.values() for zone in zones]
+        return due(zones, position.clocks) is not None
 
     def _on_plan_receipt(self, node: str, number: int, now: float) -> List[SystemState]:
         self._planning.on_receipt(node, number)
@@ -211,6 +245,8 @@ class MissionStatus(MissionState):
         self.in_force = proposal.data
         self.plan, self._cover = proposal.data["plan"], proposal.cover
         self._planning.put_in_force(proposal)
+        for name in proposal.request.awaited or ():
+            self._log("info", f"plan {self.plan} relies on {name}, which is late, until it counts as lost")
         self._automata.turn(turns, start)
         for name, _ in turns:
             self.late.discard(name)

@@ -25,7 +25,8 @@ class PlanRequest(NamedTuple):
     """A request for a plan from this state; clocks are those at `stamp` (seconds), `ahead` is in time units.
 
     The plan must not rely on the agents in `excused`, nor send anybody along the ways in `blocked`, or the agent alone
-    that stands behind a way. The robots in `turning` turn round when it begins, and may be back at any time.
+    that stands behind a way. The robots in `turning` turn round when it begins, and may be back at any time. Those in
+    `awaited` are late; the plan relies on them for so many time units more, counted from `stamp`.
     """
 
     number: int
@@ -37,6 +38,7 @@ class PlanRequest(NamedTuple):
     excused: Tuple[str, ...]
     blocked: Tuple[Block, ...] = ()
     turning: Tuple[str, ...] = ()
+    awaited: Optional[Mapping[str, float]] = None
 
 
 class Proposal(NamedTuple):
@@ -92,10 +94,11 @@ class Planning:
         stamp: float,
         ahead: float,
         excused: FrozenSet[str],
+        awaited: Mapping[str, float],
         ways: Ways,
     ) -> None:
         """Request a plan from this position, unless there is a request, a proposal or a failure for this `place`."""
-        place = place, excused, ways.revision()
+        place = place, excused, sorted(awaited), ways.revision()
         if place != self._place:
             known = self.lead_time
             self.reset()
@@ -109,7 +112,7 @@ class Planning:
         self._number += 1
         self.searched = 0.0
         what = position.locations, position.values, position.clocks, stamp, ahead
-        self.request = PlanRequest(self._number, *what, tuple(sorted(excused)), *ways.revision())
+        self.request = PlanRequest(self._number, *what, tuple(sorted(excused)), *ways.revision(), awaited or None)
 
     def adopt(self, absent: AbstractSet[str]) -> None:
         """Start anew from a state in which these agents are late or lost: others that were excused may be back."""
@@ -149,19 +152,24 @@ class Planning:
         if isinstance(answer.get("takes"), dict):
             begins = {"stamp": self.request.stamp, "ahead": self.request.ahead, "excused": list(self.request.excused)}
             data["takes"] = {**answer["takes"], **begins}
+        if self.request.awaited:
+            data["awaited"] = sorted(self.request.awaited)
         self.proposal = Proposal(data, read_cover(answer["cover"]), self.request)
         self.request = None
         self._unacknowledged = set(self._controllers)
         return True
 
-    def on_no_plan(self, number: int, why: str) -> bool:
-        """Note that there is no plan for the request of this number; return True if it was one with robots that turn
-        round."""
-        if self.request is None or number != self.request.number:
-            return False
-        turning = bool(self.request.turning)
+    def on_no_plan(self, number: int, why: str) -> Optional[PlanRequest]:
+        """Note that there is no plan for the request of this number, and return that; None: it is not looked for."""
+        request = self.request
+        if request is None or number != request.number:
+            return None
         self.request, self.no_plan_reason = None, as_sentence(why)
-        return turning
+        return request
+
+    def refuse(self, why: str) -> None:
+        """Drop the proposal: it is of no use."""
+        self.proposal, self.no_plan_reason = None, why
 
     def on_receipt(self, node: str, number: int) -> None:
         """Note that a controller has acknowledged a plan."""

@@ -11,6 +11,7 @@ from typing import Any, Dict, FrozenSet, List, Mapping, NamedTuple, Optional, Se
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_end
 from pursue_runtime.model import Model
+from pursue_runtime.phrases import listed
 from pursue_runtime.simulator.simulator import ACTING, end_window
 from pursue_runtime.state import HOLDING, LIVE, SystemState
 from pursue_runtime.ui.statuses import Status, status_texts
@@ -170,7 +171,10 @@ class Guarantee:
         if not self._model.goal:
             return {}
         if state.plan and (self._most is None or self._last is None or self._last.plan != state.plan):
-            return {"most": None, "void": "a new plan is in force, which leads to the goal"}
+            names = self._plans.get(state.plan, {}).get("awaited")
+            late = [self._model.shown(str(name)) for name in names] if isinstance(names, list) else []
+            provided = f", provided that {listed(late)} {'go' if late[1:] else 'goes'} on" if late else ""
+            return {"most": None, "void": f"a new plan is in force, which leads to the goal{provided}"}
         return {"most": self._most, "void": self._void}
 
     def _reason(self, state: SystemState, last: Optional[SystemState]) -> str:

@@ -70,6 +70,9 @@ BAD = {
     "a way that is blocked for strangers": ({**GOOD, "blocked": [["b", "c", "bot9"]]}, "blocked is [['b', 'c', 'bot9'"),
     "a way that is blocked for two": ({**GOOD, "blocked": [["b", "c", "bot1", "bot2"]]}, "blocked is [['b', 'c', "),
     "a blocked way of numbers": ({**GOOD, "blocked": [[{}, 1]]}, "blocked is [[{}, 1]]"),
+    "awaited strangers": ({**GOOD, "awaited": {"bot9": 3.0}}, "bot9 is awaited"),
+    "an awaited list": ({**GOOD, "awaited": ["bot1"]}, "awaited is ['bot1']"),
+    "an agent that is awaited for less than no time": ({**GOOD, "awaited": {"bot1": -1.0}}, "bot1 is -1.0"),
     "a limit of nothing": ({**GOOD, "limit": 0}, "limit is 0"),
 }
 

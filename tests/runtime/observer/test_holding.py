@@ -9,6 +9,7 @@ import pytest
 
 from pursue_runtime.model import Model
 from pursue_runtime.state import format_state, parse_state
+from pursue_runtime.strategy import read_cover
 from tests.runtime.models import commanding
 from tests.runtime.observer.test_mission import CHASE, Journey
 from tests.runtime.texts import read
@@ -232,9 +233,113 @@ def test_who_is_only_late_is_waited_for_where_there_is_no_plan_without_it() -> N
     made.mission.on_time(6.1)
     made.mission.on_time(8.2)  # beyond what the strategy knows
     assert made.mission.status == "holding" and made.mission.plan_request.excused == ("bot",)
-    (state,) = made.mission.on_no_plan(made.mission.plan_request.number, "nobody else can", 9.0)
-    assert state.status == "holding" and "waiting for {bot}" in state.reason and made.mission.plan_request is None
+    assert made.mission.on_no_plan(made.mission.plan_request.number, "nobody else can", 9.0) == []
+    (state,) = made.mission.on_no_plan(made.mission.plan_request.number, "nor with it", 9.5)
+    assert state.status == "holding" and state.reason.endswith("; no other plan: nor with it; waiting for {bot}")
+    assert made.mission.plan_request is None
     assert made.hear("bot_going_a_to_b2b", 10.0).status == "running"
+
+
+def late_bot() -> Journey:
+    """A mission whose bot is late since moment 6, and counts as lost from moment 14 on; there is no plan without it."""
+    made = journey()
+    made.hear("bot_a2b", 2.0)
+    made.mission.on_time(6.1)
+    made.mission.on_time(8.2)
+    first = made.mission.plan_request
+    assert (first.excused, first.awaited) == (("bot",), None)
+    assert made.mission.on_no_plan(first.number, "nobody else can", 9.0) == []
+    return made
+
+
+def test_where_there_is_no_plan_without_who_is_late_one_relies_on_it_until_it_counts_as_lost() -> None:
+    made = late_bot()
+    wanted = made.mission.plan_request
+    assert (wanted.excused, wanted.stamp, wanted.awaited) == ((), 9.0, {"bot": pytest.approx(5.0)})
+    (state,) = planned(made, EVERYWHERE, 9.5)
+    assert (state.status, state.plan, state.late) == ("running", wanted.number, ("bot",))
+    assert made.mission.in_force["awaited"] == ["bot"]
+    assert any("relies on bot, which is late" in text for _, text in made.logs)
+    state = made.hear("bot_going_a_to_b2b", 10.0)
+    assert (state.status, state.late) == ("running", ())
+
+
+def test_once_it_counts_as_lost_nothing_is_expected_of_it() -> None:
+    made = late_bot()
+    planned(made, EVERYWHERE, 9.5)
+    (state,) = made.mission.on_time(14.0)
+    assert (state.status, state.lost) == ("holding", ("bot",))
+    assert (made.mission.plan_request.excused, made.mission.plan_request.awaited) == (("bot",), None)
+
+
+def test_after_an_event_a_plan_without_who_is_late_is_looked_for_first() -> None:
+    made = late_bot()
+    made.hear("thief_leaves", 11.0)
+    assert (made.mission.plan_request.excused, made.mission.plan_request.awaited) == (("bot",), None)
+    made.mission.on_no_plan(made.mission.plan_request.number, "nobody else can", 12.0)
+    assert made.mission.plan_request.awaited == {"bot": pytest.approx(2.0)}
+
+
+CATCH = {"do": "catch", "agent": "dog", "from": "b", "to": "b", "when": ["Cdog > 1"]}
+MEANWHILE = {"format": 1, "cover": [{"state": {}, "wait": ["always"], "commands": [CATCH]}]}
+"""A plan that waits everywhere, and one with a command for the dog."""
+
+
+def waiting(cover: Any = EVERYWHERE) -> Journey:
+    """A mission whose plan waits for the bot, which is late since moment 6 and counts as lost from moment 14 on."""
+    made = journey()
+    made.mission._cover = read_cover(cover)
+    made.hear("bot_a2b", 2.0)
+    assert made.mission.plan_request is None
+    assert made.mission.on_time(6.1) == [] and made.mission.late == {"bot"}
+    return made
+
+
+def test_while_the_plan_waits_for_who_is_late_one_is_looked_for_by_which_others_do_something() -> None:
+    made = waiting()
+    wanted = made.mission.plan_request
+    assert (made.mission.status, wanted.excused, list(wanted.awaited)) == ("running", (), ["bot"])
+    assert made.mission.on_plan(wanted.number, {**answer(EVERYWHERE), "cover": MEANWHILE}, 7.0) == []
+    made.hear(f"one:_plan_@{wanted.number}", 7.0)
+    state = made.hear(f"two:_plan_@{wanted.number}", 7.0)
+    assert (state.status, state.plan, state.late) == ("running", wanted.number, ("bot",))
+    assert made.mission.plan_request is None, "now there is something to do"
+    assert made.hear("catch", 7.5).event == "catch"
+
+
+def test_a_plan_by_which_nobody_does_anything_meanwhile_is_not_put_in_force() -> None:
+    made = waiting()
+    number = made.mission.plan_request.number
+    assert made.mission.on_plan(number, {**answer(EVERYWHERE), "cover": EVERYWHERE}, 7.0) == []
+    assert made.mission.proposal is None and made.mission.status == "running" and made.mission.plan == 0
+    assert made.mission.on_time(8.0) == [] and made.mission.plan_request is None, "it is not looked for again"
+    (state,) = made.mission.on_time(14.2)
+    assert (state.status, state.lost) == ("holding", ("bot",)) and made.mission.plan_request.excused == ("bot",)
+
+
+def test_where_there_is_none_the_mission_goes_on_waiting() -> None:
+    made = waiting()
+    assert made.mission.on_no_plan(made.mission.plan_request.number, "not even with it", 7.0) == []
+    assert (made.mission.status, made.mission.reason, made.mission.plan_request) == ("running", "", None)
+
+
+def test_who_arrives_meanwhile_is_not_waited_for_any_more() -> None:
+    made = waiting()
+    number = made.mission.plan_request.number
+    assert made.hear("bot_going_a_to_b2b", 6.5).status == "running" and made.mission.plan_request is None
+    assert made.mission.on_plan(number, answer(MEANWHILE), 7.0) == [] and made.mission.proposal is None
+
+
+def test_where_others_have_something_to_do_no_plan_is_looked_for() -> None:
+    assert waiting(MEANWHILE).mission.plan_request is None
+
+
+def test_who_is_lost_is_not_awaited() -> None:
+    made = journey()
+    made.hear("bot_a2b", 2.0)
+    made.hear("bot:_failed_", 3.0)
+    (state,) = made.mission.on_no_plan(made.mission.plan_request.number, "nobody else can", 4.0)
+    assert state.status == "stopped"
 
 
 def test_a_robot_that_has_failed_is_lost_at_once() -> None:

@@ -148,6 +148,20 @@ def test_a_plan_that_tells_no_time_has_none(takes: Any) -> None:
     assert guarantee.now(now) == {"most": None, "void": "a new plan is in force, which leads to the goal"}
 
 
+@pytest.mark.parametrize(("late", "provided"), [
+    (["bot"], ", provided that bot goes on"), (["bot", "thief"], ", provided that bot and thief go on"),
+    (7, ""), ([], ""),
+])
+def test_a_plan_that_relies_on_who_is_late_says_so(late: Any, provided: str) -> None:
+    guarantee = Guarantee(PROMISE, MODEL)
+    guarantee.add_plan(1, {"plan": 1, "awaited": late})
+    guarantee.on_state(state(MODEL, 1, 100.0, {}, event="_start_"))
+    now = state(MODEL, 2, 130.0, {})._replace(plan=1, late=("bot",))
+    guarantee.on_state(now, 30.0)
+    why = f"a new plan is in force, which leads to the goal{provided}"
+    assert guarantee.now(now) == {"most": None, "void": why}
+
+
 def test_a_state_that_was_missed_leaves_the_time_of_the_plan_unknown() -> None:
     guarantee, now = replanned(111.0, TAKES, seq=4)
     assert guarantee.now(now)["most"] is None
