@@ -8,7 +8,7 @@ from typing import Iterator, List, Mapping, Sequence, Tuple
 from pursue_gen.calibration.proposal import Finding, Proposal, window_text
 from pursue_gen.calibration.samples import Way
 from pursue_gen.calibration.solved_again import Verdict
-from pursue_gen.calibration.texts import HEAD, changed, proposed, rows, sentences, shown
+from pursue_gen.calibration.texts import HEAD, changed, proposed, rows, sentences, shown, unknown
 from pursue_gen.diagnostics import PursueError, counted, error
 from pursue_gen.drawing.look import ACCENT, INK, PAPER, RULE, AgentLook, agent_looks, mark, safe, svg, tag, text
 from pursue_gen.files import write_texts
@@ -52,11 +52,12 @@ def sections(proposal: Proposal, verdicts: Sequence[Verdict]) -> Iterator[Sectio
     caption = f"Each mark is a time; the open bar is the window of the model, the filled one the proposal. {unit}."
     parts = [figure(draw(proposal, f"{_ID}-picture"), caption)]
     parts.append(table(HEAD, rows(proposal), "The same as a table; times in time units"))
+    parts[:0] = [f"<p>{safe(sentence)}</p>" for sentence in unknown(proposal)]
     parts += [f"<p>{safe(sentence)}</p>" for sentence in sentences(proposal)]
     yield Section(_ID, "Measured times", "\n".join(parts))
     body = f"<pre>{safe(chr(10).join(proposed(proposal)))}</pre>"
     if verdicts:
-        body += f"<pre>{safe(chr(10).join(changed(*verdicts)))}</pre>"
+        body += f"<pre>{safe(chr(10).join(changed(proposal, *verdicts)))}</pre>"
     yield Section("proposal", "What they propose", body)
 
 

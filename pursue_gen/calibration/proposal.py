@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil
-from typing import AbstractSet, Dict, List, Mapping, Sequence, Tuple
+from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.calibration.samples import Measured, Sample, Samples, Unused, Way, Work, by_what, of_record
 from pursue_gen.calibration.windows import (
@@ -111,7 +111,8 @@ class Proposal:
     """All findings, in the scenario's order; `missing`: ways of robots of which nothing was measured;
     `missing_events`: events with a duration of which nothing was.
 
-    `slack`: what would be enough, in place of new windows, for each robot that was late; `lost_after`: time units.
+    `slack`: what would be enough, in place of new windows, for each robot that was late; `lost_after`: time units, None
+    where not all ways of robots were measured. `shared`: those of `missing_events` that several do.
     """
 
     scenario: Scenario
@@ -121,7 +122,20 @@ class Proposal:
     missing_events: Tuple[Work, ...]
     unused: Tuple[Unused, ...]
     slack: Mapping[str, int]
-    lost_after: int
+    lost_after: Optional[int]
+    shared: Tuple[Work, ...] = ()
+
+    @property
+    def ways(self) -> Tuple[int, int]:
+        """How many ways of robots were not measured, and of how many."""
+        robots = {agent.name for agent in self.scenario.agents if agent.is_robot}
+        known = sum(isinstance(each.what, Way) and each.what.agent in robots for each in self.findings)
+        return len(self.missing), len(self.missing) + known
+
+    @property
+    def claims(self) -> bool:
+        """True where some way or event was measured so often that more than a guess is said of it."""
+        return any(finding.basis not in (GUESSED, KEPT) for finding in self.findings)
 
     @property
     def left(self) -> Tuple[int, int]:
@@ -182,7 +196,7 @@ def propose(scenario: Scenario, samples: Samples, options: Options) -> Proposal:
     events = tuple(what for what in present if isinstance(what, Work) and what not in measured)
     return Proposal(
         scenario, options, tuple(findings), missing, events, samples.unused, _slack(findings, robots, options),
-        _lost_after(findings, samples.unused, options),
+        None if missing else _lost_after(findings), tuple(event for event in events if _is_shared(scenario, event)),
     )  # fmt: skip
 
 
@@ -253,11 +267,14 @@ def _slack(findings: Sequence[Finding], robots: AbstractSet[str], options: Optio
     return found
 
 
-def _lost_after(findings: Sequence[Finding], unused: Sequence[Unused], options: Options) -> int:
-    """As long again as the slowest took, or as long as a robot tried until it failed."""
-    times: List[float] = [finding.spread.most for finding in findings]
-    times += [each.seconds / options.unit for each in unused if each.is_failure]
-    return ceil(max(times, default=0.0))
+def _lost_after(findings: Sequence[Finding]) -> Optional[int]:
+    """As long again as the slowest took that came to its end: how long others tried says nothing of who comes."""
+    return ceil(max(finding.spread.most for finding in findings)) if findings else None
+
+
+def _is_shared(scenario: Scenario, work: Work) -> bool:
+    """True for an event that needs several agents."""
+    return any(event.name == work.event and event.collaborative for event in scenario.events)
 
 
 def window_text(window: Window) -> str:

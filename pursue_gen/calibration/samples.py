@@ -8,7 +8,7 @@ from typing import Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, 
 from pursue_gen.language.network_names import agent_clock, going, is_doing, is_going
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.replay.record import MissionRecord
-from pursue_runtime.drives.report import ARRIVED, FAILED, Drive
+from pursue_runtime.drives.report import ARRIVED, Drive
 from pursue_runtime.locations import action_of, in_words
 from pursue_runtime.state import WAITING, SystemState
 
@@ -53,16 +53,12 @@ class Sample:
 
 @dataclass(frozen=True)
 class Unused:
-    """What was begun and does not count: `seconds` as far as it went, and why, in words.
-
-    `is_failure`: the robot said that it cannot come to the end.
-    """
+    """What was begun and does not count: `seconds` as far as it went, and why, in words."""
 
     what: Measured
     seconds: float
     why: str
     file: str = ""
-    is_failure: bool = False
 
 
 @dataclass(frozen=True)
@@ -94,7 +90,7 @@ def of_record(record: MissionRecord, scenario: Scenario, file: str = "") -> Samp
             stays.measured.append(Sample(what, drive.seconds, file, drive.start - begun))
         else:
             why = f"{drive.outcome}{f': {drive.text}' if drive.text else ''}"
-            stays.unused.append(Unused(what, drive.seconds, why, file, drive.outcome == FAILED))
+            stays.unused.append(Unused(what, drive.seconds, why, file))
     units = {state.unit for state in record.states}
     agents = {drive.robot for drive in record.drives}.union(*(state.locations for state in record.states[:1]))
     return Samples(

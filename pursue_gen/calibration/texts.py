@@ -13,7 +13,8 @@ from pursue_gen.language.scenario import Scenario
 
 
 def report(proposal: Proposal) -> Iterator[str]:
-    """All of it for a terminal."""
+    """All of it for a terminal: what is not known comes first."""
+    yield from unknown(proposal)
     yield f"1 time unit = {proposal.options.unit:g} s; times in time units"
     yield ""
     yield from table(proposal)
@@ -21,6 +22,15 @@ def report(proposal: Proposal) -> Iterator[str]:
     yield from sentences(proposal)
     yield ""
     yield from proposed(proposal)
+
+
+def unknown(proposal: Proposal) -> Iterator[str]:
+    """How much was not measured at all, or too seldom for a claim; nothing where all of it was."""
+    missing, ways = proposal.ways
+    if missing:
+        yield f"{missing} of {counted(ways, 'way')} of robots not measured: their windows stay as they are."
+    if not proposal.claims:
+        yield "Nothing can be claimed: what was measured was measured less than 5 times, and its windows are guesses."
 
 
 HEAD = ("what", "times", "least", "median", "95 %", "most", "deviation", "model", "early", "late", "proposal", "basis")
@@ -86,15 +96,16 @@ def sentences(proposal: Proposal) -> Iterator[str]:
         more = " …" if len(proposal.missing_events) > _MANY else ""
         how = "rosrun UI drive_legs _actions:=5 does what robots do alone; recorded missions measure the rest"
         yield f"Not measured, so durations stay: {some}{more}. ({how}.)"
+    if proposal.shared:
+        some = ", ".join(shown(proposal.scenario, event) for event in proposal.shared[:_MANY])
+        yield f"Several do this together, so only recorded missions measure it: {some}."
     widened = [shown(proposal.scenario, finding.what) for finding in proposal.findings if finding.widened]
     if widened:
         yield f"Not controlled, so windows are only widened: {', '.join(widened[:_MANY])}."
     for robot, units in proposal.slack.items():
         yield f"With the present windows, --slack {robot}={units} would be enough for all that were late."
-    yield (
-        f"lost_after:={proposal.lost_after} waits for a late agent as long as the slowest took in all, or as one tried "
-        "that failed."
-    )
+    if proposal.lost_after is not None:
+        yield f"lost_after:={proposal.lost_after} waits for a late agent as long as the slowest took in all."
 
 
 def _bases(share: float, needed: int) -> Dict[str, str]:
@@ -158,8 +169,10 @@ def proposed(proposal: Proposal) -> Iterator[str]:
         yield f"{line.ljust(width)}  // {finding.source}"
 
 
-def changed(before: Verdict, after: Verdict) -> Iterator[str]:
+def changed(proposal: Proposal, before: Verdict, after: Verdict) -> Iterator[str]:
     """What the proposal changes."""
+    if proposal.missing or not proposal.claims:
+        yield "With windows that are guesses (above) neither verdict says what these robots will do:"
     yield f"as it is:          {before.words}"
     yield f"with the proposal: {after.words}"
     if after.margin:
@@ -178,6 +191,7 @@ def as_json(proposal: Proposal, verdicts: Sequence[Verdict] = ()) -> Dict[str, A
         "times": [_finding_json(finding) for finding in proposal.findings],
         "left": {"times": left[0], "of": left[1]},
         "held_out": {"held": held[0], "of": held[1]},
+        "not_measured": dict(zip(("ways", "of"), proposal.ways)),
         "missing": [vars(way) for way in proposal.missing],
         "missing_events": [work.event for work in proposal.missing_events],
         "unused": [{"what": str(u.what), "why": u.why, "seconds": u.seconds, "file": u.file} for u in proposal.unused],

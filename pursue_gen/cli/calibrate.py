@@ -81,7 +81,7 @@ def calibrate(
     if as_json_:
         print(json.dumps(texts.as_json(proposal, verdicts), indent=1))
     elif verdicts:
-        print("", *texts.changed(*verdicts), sep="\n")
+        print("", *texts.changed(proposal, *verdicts), sep="\n")
     if picture is not None:
         _draw(proposal, verdicts, picture)
     if output is not None:

@@ -13,6 +13,7 @@ from pursue_gen.calibration import texts
 from pursue_gen.calibration.proposal import Options, Proposal, propose
 from pursue_gen.calibration.samples import Sample, Samples, Way, Work
 from pursue_gen.language import load, parse
+from pursue_runtime.drives.report import Drive
 from tests.calibration.drive_bags import FLOOR, drives, noisy, write_drives
 from tests.cli.test_commands import Outcome, pursue
 
@@ -147,7 +148,45 @@ def test_outliers_count_unless_they_are_left_out() -> None:
     assert found.far == (12,) and found.proposed[1] >= 30 and found.source.endswith("1 far out")
     (less,) = proposal(times, outliers=False).findings
     assert less.proposed[1] < 7 and less.spread.most == 30.0
-    assert proposal(times).lost_after == 30
+    assert proposal([*times, Sample(BACK, 6.0)]).lost_after == 30
+
+
+def test_what_is_not_known_is_said_first_and_then_nothing_is_claimed(folder: Path, tmp_path: Path) -> None:
+    write_drives(tmp_path / "drives.bag", drives("bot", OUT_WAY, [4.5, 5.5, 5.0]))
+    done = called(folder / "floor.pur", tmp_path / "drives.bag")
+    lines = done.out.splitlines()
+    assert lines[:2] == [
+        "1 of 2 ways of robots not measured: their windows stay as they are.",
+        "Nothing can be claimed: what was measured was measured less than 5 times, and its windows are guesses.",
+    ]
+    assert "With windows that are guesses (above) neither verdict says what these robots will do:" in lines
+    assert "lost_after" not in done.out and "% of later times" not in done.out
+    data = json.loads(called(folder / "floor.pur", tmp_path / "drives.bag", "--json", "--no-solve").out)
+    assert data["lost_after"] is None and data["not_measured"] == {"ways": 1, "of": 2}
+
+
+def test_where_all_was_measured_often_nothing_of_that_is_said() -> None:
+    found = proposal([Sample(way, 5.0 + 0.1 * n) for way in (OUT, BACK) for n in range(6)])
+    assert next(texts.report(found)) == "1 time unit = 1 s; times in time units" and found.claims
+
+
+def test_how_long_a_robot_tried_in_vain_says_nothing_of_how_long_to_wait(folder: Path, tmp_path: Path) -> None:
+    failed = [Drive("bot", *way, 1000.0, 1280.0, "failed", 3, "it finds no way") for way in (OUT_WAY, BACK_WAY)]
+    there, back = drives("bot", OUT_WAY, [5.0] * 6), drives("bot", BACK_WAY, [6.5] * 6, 300.0)
+    write_drives(tmp_path / "drives.bag", [*there, *back, *failed])
+    done = called(folder / "floor.pur", tmp_path / "drives.bag", "--no-solve")
+    assert "lost_after:=7 waits for a late agent as long as the slowest took in all." in done.out
+    assert "Not used: bot: shelf to desk, 1 time (failed: it finds no way)." in done.out
+
+
+def test_what_several_do_is_for_recorded_missions() -> None:
+    carry = """event "carry" collaborative together location desk duration 2
+agent "mate" controllable mobile 1 location desk can_do carry reacts_to carry
+"""
+    text = FLOOR.replace("reach_objective", f"{carry}reach_objective", 1)
+    found = proposal([Sample(OUT, 4.0)], text.replace("can_do fetch", "can_do fetch, carry"))
+    assert found.missing_events == (Work("fetch"), Work("carry")) and found.shared == (Work("carry"),)
+    assert "Several do this together, so only recorded missions measure it: carry." in list(texts.report(found))
 
 
 def test_durations_of_actions_are_proposed_too() -> None:
