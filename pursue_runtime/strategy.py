@@ -210,6 +210,8 @@ class Strategy:
             # What it reads of a state: automata and variables, and clocks.
             self.names = self._table.names
             commands = [command for _, part in entries for command in part]
+            self.targets = {(command.agent, command.target) for command in commands}
+            """Where its commands lead, each location behind its agent."""
             zones = (zone for command in commands for zone in command.when)
             self.clocks = {clock for zone in zones for bound in zone for clock in (bound.left, bound.right) if clock}
         except (KeyError, TypeError, ValueError, AttributeError) as problem:

@@ -106,6 +106,14 @@ class Acts:
         self._failures[act] = self._failures.get(act, 0) + 1
         self._here.add(act)
 
+    def why_not_all(self) -> str:
+        """Why not each was done so often as was wanted: one reason; "" if each was."""
+        missing = [act for act, times in self.measured.items() if len(times) < self._times]
+        given_up = [act for act in missing if self._failures.get(act, 0) >= MOST_FAILURES]
+        if given_up:
+            return f"{given_up[0]} was given up, as it did not come to its end"
+        return f"{missing[0]} needs something else to be done before" if missing else ""
+
     @property
     def is_complete(self) -> bool:
         """True where each was done so often as was wanted."""

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+import math
 import os
-from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
+from pursue_runtime.controller.whereabouts import Place
 from pursue_runtime.data import DataError, read_data
-from pursue_runtime.drives.actions import Rules, acts_of
+from pursue_runtime.drives.actions import Rules, acts_of, location_of
 from pursue_runtime.drives.session import Plan
 from pursue_runtime.drives.tour import Way
-from pursue_runtime.locations import is_movement
+from pursue_runtime.locations import is_movement, movement
 from pursue_runtime.model import Automaton, Model
 from pursue_runtime.parameters import names, number, text, whole
 from pursue_runtime.poses import POSES, Table, read_poses
+from pursue_runtime.simulator.simulator import end_window
+from pursue_runtime.strategy import Strategy
 
 Read = Callable[[str], Mapping[str, Any]]
 """Reads a data file of the package UI by its name. Raises DataError."""
+
+NEAR = 1.0
+"""Metres from a goal within which a robot that stands there may keep another one from it."""
 
 Folder = Callable[[str], Optional[str]]
 """The folder of a package on this machine; None where it is not here."""
@@ -23,13 +30,20 @@ Folder = Callable[[str], Optional[str]]
 
 class Driven(NamedTuple):
     """A robot, where it begins, where it is sent for each place, and what it drives and does; `rules` are shared by
-    all robots."""
+    all robots. `seconds`: how long all of that takes by the windows of the model, at least and at most, if a time unit
+    is a second."""
 
     name: str
     start: str
     poses: Table
     plan: Plan
     rules: Rules
+    seconds: Tuple[float, float]
+
+    def to_start(self) -> Driven:
+        """The same robot, which only goes to where it begins."""
+        plan = Plan((), limit=self.plan.limit, pause=self.plan.pause, to_start=True)
+        return self._replace(plan=plan, seconds=(0.0, 0.0))
 
 
 def driven_robots(read: Read, given: Mapping[str, Any], folder: Folder) -> List[Driven]:
@@ -46,7 +60,7 @@ def driven_robots(read: Read, given: Mapping[str, Any], folder: Folder) -> List[
     times, limit = whole(given, "times", 5, least=1), number(given, "limit", 300.0, above=True)
     pause, start = number(given, "pause", 1.0), text(given, "start")
     actions, rules = whole(given, "actions", 0), Rules(model)
-    places, own = read_poses(read(POSES)).places, _own_poses(read, folder)
+    places, (own, commanded) = read_poses(read(POSES)).places, _of_controllers(read, folder)
     found: List[Driven] = []
     for name in wanted:
         ways, poses = tuple(ways_of(robots[name])), {**places, **own.get(name, {})}
@@ -56,7 +70,9 @@ def driven_robots(read: Read, given: Mapping[str, Any], folder: Folder) -> List[
         begins = start if start and ways and not any(each.plan.ways for each in found) else robots[name].initial
         if begins not in poses:
             raise DataError(f"~start is {begins!r}; expected one of {', '.join(poses)}")
-        found.append(Driven(name, begins, poses, Plan(ways, times, limit, pause, acts, actions), rules))
+        first = frozenset(way for way in ways if (name, movement(*way)) in commanded)
+        plan = Plan(ways, times, limit, pause, acts, actions, first)
+        found.append(Driven(name, begins, poses, plan, rules, _seconds(model, robots[name], plan)))
     if not found:
         raise DataError(f"no way for {', '.join(wanted) or 'anybody'}: no robot of this scenario is mobile")
     return found
@@ -73,15 +89,47 @@ def _is_begin(place: str, location: str) -> bool:
     return is_movement(location) and not is_movement(place)
 
 
-def _own_poses(read: Read, folder: Folder) -> Dict[str, Table]:
-    """The poses of each robot in the package of its controller, as far as those are on this machine."""
+def duration(robots: Sequence[Driven]) -> str:
+    """How much is driven and done, and how long that takes, in words."""
+    plans = [robot.plan for robot in robots]
+    drives, acts = sum(len(p.ways) * p.times for p in plans), sum(len(p.acts) * p.actions for p in plans)
+    least, most = (sum(robot.seconds[k] for robot in robots) for k in (0, 1))
+    unit, size = ("minutes", 60) if most >= 120 else ("seconds", 1)
+    also = f" and {acts} action{'s' * (acts > 1)}" if acts else ""
+    return (
+        f"{drives} drives{also} take {least / size:.0f} to {most / size:.0f} {unit} by the scenario's windows"
+        " (a time unit: a second), if none fails"
+    )
+
+
+def who_is_near(goal: Place, standing: Mapping[str, Place]) -> str:
+    """Which of the robots that stand somewhere is nearest to a goal, in words; "" if none is within NEAR metres."""
+    found = sorted((math.hypot(goal.x - at.x, goal.y - at.y), name) for name, at in standing.items())
+    return f"{found[0][1]} stands {found[0][0]:.2f} m from its goal" if found and found[0][0] <= NEAR else ""
+
+
+def _seconds(model: Model, robot: Automaton, plan: Plan) -> Tuple[float, float]:
+    locations = [movement(*way) for way in plan.ways for _ in range(plan.times)]
+    locations += [location_of(act) for act in plan.acts for _ in range(plan.actions)]
+    windows = [end_window(model, robot, location) for location in locations]
+    known = [(window.low, window.high) for window in windows if window is not None]
+    pauses = plan.pause * len(locations)
+    return sum(low for low, _ in known) + pauses, sum(high for _, high in known) + pauses
+
+
+def _of_controllers(read: Read, folder: Folder) -> Tuple[Dict[str, Table], Set[Tuple[str, str]]]:
+    """The poses of each robot in the package of its controller, as far as those are on this machine; and the movements
+    that their strategies command, each behind its robot."""
     found: Dict[str, Table] = {}
+    commanded: Set[Tuple[str, str]] = set()
     for package in map(str, read("ui.yaml").get("nodes", ())):
         where = folder(package)
         config = os.path.join(where, "config") if where is not None else ""
         if not os.path.isfile(os.path.join(config, "strategy.yaml")):
             continue
-        robots = read_data(os.path.join(config, "strategy.yaml")).get("commands_agents", ())
+        strategy = read_data(os.path.join(config, "strategy.yaml"))
+        robots = strategy.get("commands_agents", ())
+        commanded |= Strategy(strategy).targets
         if os.path.isfile(os.path.join(config, POSES)):
             found.update(read_poses(read_data(os.path.join(config, POSES))).of(map(str, robots)))
-    return found
+    return found, commanded

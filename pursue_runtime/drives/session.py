@@ -8,7 +8,7 @@ monotonic clock. An action goes on from the moment in which it is sent to the wo
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Callable, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.controller.goal import Answer, Goal, Movement
 from pursue_runtime.controller.navigation import Log, Navigation
@@ -19,12 +19,14 @@ from pursue_runtime.drives.actions import DONE, MOST_FAILURES, Act, Acts, Rules,
 from pursue_runtime.drives.report import ARRIVED, FAILED, INTERRUPTED, LATE, Drive
 from pursue_runtime.drives.tour import Way, next_way, towards
 from pursue_runtime.locations import movement
+from pursue_runtime.sentences import in_words
 from pursue_runtime.words import HELD, parse_report, parse_word
 
 
 class Plan(NamedTuple):
-    """What is to be driven: each of the `ways` `times` times. `limit`: the seconds that one drive or action may take;
-    `pause`: the seconds between two of them. `acts` are to be done too, each `actions` times."""
+    """What is to be driven: each of the `ways` `times` times, those in `first` before the others. `limit`: the seconds
+    that one drive or action may take; `pause`: the seconds between two of them. `acts` are to be done too, each
+    `actions` times. `to_start`: nothing of that, the robot only goes to where it begins."""
 
     ways: Tuple[Way, ...]
     times: int = 5
@@ -32,6 +34,17 @@ class Plan(NamedTuple):
     pause: float = 1.0
     acts: Tuple[Act, ...] = ()
     actions: int = 0
+    first: FrozenSet[Way] = frozenset()
+    to_start: bool = False
+
+    def words(self, start: str) -> str:
+        """What a robot does that begins at `start`, behind its name."""
+        if self.to_start:
+            return f"goes to {start}, where it begins"
+        some = 0 < len(self.first) < len(self.ways)
+        first = f", the {len(self.first)} that the strategy uses first" if some else ""
+        also = f", and does {len(self.acts)} actions {self.actions} times each" if self.acts else ""
+        return f"drives {len(self.ways)} ways {self.times} times each{first}, from {start} on{also}"
 
 
 class Due(NamedTuple):
@@ -64,10 +77,10 @@ class _Leg:
 class Session:
     """The drives and actions of one robot.
 
-    It begins with a drive to `start`, which does not count, and so it goes on after a failed one: to where that began,
-    or to another place. A robot whose goal another node cancels is left to that; a drive on which another node sent it
-    elsewhere is made once more. Where the tour passes a place at which an action is left that the `rules` allow, it is
-    done there.
+    It begins with a drive to `start`, which does not count, unless it is there; so it goes on after a failed one, to
+    where that began, or to another place. A robot whose goal another node cancels is left to that; a drive on which
+    another node sent it elsewhere is made once more. Where the tour passes a place at which an action is left that the
+    `rules` allow, it is done there.
     """
 
     def __init__(
@@ -79,7 +92,10 @@ class Session:
         settings: Settings,
         log: Log,
         rules: Optional[Rules] = None,
+        at_start: bool = False,
+        who_is_near: Callable[[Place], str] = lambda place: "",
     ) -> None:
+        """`at_start`: the robot is at `start`; `who_is_near`: which other robot stands near a goal, in words."""
         self.robot, self.plan = robot, plan
         self.is_over = False
         self.problem = ""  # why it ended before all was driven
@@ -87,10 +103,13 @@ class Session:
         self._nav = Navigation(robot, settings, log)
         self._places, self._log = places, log
         self._failures: Dict[Way, int] = {}
+        self._why_failed: Dict[Way, str] = {}
+        self._who_is_near = who_is_near
         self._leg: Optional[_Leg] = None
         self._acts = Acts(robot, plan.acts, plan.actions, rules)
-        self._place = "" if plan.ways else start  # where it is, "": not known
-        self._tries = [start, *(place for place in places if place != start)]  # where it may begin
+        self._place = start if at_start or not (plan.ways or plan.to_start) else ""  # where it is, "": not known
+        others = [place for place in places if place != start and not plan.to_start]
+        self._tries = [start, *others]  # where it may begin
         self._next_at = float("-inf")
         self._seq = 0
         self._word: Optional[str] = None
@@ -99,6 +118,11 @@ class Session:
     def goal(self) -> str:
         """The id of the goal in progress, "" if none."""
         return self._nav.goal
+
+    @property
+    def place(self) -> str:
+        """Where the robot stands; "" if that is not known, or it is under way."""
+        return self._place if self._leg is None else ""
 
     @property
     def location(self) -> str:
@@ -157,7 +181,8 @@ class Session:
         if now >= leg.start + self.plan.limit:
             cancel = self.goal or None
             what = "not there" if leg.act is None else "not done"
-            return Due(cancel=cancel, drive=self._end(leg, LATE, f"{what} after {self.plan.limit:g} s", now))
+            text = f"{what} after {self.plan.limit:g} s{self._near(leg)}"
+            return Due(cancel=cancel, drive=self._end(leg, LATE, text, now))
         return Due(goal=goal)
 
     def next_moment(self) -> Optional[float]:
@@ -206,14 +231,13 @@ class Session:
                 return True
             way = way or towards(self._place, self._acts.places(), self._usable())
             if way is None:
-                why = "the rest cannot be reached, failed too often, or needs something else to be done before"
-                self._stop("" if self.is_complete else why)
+                self._stop(self._why_not_all())
                 return False
             self._leg = _Leg(*way, now, counts=True)
         elif self._tries:
             self._leg = _Leg("", self._tries.pop(0), now, counts=False)
         else:
-            self._stop("it gets to no place")
+            self._stop("it does not get to where it begins" if self.plan.to_start else "it gets to no place")
             return False
         leg = self._leg
         way_there = Movement(leg.location, self._places[leg.b])
@@ -229,11 +253,12 @@ class Session:
             return Due(drive=drive)
         if report is None:
             return Due(drive=self._end(leg, ARRIVED, "", now))
+        text = in_words(report.text)
         if report.event == HELD:
-            self._stop(f"{report.text or 'it was called back'}: it is left to that")
-            return Due(drive=self._end(leg, INTERRUPTED, report.text, now))
-        cancel = self.goal or None
-        return Due(cancel=cancel, drive=self._end(leg, FAILED, report.text, now))
+            self._stop(f"{text or 'it was called back'}: it is left to that")
+            return Due(drive=self._end(leg, INTERRUPTED, text, now))
+        cancel, near = self.goal or None, self._near(leg)
+        return Due(cancel=cancel, drive=self._end(leg, FAILED, text + near, now))
 
     def _end(self, leg: _Leg, outcome: str, text: str, now: float) -> Optional[Drive]:
         """The drive or action is over; what it is on `pursue/drives`, None where it does not count."""
@@ -259,6 +284,7 @@ class Session:
             self._log("warn", f"{self.robot}{whence} to {leg.b}: {outcome}{f', {text}' if text else ''}")
         if outcome in (FAILED, LATE) and leg.counts:
             self._failures[leg.a, leg.b] = self._failures.get((leg.a, leg.b), 0) + 1
+            self._why_failed[leg.a, leg.b] = text
             self._tries = [leg.a, *(place for place in self._places if place != leg.a)]
         return drive if leg.counts else None
 
@@ -270,10 +296,27 @@ class Session:
             self._acts.failed(act)
             self._log("warn", f"{self.robot} does {act}: {drive.outcome}{f', {drive.text}' if drive.text else ''}")
 
+    def _near(self, leg: _Leg) -> str:
+        """Who stands on the goal of a drive, behind why it failed; "" if nobody is known to."""
+        who = self._who_is_near(self._places[leg.b]) if leg.act is None else ""
+        return f"; {who}" if who else ""
+
     def _left(self) -> Dict[Way, int]:
-        """How often each way is still to be driven."""
-        times = self.plan.times
-        return {way: max(0, times - len(self.measured[way])) for way in self.plan.ways if way in self._usable()}
+        """How often each way is still to be driven now: the first ones alone, as long as any of them is left."""
+        times, usable = self.plan.times, self._usable()
+        left = {way: max(0, times - len(self.measured[way])) for way in self.plan.ways if way in usable}
+        first = {way: count for way, count in left.items() if way in self.plan.first}
+        return first if any(first.values()) else left
+
+    def _why_not_all(self) -> str:
+        """Why not all was driven and done: one reason, the first that has others as its consequence; "" if all was."""
+        missing = [way for way, times in self.measured.items() if len(times) < self.plan.times]
+        for a, b in missing:
+            if self._failures.get((a, b), 0) >= MOST_FAILURES:
+                return f"the way from {a} to {b} was given up: {self._why_failed[a, b]}"
+        if missing:
+            return f"from {self._place} it gets to no place from which a way is left, such as {missing[0][0]}"
+        return self._acts.why_not_all()
 
     def _usable(self) -> Tuple[Way, ...]:
         return tuple(way for way in self.plan.ways if self._failures.get(way, 0) < MOST_FAILURES)

@@ -27,10 +27,10 @@ from std_msgs.msg import String
 from pursue_runtime.arguments import BAG, CONFIG
 from pursue_runtime.controller.goal import Answer
 from pursue_runtime.controller.settings import Settings, read_settings
-from pursue_runtime.controller.whereabouts import Position, place_of
+from pursue_runtime.controller.whereabouts import Place, Position, place_of
 from pursue_runtime.data import DataError, Package
 from pursue_runtime.drives.report import DRIVES, Drive, format_drive
-from pursue_runtime.drives.robots import Driven, driven_robots
+from pursue_runtime.drives.robots import Driven, driven_robots, duration, who_is_near
 from pursue_runtime.drives.session import Due, Session
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.missions import own_source
@@ -64,7 +64,11 @@ class DriveLegs:
         self.ending = Ending()
         self._given = {**DEFAULTS, **rospy.get_param("~", {})}
         source = own_source(package, "model.yaml", told["config"])
-        self._waiting = driven_robots(source.read, self._given, _package_folder)
+        robots = driven_robots(source.read, self._given, _package_folder)
+        self._duration = duration(robots)
+        # Everybody goes to its own place first: who stands anywhere else may be on the goal of another one.
+        self._waiting = [*(robot.to_start() for robot in robots if robot.plan.ways), *robots]
+        self._standing: Dict[str, Place] = {}  # where those are that do not drive now
         check_no_mission()
         folder = scenario_folder(os.environ, package.scenario)
         self.path = reserve_file(told["file"] or os.path.join(folder, "drives.bag"), folder)
@@ -86,7 +90,7 @@ class DriveLegs:
 
     def run(self) -> int:
         """Runs until all robots are done; the exit status is 0 where all is measured so often as was wanted."""
-        rospy.loginfo("recording %s", self.path)
+        rospy.loginfo("recording %s; %s", self.path, self._duration)
         try:
             self._next_robot()
             status = self.ending.wait(linger=0.5)
@@ -101,7 +105,7 @@ class DriveLegs:
 
     @property
     def _is_complete(self) -> bool:
-        return not self._waiting and all(session.is_complete for session in self._done)
+        return not self._waiting and all(session.is_complete for session in self._done if not session.plan.to_start)
 
     def _keep(self) -> None:
         """Gives the bag its name, and logs what is in it; a bag without drives is removed."""
@@ -128,15 +132,16 @@ class DriveLegs:
             robot = self._waiting.pop(0)
             settings = read_settings(robot.name, self._given)._replace(orders="plain")  # no observer counts them
             places = {poi: place_of(poi, pose) for poi, pose in robot.poses.items()}
-            session = Session(robot.name, places, robot.start, robot.plan, settings, self._log, robot.rules)
+            at = self._standing.pop(robot.name, None)
+            is_there = at is not None and at.poi == robot.start
+            near = partial(who_is_near, standing=self._standing)
+            what = robot.plan, settings, self._log, robot.rules, is_there, near
+            session = Session(robot.name, places, robot.start, *what)
             take = self._on_result, self._on_statuses, self._on_position, lambda: None
             link = RobotLink(robot.name, settings, self.ending, self._log, *take)
             self._robot = robot, settings, session, link
             self._patient_until = time.monotonic() + PATIENCE
-            ways, acts = len(robot.plan.ways), len(robot.plan.acts)
-            also = f", and does {acts} actions {robot.plan.actions} times each" if acts else ""
-            text = f"{robot.name} drives {ways} ways {robot.plan.times} times each, from {robot.start} on{also}"
-            self._log("info", text)
+            self._log("info", f"{robot.name} {robot.plan.words(robot.start)}")
         link.watch()
         self._alarm.set(None, 0.0)
 
@@ -170,6 +175,8 @@ class DriveLegs:
         robot, _, session, link = self._robot
         self._robot = None
         self._done.append(session)
+        if session.place:
+            self._standing[robot.name] = place_of(session.place, robot.poses[session.place])
         if session.problem:
             self._log("warn", f"{robot.name}: {session.problem}")
         link.close()

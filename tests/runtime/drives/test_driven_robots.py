@@ -11,9 +11,10 @@ from pursue_gen.language import parse
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.workspace import Options, write_workspace
+from pursue_runtime.controller.whereabouts import Place
 from pursue_runtime.data import DataError, read_data
 from pursue_runtime.drives.actions import Act
-from pursue_runtime.drives.robots import Driven, driven_robots
+from pursue_runtime.drives.robots import Driven, driven_robots, duration, who_is_near
 
 TEXT = """\
 poi "hall" //[0, 0, 0, 0, 0, 0, 1]
@@ -72,6 +73,28 @@ def test_parameters_say_which_robots_how_often_and_from_where(workspace: Path) -
     (found,) = robots(workspace, robots="bot2", times=3, start="exit", limit=60, pause=0)
     assert (found.name, found.start) == ("bot2", "exit")
     assert (found.plan.times, found.plan.limit, found.plan.pause) == (3, 60.0, 0.0)
+
+
+def test_the_ways_that_the_strategy_uses_are_known_as_far_as_controllers_are_here(workspace: Path) -> None:
+    first, second = robots(workspace)
+    assert (first.plan.first, second.plan.first) == ({("hall", "lab")}, set()), "bot1 scans at the lab"
+    assert robots(workspace, without="controller_bot1")[0].plan.first == set()
+
+
+def test_how_long_all_takes_is_known_before_it_begins(workspace: Path) -> None:
+    """Ways of 5, 5 and 4 metres at speed 1: in 5 to 6 and 4 to 5 time units; drop takes 2 to 3."""
+    one = robots(workspace, robots="bot1", times=2, actions=1, pause=0.5)
+    assert one[0].seconds == (2 * 14 + 2 + 7 * 0.5, 2 * 17 + 3 + 7 * 0.5)
+    takes = "6 drives and 1 action take 34 to 40 seconds by the scenario's windows"
+    assert duration(one) == f"{takes} (a time unit: a second), if none fails"
+    both = duration(robots(workspace, robots="bot1 bot2", times=10))
+    assert both.startswith("60 drives take 6 to 7 minutes by")
+
+
+def test_who_stands_near_a_goal_is_named_with_the_distance() -> None:
+    standing = {"bot1": Place("lab", 5.0, 0.9), "bot2": Place("lab", 5.0, 0.25), "bot3": Place("hall", 0.0, 0.0)}
+    assert who_is_near(Place("lab", 5.0, 0.0), standing) == "bot2 stands 0.25 m from its goal"
+    assert who_is_near(Place("exit", 9.0, 0.0), standing) == ""
 
 
 def test_robots_do_what_needs_nobody_else_in_the_order_of_the_rules(workspace: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import heapq
-from typing import Dict, List, Optional, Tuple
+from typing import Any, Dict, List, Optional, Tuple
 
 import pytest
 
@@ -94,9 +94,10 @@ class Robot:
 
 
 def robot(
-    plan: Optional[Plan] = None, settings: Settings = RESULT, at: str = "a", blocked: Tuple[Way, ...] = ()
+    plan: Optional[Plan] = None, settings: Settings = RESULT, at: str = "a", blocked: Tuple[Way, ...] = (),
+    **more: Any,
 ) -> Robot:
-    session = Session("bot", PLACES, "a", plan or Plan(WAYS, times=3), settings, lambda level, text: None)
+    session = Session("bot", PLACES, "a", plan or Plan(WAYS, times=3), settings, lambda level, text: None, **more)
     return Robot(session, at, blocked)
 
 
@@ -126,7 +127,51 @@ def test_a_way_that_fails_is_reported_and_the_tour_goes_on() -> None:
     failed = [drive for drive in found.drives if drive.outcome == FAILED]
     assert [(drive.a, drive.b, drive.goals) for drive in failed] == [("b", "c", 2)] * 2
     assert "no way" in failed[0].text
-    assert not found.session.is_complete and "cannot be reached" in found.session.problem
+    assert not found.session.is_complete
+    why = "the way from b to c was given up: on its way to c: its goal was aborted: no way, in 2 attempts"
+    assert found.session.problem == why and failed[0].text == why.partition(": ")[2], "one reason, and no marks in it"
+
+
+def test_a_robot_that_stands_on_a_goal_is_named() -> None:
+    found = robot(blocked=(("b", "c"),), who_is_near=lambda place: "mate stands there" if place.poi == "c" else "")
+    found.run()
+    assert found.session.problem.endswith("in 2 attempts; mate stands there")
+    late = robot(Plan(WAYS, times=1, limit=6.5), who_is_near=lambda place: "mate stands there")
+    late.run()
+    texts = {drive.text for drive in late.drives if drive.outcome == LATE}
+    assert texts == {"not there after 6.5 s; mate stands there"}
+
+
+def test_from_where_it_cannot_go_on_is_said_where_no_way_has_failed() -> None:
+    found = robot(Plan((("a", "b"), ("c", "b")), times=1))
+    found.run()
+    assert found.session.problem == "from b it gets to no place from which a way is left, such as c"
+
+
+def test_the_first_ways_are_driven_before_the_others() -> None:
+    first = frozenset({("b", "c"), ("c", "b")})
+    found = robot(Plan(WAYS, times=3, first=first))
+    found.run()
+    assert found.session.is_complete
+    driven = [(drive.a, drive.b) for drive in found.drives]
+    assert driven[:7] == [("a", "b"), *[("b", "c"), ("c", "b")] * 3], "a to b leads there"
+    assert found.session.plan.words("a") == "drives 4 ways 3 times each, the 2 that the strategy uses first, from a on"
+
+
+def test_a_robot_that_is_where_it_begins_is_not_sent_there() -> None:
+    found = robot(at_start=True)
+    found.run()
+    assert len(found.goals) == 3 * len(WAYS) and found.session.is_complete and found.session.place == "a"
+
+
+@pytest.mark.parametrize("blocked", [(), (("c", "a"),)])
+def test_a_robot_that_only_goes_to_where_it_begins_measures_nothing(blocked: Tuple[Way, ...]) -> None:
+    found = robot(Plan((), to_start=True), at="c", blocked=blocked)
+    found.run()
+    assert set(found.goals) == {"a"} and found.drives == []
+    assert found.session.place == ("" if blocked else "a")
+    assert found.session.problem == ("it does not get to where it begins" if blocked else "")
+    assert found.session.plan.words("a") == "goes to a, where it begins"
 
 
 def test_a_robot_that_does_not_come_is_called_back_and_goes_on_from_another_place() -> None:
@@ -255,7 +300,8 @@ def test_more_is_driven_where_actions_are_left_when_all_ways_are_done() -> None:
 def test_an_action_that_nobody_reports_is_given_up_and_what_follows_it_is_not_done() -> None:
     found = acting(2, 2, WAYS, "fetch")
     found.run()
-    assert found.acted == ["fetch at c"] * 2 and "to be done before" in found.session.problem
+    assert found.acted == ["fetch at c"] * 2
+    assert found.session.problem == "fetch at c was given up, as it did not come to its end"
     late = [(drive.outcome, drive.text) for drive in found.drives if drive.action]
     assert late == [(LATE, "not done after 20 s")] * 2
     assert all(len(times) == 2 for times in found.session.measured.values())
