@@ -31,6 +31,14 @@ BEHIND = 2.0
 """Seconds by which the recorder's clock may be seen to be behind the observer's; more is another clock."""
 
 _BAG = b"#ROSBAG"
+_FOREIGN = {
+    b"#ROSRECORD": "a bag of ROS 1 before version 2.0",
+    b"SQLite format 3\0": "a bag of ROS 2 (sqlite3)",
+    b"\x89MCAP0\r\n": "a bag of ROS 2 (mcap)",
+}
+"""How files begin that are bags, too, and cannot be read."""
+
+_CONVERT = "convert it to a bag of ROS 1, version 2.0, for example with rosbags-convert (rosbag fix before version 2.0)"
 CONNECTING = 5.0
 """Seconds within which a recorder that is started during a mission is connected to every node."""
 
@@ -46,9 +54,16 @@ def read_recording(file: Path, drives: bool = False) -> Union[MissionRecord, Jou
     drives without one, or nothing yet.
     """
     try:
+        if (file / "metadata.yaml").is_file():
+            raise _unreadable(f"{file} is a bag of ROS 2, a folder", "RPL003", _CONVERT)
         with open_regular(file) as stream:
-            if stream.read(len(_BAG)) == _BAG:
+            begin = stream.read(max(map(len, _FOREIGN)))
+            stream.seek(len(_BAG))
+            if begin.startswith(_BAG):
                 return _bag(file, stream, drives)
+        for start, what in _FOREIGN.items():
+            if begin.startswith(start):
+                raise _unreadable(f"{file} is {what}", "RPL003", _CONVERT)
         content = read_all(file, LARGEST_JOURNAL)
     except (OSError, ValueError) as problem:
         raise _unreadable(f"cannot read {file}: {getattr(problem, 'strerror', None) or problem}", "RPL001") from None
@@ -72,8 +87,9 @@ def _bag(file: Path, stream: BinaryIO, drives: bool) -> MissionRecord:
         raise _unreadable(message, "RPL004", f"for times of drives: pursue-gen calibrate SCENARIO.pur {file}")
     if not record.states and not (drives and (record.drives or record.game)):
         found = ", ".join(bag.topics[:_SHOWN]) + (", …" if len(bag.topics) > _SHOWN else "") or "no messages"
-        hint = "; ".join([*bag.problems, EXPECTED])
-        raise _unreadable(f"{file} holds no state of a mission on pursue/system_state; it has {found}", "RPL004", hint)
+        hint = "; ".join([*bag.problems, EXPECTED + (", or one of drives (rosrun UI drive_legs)" if drives else "")])
+        missing = "no state of a mission on pursue/system_state" + (" and no drives on pursue/drives" if drives else "")
+        raise _unreadable(f"{file} holds {missing}; it has {found}", "RPL004", hint)
     return record
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Dict, List, Tuple
 
 import pytest
+from rosbags.rosbag1 import Writer
 
 from pursue_gen.calibration.recordings import samples_in
 from pursue_gen.calibration.samples import Samples, Way, Work, of_record
@@ -162,6 +163,31 @@ def test_a_file_that_is_no_recording_is_refused(tmp_path: Path) -> None:
     empty.write_bytes(b"")
     assert refused([empty], floor())[0] == "RPL002"
     assert refused([tmp_path / "missing.bag"], floor())[0] == "RPL001"
+
+
+@pytest.mark.parametrize(("begin", "what"), [
+    (b"#ROSRECORD V1.2\n", "a bag of ROS 1 before version 2.0"), (b"SQLite format 3\0....", "a bag of ROS 2 (sqlite3)"),
+    (b"\x89MCAP0\r\n....", "a bag of ROS 2 (mcap)"),
+])
+def test_a_bag_of_another_kind_is_named_as_what_it_is(tmp_path: Path, begin: bytes, what: str) -> None:
+    foreign = tmp_path / "foreign"
+    foreign.write_bytes(begin)
+    assert refused([foreign], floor()) == ("RPL003", f"{foreign} is {what}")
+    folder = tmp_path / "rosbag2_2026"
+    folder.mkdir()
+    (folder / "metadata.yaml").write_text("rosbag2_bagfile_information: {version: 5}\n")
+    assert refused([folder], floor()) == ("RPL003", f"{folder} is a bag of ROS 2, a folder")
+    assert refused([tmp_path], floor())[0] == "RPL001", "a folder that is none"
+
+
+def test_a_bag_of_something_else_is_named_by_what_it_has(tmp_path: Path) -> None:
+    with Writer(tmp_path / "scans.bag") as writer:
+        for topic in ("/bot1/scan", "/bot1/odom"):
+            kind = writer.add_connection(topic, "std_msgs/msg/String", msgdef="string data", md5sum="0" * 32)
+            writer.write(kind, 10**9, b"\0\0\0\0")
+    code, message = refused([tmp_path / "scans.bag"], floor())
+    holds = "holds no state of a mission on pursue/system_state and no drives on pursue/drives"
+    assert code == "RPL004" and message.endswith(f"{holds}; it has /bot1/odom, /bot1/scan")
 
 
 def test_a_damaged_bag_counts_as_far_as_it_can_be_read(tmp_path: Path) -> None:
