@@ -25,8 +25,9 @@ from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network
 
-_ALONE, _EACH, _SET = 0.5, 0.1, 0.2
-"""The part of the budget for single objectives; of what is left then, what one of them gets, and what a set gets."""
+_ALONE, _SET = 0.5, 0.25
+"""The part of the budget for single objectives, each of which gets as much as each behind it; of what is left then,
+what a set of them gets."""
 
 _ONE_ROBOT = 0.3
 """The part of what a game gets for each robot, the others standing still."""
@@ -63,8 +64,8 @@ def decided(scenario: Scenario, rules: Rules, budget: Budget) -> Optional[Decide
         return None
     found: List[Tuple[Known, _Statement]] = []
     some = budget.split(_ALONE)
-    for text, statement in statements:
-        won, states = decided_within(scenario, statement, rules, some, _EACH)
+    for number, (text, statement) in enumerate(statements):
+        won, states = decided_within(scenario, statement, rules, some, 1 / (len(statements) - number))
         found.append((Known(text, statement[0].span.line, won, states), statement))
     alone = tuple(known for known, _ in found)
     easy = sorted((pair for pair in found if pair[0].won), key=lambda pair: pair[0].states)
