@@ -15,7 +15,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 from pursue_gen.explanation.changes import Change, findings
 from pursue_gen.explanation.endless import PAUSE, Endless, endless
-from pursue_gen.explanation.part import part_of_scenario, rules_for, statements_of
+from pursue_gen.explanation.part import part_of_scenario, rules_for, statements_of, with_one_robot
 from pursue_gen.explanation.play import Play, counter_plays
 from pursue_gen.explanation.texts import Attempt, TimedLine, attempt, describe, time_text
 from pursue_gen.explanation.together import Conflict, conflict
@@ -23,11 +23,13 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import listed, statement_text
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.lost_promises import lost_to_one_walk, quoted
+from pursue_gen.solving.one_robot import lost_game
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import EXPLAINING, NO_LIMITS, Limits, Listener
 from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Network
 
 WORK, STATES = 60_000_000, 50_000
 """The work of an explanation, and the discrete states of each of its games: two to four seconds."""
@@ -41,8 +43,9 @@ _FOR_WHOLE, _FOR_ALL, _FOR_CONFLICT, _FOR_CHANGES, _FOR_ENDLESS = 0.03, 0.5, 0.2
 its explanation; for which objectives exclude each other; for changes; and for whether time has to pass. The rest is for
 plays."""
 
-_FOR_WALK = 0.2
-"""The part of the rest for the play of somebody who wins by one walk."""
+_FOR_GAME, _FOR_WALK = 0.3, 0.2
+"""The part of the rest for a smaller game that is lost, and of what is left then for the play of that, or of somebody
+who wins by one walk."""
 
 _LINES, _FIRST_LINES = 10, 3
 """So many lines of a play are shown, and so many of its beginning where it is longer."""
@@ -98,14 +101,17 @@ def explain(
     found: List[Explanation] = []
     for k, part in enumerate(parts):
         statements = statements_of(scenario, part)
-        some = part_of_scenario(scenario, statements, rules)
-        one = _explained(some, rules_for(some, rules), budget.split(1 / (len(parts) - k)), len(part) > 1)
+        some = with_one_robot(part_of_scenario(scenario, statements, rules), rules)
+        one = _explained(some, rules_for(some, rules), budget.split(1 / (len(parts) - k)), len(part) > 1, part=True)
         found.append(replace(one, about=tuple(dict.fromkeys(map(quoted, statements)))))
     return replace(found[0], others=tuple(found[1:]))
 
 
-def _explained(scenario: Scenario, rules: Rules, budget: Budget, conflicting: bool = True) -> Explanation:
-    """The explanation of what is lost; `conflicting`: it may be that some of its objectives are not to blame."""
+def _explained(
+    scenario: Scenario, rules: Rules, budget: Budget, conflicting: bool = True, part: bool = False
+) -> Explanation:
+    """The explanation of what is lost; `conflicting`: it may be that some of its objectives are not to blame; `part`:
+    it is part of a scenario that is too large to be looked at."""
     together: Optional[Conflict] = None
     if conflicting and len(scenario.objectives) > 1:
         together = conflict(scenario, rules, budget.split(_FOR_CONFLICT))
@@ -115,16 +121,22 @@ def _explained(scenario: Scenario, rules: Rules, budget: Budget, conflicting: bo
     plays: List[Play] = []
     with suppress(LimitHit):
         repeating = endless(network, objective, rules.reaction, budget.split(_FOR_ENDLESS))
+    smaller: Optional[Network] = None
     if objective.goal:  # who wins by one walk shows it best
-        walk = lost_to_one_walk(network, objective, rules.reaction, budget.part())
-        if walk is not None:
-            network, budget = walk, budget.split(_FOR_WALK)
+        smaller = lost_to_one_walk(network, objective, rules.reaction, budget.part())
+    elif part:  # or against one robot, with few moves
+        smaller = lost_game(network, objective, rules.reaction, budget.split(_FOR_GAME))
+    if smaller is not None:
+        network, budget = smaller, budget.split(_FOR_WALK if objective.goal else 1.0)
     with suppress(LimitHit):
         plays.extend(counter_plays(network, objective, rules.reaction, budget, found.helpful, bool(repeating)))
     main = describe(scenario, plays[0]) if plays else ()
+    preventing = _preventing(scenario, main)
+    if plays and plays[0].end == "open" and not preventing:  # it was cut off before anything is to be seen
+        plays, main = [], ()
     attempts = tuple(attempt(scenario, play) for play in plays[1:])
     how = found.changes, found.lost, found.undecided, main, attempts, repeating, together
-    return Explanation(*how, _preventing(scenario, main))
+    return Explanation(*how, preventing)
 
 
 def _is_small(scenario: Scenario, rules: Rules, budget: Budget) -> bool:

@@ -8,6 +8,7 @@ from typing import Collection, FrozenSet, Sequence, Set, Tuple
 from pursue_gen.explanation.lesser import without_agent
 from pursue_gen.language.names import events_used, refs_of
 from pursue_gen.language.scenario import Rule, Scenario, StatedObjective
+from pursue_gen.solving.one_robot import robot_alone
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.tga import scenario_objective, translate
@@ -38,6 +39,19 @@ def part_of_scenario(scenario: Scenario, objectives: Sequence[StatedObjective], 
         if agent.name not in matter:
             part = without_agent(part, agent.name) or part
     return part
+
+
+def with_one_robot(scenario: Scenario, rules: Rules) -> Scenario:
+    """The scenario in which all robots stand still but the one that alone can do something about what is wanted; the
+    scenario itself where there is none."""
+    robot = robot_alone(played(translate(scenario), rules_for(scenario, rules)), scenario_objective(scenario))
+    if robot is None:
+        return scenario
+    agents = (
+        replace(agent, mobile=None, can_do=()) if agent.controllable and agent.name != robot else agent
+        for agent in scenario.agents
+    )
+    return replace(scenario, agents=tuple(agents))
 
 
 def rules_for(scenario: Scenario, rules: Rules) -> Rules:

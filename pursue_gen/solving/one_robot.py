@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
-from typing import Sequence, Tuple
+from typing import Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.freer import asking_only, punctual, standing, with_one_walk, without_others, without_turns
@@ -23,6 +23,9 @@ from pursue_gen.tga.pauses import acting_at_most
 _WORK = 200_000_000, 100_000_000
 """The work that is spent on all games, and on one of them."""
 
+_EACH = 0.3
+"""The part of a budget that is spent on one of the games of all promises."""
+
 _STATE = 2_000
 """A discrete state of one of them costs as much as so much work."""
 
@@ -35,27 +38,57 @@ def lost_for_one(
     in_all, most = work
     limits = replace(options.limits, work=in_all, states=in_all // _STATE)
     budget = Budget(limits, options.progress, options.engine)
-    robots = commanded_agents(network)
-    for robot in robots:
-        others = frozenset(robots) - {robot}
-        alone = without_others(network, objective.bad, others)
+    for robot, alone in _alone(network, objective):
         owned = [place for place in objective.bad if _able(alone, objective, place) == (robot,)]
         for size in dict.fromkeys((2, len(owned))) if owned else ():
             for some in combinations(owned, size):
                 wanted = Objective(Kind.SAFETY, bad=some)
-                game = _game(alone, objective, wanted)
-                walks = tuple(with_one_walk(game, watched(wanted)))
-                parts = [acting_at_most(walk, wanted, 1) for walk in walks]
-                parts += [cone_of_influence(punctual(walk, robot), wanted) for walk in (standing(game), *walks)]
-                parts.append(acting_at_most(game, wanted, 1))
-                if any(_is_lost(part, wanted, reaction, budget, most) for part in parts):
+                games = _games(alone, wanted, objective, robot)
+                if any(_is_lost(game, wanted, reaction, budget, most) for game in games):
                     return (wanted,)
                 if budget.used_up:
                     return ()
     return ()
 
 
-def _is_lost(game: Network, wanted: Objective, reaction: Fraction, budget: Budget, most: int) -> bool:
+def robot_alone(network: Network, objective: Objective) -> Optional[str]:
+    """The robot of several that alone can do something about all of a safety objective; None where there is none."""
+    if objective.kind is not Kind.SAFETY or len(commanded_agents(network)) < 2:
+        return None
+    for robot, alone in _alone(network, objective):
+        if all(_able(alone, objective, place) == (robot,) for place in objective.bad):
+            return robot
+    return None
+
+
+def lost_game(network: Network, objective: Objective, reaction: Fraction, budget: Budget) -> Optional[Network]:
+    """A smaller game in which one robot cannot keep all of what nobody else can keep, with few moves of the
+    environment; None where the budget is not enough for one, or others can."""
+    for robot, alone in _alone(network, objective):
+        if all(_able(alone, objective, place) == (robot,) for place in objective.bad):
+            for game in _games(alone, objective, objective, robot):
+                if _is_lost(game, objective, reaction, budget, _EACH * budget.work):
+                    return game
+    return None
+
+
+def _alone(network: Network, objective: Objective) -> Iterator[Tuple[str, Network]]:
+    """Each robot, and the network in which the others bring nothing to what is to be avoided."""
+    robots = commanded_agents(network)
+    for robot in robots:
+        yield robot, without_others(network, objective.bad, frozenset(robots) - {robot})
+
+
+def _games(network: Network, wanted: Objective, objective: Objective, robot: str) -> Iterator[Network]:
+    """Games of some promises of an objective in which the environment has fewer moves."""
+    game = _game(network, objective, wanted)
+    walks = tuple(with_one_walk(game, watched(wanted)))
+    yield from (acting_at_most(walk, wanted, 1) for walk in walks)
+    yield from (cone_of_influence(punctual(walk, robot), wanted) for walk in (standing(game), *walks))
+    yield acting_at_most(game, wanted, 1)
+
+
+def _is_lost(game: Network, wanted: Objective, reaction: Fraction, budget: Budget, most: float) -> bool:
     """True if it is known to be lost. Few moves of the environment are enough as a rule: searches take turns."""
     try:
         return not budget.verdict(game, wanted, reaction, min(1.0, most / max(1.0, budget.work)), first=0).won

@@ -11,6 +11,7 @@ from typing import Tuple
 
 import pytest
 
+from benchmarks.lab_scenarios import lab_scenario
 from benchmarks.ordinary_families import errands_beside_a_visitor
 from pursue_gen.explanation.changes import Change
 from pursue_gen.explanation.explain import Explanation, as_json, explain, render
@@ -466,3 +467,13 @@ def test_who_wins_by_one_walk_is_shown_walking() -> None:
     assert explanation.preventing == ("visitor",)
     walked = [line for line in explanation.play if line.who == "visitor"]
     assert walked and all("room1" in line.text or "hall" in line.text or "end" in line.text for line in walked)
+
+
+@pytest.mark.skipif(not native.available(), reason="takes minutes in the Python engine")
+def test_what_one_of_several_robots_cannot_keep_is_shown_with_that_robot() -> None:
+    """The patrol of bot3, and that it is where person1 is: what the other robots could do is no matter to either."""
+    scenario = parse(lab_scenario(3), "lab.pur", "lab")
+    explanation = explain(scenario, DEFAULT, parts=[("obj", "obj4")])
+    assert {line.who for line in explanation.play} & {"bot1", "bot2", "bot3"} == {"bot3"}
+    assert explanation.preventing == ("person1",)
+    assert any(change.what == "assumption" and change.name == "person1" for change in explanation.changes)
