@@ -246,7 +246,10 @@ def test_a_pose_of_amcl_counts_until_tf_has_shown_the_robot(link: Any) -> None:
 def test_drives_end_well_where_all_is_measured(status: int, waiting: List[str], complete: bool, ended: int) -> None:
     made: Any = DriveLegs.__new__(DriveLegs)
     made.path, made._lock, made._bag, made._waiting = "drives.bag", threading.RLock(), None, waiting
-    made._done, made._stop, made._next_robot = [SimpleNamespace(is_complete=complete)], lambda: None, lambda: None
+    goes_to_its_start = SimpleNamespace(is_complete=False, plan=SimpleNamespace(to_start=True))
+    drives = SimpleNamespace(is_complete=complete, plan=SimpleNamespace(to_start=False))
+    made._done, made._stop, made._next_robot = [goes_to_its_start, drives], lambda: None, lambda: None
+    made._duration = "10 drives take 2 to 3 minutes"
     made.ending = SimpleNamespace(wait=lambda linger: status)
     assert made.run() == ended
 

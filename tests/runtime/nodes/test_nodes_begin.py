@@ -78,9 +78,10 @@ def test_an_observer_begins_with_the_mission_of_its_source(monkeypatch: pytest.M
 
 
 def test_the_last_drive_is_there_for_who_comes_later(monkeypatch: pytest.MonkeyPatch) -> None:
-    parts = ("own_source", "driven_robots", "check_no_mission", "scenario_folder", "reserve_file", "Later", "Alarm",
+    parts = ("own_source", "check_no_mission", "scenario_folder", "reserve_file", "Later", "Alarm",
              "subscribe", "Ending", "stamp", "rosbag", "json", "String")  # fmt: skip
     replaced(monkeypatch, drive_legs, parts)
+    monkeypatch.setattr(drive_legs, "driven_robots", lambda *_: [])
     latched: List[Any] = []
     monkeypatch.setattr(drive_legs.rospy, "get_param", lambda *_: {})
     for name in ("resolve_name", "on_shutdown"):
