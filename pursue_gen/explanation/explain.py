@@ -44,8 +44,7 @@ its explanation; for which objectives exclude each other; for changes; and for w
 plays."""
 
 _FOR_GAME, _FOR_WALK = 0.3, 0.2
-"""The part of the rest for a smaller game that is lost, and of what is left then for the play of that, or of somebody
-who wins by one walk."""
+"""The parts of the rest for whether a smaller game is lost, and for the play of somebody who wins by one walk."""
 
 _LINES, _FIRST_LINES = 10, 3
 """So many lines of a play are shown, and so many of its beginning where it is longer."""
@@ -127,7 +126,7 @@ def _explained(
     elif part:  # or against one robot, with few moves
         smaller = lost_game(network, objective, rules.reaction, budget.split(_FOR_GAME))
     if smaller is not None:
-        network, budget = smaller, budget.split(_FOR_WALK if objective.goal else 1.0)
+        network, budget = smaller, budget.split(_FOR_WALK) if objective.goal else budget
     with suppress(LimitHit):
         plays.extend(counter_plays(network, objective, rules.reaction, budget, found.helpful, bool(repeating)))
     main = describe(scenario, plays[0]) if plays else ()

@@ -20,7 +20,7 @@ class Gap(NamedTuple):
     later: Fraction
 
 
-def on(walker: Walker, tour: Tour, stop: int, late: Fraction) -> Iterator[Tuple[int, Fraction]]:
+def onward(walker: Walker, tour: Tour, stop: int, late: Fraction) -> Iterator[Tuple[int, Fraction]]:
     """The stops that come behind this one until the tour is back where its way around begins, and this one, each with
     the longest time to it from the one before, when the robot stays nowhere and sets off so `late`."""
     for _ in range(2 * len(tour.stops)):
@@ -57,7 +57,7 @@ def gaps(walker: Walker, patrol: Patrol, mine: Round) -> Dict[int, Gap]:
         return {}
     comes: Dict[str, List[Fraction]] = {tour.stops[0]: [Fraction(0)]}
     moment = Fraction(0)
-    for stop, takes in on(walker, tour, 0, patrol.late):
+    for stop, takes in onward(walker, tour, 0, patrol.late):
         moment += takes
         comes.setdefault(tour.stops[stop], []).append(moment)
     return {k: _gap(comes[patrol.visits[k].place], walker.stay) for k in dict.fromkeys(mine)}

@@ -55,21 +55,24 @@ def robot_alone(network: Network, objective: Objective) -> Optional[str]:
     """The robot of several that alone can do something about all of a safety objective; None where there is none."""
     if objective.kind is not Kind.SAFETY or len(commanded_agents(network)) < 2:
         return None
-    for robot, alone in _alone(network, objective):
-        if all(_able(alone, objective, place) == (robot,) for place in objective.bad):
-            return robot
-    return None
+    return next((robot for robot, _ in _with_all(network, objective)), None)
 
 
 def lost_game(network: Network, objective: Objective, reaction: Fraction, budget: Budget) -> Optional[Network]:
     """A smaller game in which one robot cannot keep all of what nobody else can keep, with few moves of the
     environment; None where the budget is not enough for one, or others can."""
+    for robot, alone in _with_all(network, objective):
+        for game in _games(alone, objective, objective, robot):
+            if _is_lost(game, objective, reaction, budget, _EACH * budget.work):
+                return game
+    return None
+
+
+def _with_all(network: Network, objective: Objective) -> Iterator[Tuple[str, Network]]:
+    """The robot that alone can do something about each place to be avoided, if there is one, as `_alone` has it."""
     for robot, alone in _alone(network, objective):
         if all(_able(alone, objective, place) == (robot,) for place in objective.bad):
-            for game in _games(alone, objective, objective, robot):
-                if _is_lost(game, objective, reaction, budget, _EACH * budget.work):
-                    return game
-    return None
+            yield robot, alone
 
 
 def _alone(network: Network, objective: Objective) -> Iterator[Tuple[str, Network]]:

@@ -34,7 +34,7 @@ from pursue_gen.solving.shares import can_be_shared
 from pursue_gen.solving.tours import PATROL, won_by_tours
 from pursue_gen.solving.tours_beside import won_beside_tours
 from pursue_gen.solving.without_pauses import lost_to_few_calls, verdict_with, won_without_pauses
-from pursue_gen.synthesis.cone import out_of_reach
+from pursue_gen.synthesis.cone import cone_of_influence, out_of_reach
 from pursue_gen.synthesis.enforced import enforced
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
 from pursue_gen.synthesis.solve import Stats, Verdict, solve
@@ -295,7 +295,7 @@ def _lost(
         return Lost([_cannot_be_met(network, objective, rules, options, "the objective cannot be met")])
     start, findings, names = options.limits.now(), [], [watched(wanted) for wanted in some]
     for wanted, who in zip(some, names):
-        part = only_promises(network, objective, wanted)
+        part = cone_of_influence(only_promises(network, objective, wanted), wanted)
         findings.append(_cannot_be_met(part, wanted, rules, options.since(start), f"{cannot_be_promised(who)},"))
     return Lost(findings, names)
 

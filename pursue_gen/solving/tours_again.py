@@ -17,7 +17,7 @@ from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Tuple
 from pursue_gen.language.network_names import AT_RISK, LOSE
 from pursue_gen.outcomes import NotProven
 from pursue_gen.solving.due_moves import Duty
-from pursue_gen.solving.gaps import on
+from pursue_gen.solving.gaps import onward
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rounds import is_too_late, least_wait
@@ -167,7 +167,7 @@ def _stays(
     late to a place even if it stays nowhere."""
     tour, places = some.tour, [duty.visits[some.tour.robot][0] for duty in some.duties]
     everywhere = max(tour.stops.index(place) for place in places)
-    course, again = _course(network, some, patrol.late, now), list(on(some.walker, tour, tour.again, patrol.late))
+    course, again = _course(network, some, patrol.late, now), list(onward(some.walker, tour, tour.again, patrol.late))
     room: List[Fraction] = []
     for duty, place in zip(some.duties, places):
         room.append(Fraction(duty.deadline) * (1 - RESERVE) - _longest_gap(tour, again, place))
@@ -201,7 +201,7 @@ def _course(network: Network, some: _Round, late: Fraction, now: Now) -> List[Tu
         lasts = next(way.lasts for led in some.walker.ways.values() for way in led.values() if way.edge.target == here)
         moment = max(now.late, lasts - clock)
         found.append((some.stop, moment))
-    for stop, takes in on(some.walker, tour, some.stop, late):
+    for stop, takes in onward(some.walker, tour, some.stop, late):
         moment += takes
         found.append((stop, moment))
     return found

@@ -14,7 +14,7 @@ from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.parser import read, without_errors
-from pursue_gen.language.scenario import Connection, Pose, Ref, Scenario, Spot
+from pursue_gen.language.scenario import Connection, Pose, Scenario
 from pursue_gen.language.similar import closest
 from pursue_gen.outcomes import Invalid
 from pursue_gen.survey import findings as found_wrong
@@ -26,7 +26,7 @@ from pursue_gen.survey.routes import Route, Routes
 from pursue_gen.survey.spots import Spots, Standing, proposed_spots
 from pursue_gen.survey.times import Drive, window
 from pursue_gen.workspace.map_check import check_spots
-from pursue_gen.workspace.map_spots import Ways, with_spots
+from pursue_gen.workspace.map_spots import Ways, with_poses, with_spots
 from pursue_gen.workspace.robot_size import USUAL, RobotSize
 
 MOST_PLACES = 200
@@ -106,7 +106,8 @@ def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options
     standing = Standing(grid_of(ground, options.robot.needed), grid_of(ground, options.robot.wanted))
     lines, body = _lines(with_new, plan), 2 * options.robot.radius
     spots = proposed_spots(with_new, grid, plan.places, options.room, lines, body, standing)
-    placed = _with_spots(replace(scenario, connections=with_new.connections), spots)
+    poses = {place: {robot: pose for robot, pose in found if pose is not None} for place, found in spots.items()}
+    placed = with_poses(replace(scenario, connections=with_new.connections), poses)
     work = _Work(with_new, placed, plan, options, map_name)
     ways = {way: work.way(way, given=(way.a, way.b) not in new) for way in with_new.connections}
     text, errors = _copy(work, ways, spots, copy or f"the copy of {scenario.file}")
@@ -116,7 +117,6 @@ def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options
         *found_wrong.other_unit(scenario, _compared(scenario, ways), _timed(with_new, ways), options.unit),
     ]
     proposals = [work.proposed(*pair) for pair in missing if pair not in new]
-    poses = {place: {robot: pose for robot, pose in found if pose is not None} for place, found in spots.items()}
     return Survey(text, in_order(findings), errors, (*ways.values(), *proposals), poses)
 
 
@@ -224,15 +224,6 @@ def _lines(scenario: Scenario, plan: Plan) -> Ways:
     """The paths of the scenario's ways."""
     pairs = [(way.a, way.b) for way in scenario.connections if {way.a, way.b} <= set(plan.places)]
     return {pair: route.bends for pair in pairs for route in [plan.route(*pair)] if route is not None}
-
-
-def _with_spots(scenario: Scenario, spots: Spots) -> Scenario:
-    """The scenario with these spots beside the given ones."""
-    pois = []
-    for poi in scenario.pois:
-        added = [Spot(Ref(robot, poi.span), pose) for robot, pose in spots.get(poi.name, ()) if pose is not None]
-        pois.append(replace(poi, spots=(*poi.spots, *added)))
-    return replace(scenario, pois=tuple(pois))
 
 
 @dataclass(frozen=True)

@@ -130,7 +130,8 @@ class _Reader:
             if item.id != "scalar" or item.style is not None or not _NUMBER.fullmatch(item.value):
                 return self._wrong(item, "expected a number", _FORM)
             if not abs(float(item.value)) <= _FARTHEST:
-                return self._wrong(item, "a pose is off the map: farther than 1,000,000 m from its origin", _FORM)
+                message = f"a pose is off the map: farther than {_FARTHEST:,.0f} m from its origin"
+                return self._wrong(item, message, _FORM)
         x, y, z, qx, qy, qz, qw = (float(item.value) for item in node.value)
         length = math.sqrt(qx * qx + qy * qy + qz * qz + qw * qw)
         if abs(length - 1) > _LOOSE:

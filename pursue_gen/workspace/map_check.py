@@ -20,6 +20,11 @@ from pursue_gen.workspace.spots import Fit, placing
 _NEAR, _FAR = 1.5, 5.0
 """Metres around a point in which room is looked for that planners like, and any room at all."""
 
+_CORRECT = "poses are metres, from the origin that the map's yaml file gives for its lower left corner"
+_SMALLER = "if the robots are smaller, say so: --robot METRES or --robot PARAMETERS.yaml"
+_TOUCH = 1e-9
+"""Metres by which a distance counts as equal; numbers are as exact."""
+
 _OF_WAYS = frozenset(("PML153", "PML154", "PML201", "PML230"))
 """Errors that a scenario has because ways are missing."""
 
@@ -180,7 +185,6 @@ class _Look:
         """The nearest point that is farther from obstacles than a radius, far enough from all other points; if there
         is such a one, not on the way of others and not beyond a wall."""
         x, y = point.pose.x, point.pose.y
-
         rooms = [(line, self._room_on(ends, line, point)) for ends, line in self.ways.items()]
 
         def is_apart(at: Point) -> bool:
@@ -201,12 +205,6 @@ class _Look:
         one = replace(point.pose, x=x, y=y)
         numbers = ", ".join(f"{n:.10g}" for n in (one.x, one.y, one.z, one.qx, one.qy, one.qz, one.qw))
         return f"{where}: write a pose for it behind that of {point.place}: {point.unwritten} [{numbers}]"
-
-
-_CORRECT = "poses are metres, from the origin that the map's yaml file gives for its lower left corner"
-_SMALLER = "if the robots are smaller, say so: --robot METRES or --robot PARAMETERS.yaml"
-_TOUCH = 1e-9
-"""Metres by which a distance counts as equal; numbers are as exact."""
 
 
 def _extent(ground: Ground) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Mapping, Sequence, Tuple
+from typing import Dict, Mapping, Sequence, Tuple
 
 from pursue_gen.drawing.clearance import Clearance, Point, to_line
 from pursue_gen.drawing.ground import FREE, Ground
@@ -29,12 +29,21 @@ def with_spots(scenario: Scenario, ground: Ground, distance: float, robot: Robot
     Its text stays as it is. `distance`: as for `spots.placing`; `ways`: as far as they are known.
     """
     where, present = placing(scenario, distance, fit_on(ground, robot, ways)), robots_at(scenario)
-    pois = []
+    beside: Dict[str, Dict[str, Pose]] = {}
     for poi in scenario.pois:
         own = {spot.robot.name for spot in poi.spots}
-        beside = {robot: where.spots[robot][poi.name] for robot in present[poi.name] if robot not in own}
-        added = [Spot(Ref(robot, poi.span), spot) for robot, spot in beside.items() if spot != poi.pose]
-        pois.append(poi if poi.pose is None else replace(poi, spots=(*poi.spots, *added)))
+        spots = {robot: where.spots[robot][poi.name] for robot in present[poi.name] if robot not in own}
+        some = {robot: spot for robot, spot in spots.items() if spot != poi.pose}
+        beside[poi.name] = {} if poi.pose is None else some
+    return with_poses(scenario, beside)
+
+
+def with_poses(scenario: Scenario, beside: Mapping[str, Mapping[str, Pose]]) -> Scenario:
+    """The scenario with these spots (place → robot → pose) behind those that it gives."""
+    pois = []
+    for poi in scenario.pois:
+        added = [Spot(Ref(robot, poi.span), pose) for robot, pose in beside.get(poi.name, {}).items()]
+        pois.append(replace(poi, spots=(*poi.spots, *added)))
     return replace(scenario, pois=tuple(pois))
 
 

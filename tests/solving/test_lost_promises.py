@@ -220,10 +220,12 @@ def test_a_milestone_that_cannot_be_reached_is_named_among_others() -> None:
     assert finding.message.startswith('"do fall" (line 18) cannot be promised, even if nothing else is, with ends')
 
 
-def test_nobody_prevents_it_where_all_are_controlled() -> None:
-    text = NIGHT.split("agent \"resident1\"")[0]
-    (finding,) = lost(text + "objective: patrol room3 every 10 by nora\n").diagnostics
-    assert "nobody controls" not in finding.hint and finding.hint.startswith("give the robots more time")
+def test_nobody_prevents_it_where_all_who_matter_are_controlled() -> None:
+    hasty = "objective: patrol room3 every 10 by nora\n"
+    walking = "objective: if walker at room3 then any robot at corridor within 40\n"
+    for text in (NIGHT.split("agent \"resident1\"")[0] + hasty, NIGHT.split("objective")[0] + hasty + walking):
+        (finding,) = lost(text).diagnostics
+        assert "nobody controls" not in finding.hint and finding.hint.startswith("give the robots more time")
     (finding, _) = lost(NIGHT.format(first=15, second=30)).diagnostics
     assert "nobody controls" in finding.hint
 

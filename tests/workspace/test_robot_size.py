@@ -10,6 +10,7 @@ import pytest
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.workspace.robot_size import RobotSize, read_size
+from tests.cli.test_commands import pursue
 
 FILES = {
     "costmap.yaml": "obstacle_range: 2.5\nrobot_radius: 0.2\ninflation_layer:\n  inflation_radius: 0.5\n",
@@ -76,6 +77,12 @@ def test_what_is_no_size_is_refused_with_the_file_and_what_is_expected(text: str
     finding = problem.value.diagnostics[0]
     assert told in finding.message and "wrong.yaml" in finding.message and "expected" in finding.hint
     assert problem.value.exit_status == 2
+
+
+def test_a_wrong_size_is_refused_where_there_is_no_map_either() -> None:
+    Path("floor.pur").write_text('poi "a"\npoi "b"\nconnect a and b distance 1\n')
+    done = pursue("check", "floor.pur", "--robot", "-1")
+    assert done.status == 2 and "no robot has such a radius" in done.err
 
 
 @pytest.mark.parametrize("given", ["none.yaml", "nan", "-0.1", "1e9", "wide"])
