@@ -21,7 +21,8 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 
 def test_hundreds_of_events_leave_memory_and_clocks_as_they_were(ros: Ros, tmp_path: Path) -> None:
-    command = f"{sys.executable} -m benchmarks.soak --events 250 --warm 100 --out {tmp_path} --machine m --date d"
+    slow = "--speed 25 --hold 0.1"  # a node that waits for the processor for a moment must not miss a deadline
+    command = f"{sys.executable} -m benchmarks.soak --events 250 --warm 100 {slow} --out {tmp_path} --machine m"
     done = ros.run(command, ROOT, 900)
     assert done.returncode == 0, done.stdout
     found = json.loads((tmp_path / "benchmarks" / "reaction.json").read_text())["soak"]

@@ -20,7 +20,7 @@ Build = Callable[..., Path]
 pytestmark = pytest.mark.ros
 
 SCENARIO = Path(__file__).resolve().parents[2] / "scenarios" / "thesis" / "scenario_1.pur"
-OPTIONS = "use_sim_time:=true speed:=4 delays:=early"
+OPTIONS = "use_sim_time:=true speed:=2 delays:=early"
 """A word that is said early in its window may take a fifth of a second, and comes at a time that the model knows."""
 
 LAUNCH = f"source devel/setup.bash; roslaunch scenario_1_bringup mission.launch {OPTIONS}"
