@@ -17,7 +17,7 @@ from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, as_json, c
 from pursue_gen.files import shell_quoted
 
 if TYPE_CHECKING:
-    from pursue_gen.workspace.robot_size import RobotSize
+    from pursue_gen.workspace.robot_size import Told
     from pursue_gen.workspace.spots import Fit
 
 
@@ -36,13 +36,13 @@ def check(
     Findings go to stdout; the exit status is 3 where there are errors, 2 where a file cannot be read.
     """
     from pursue_gen.solving.inputs import findings_in, outcome_of
-    from pursue_gen.workspace.robot_size import read_size
+    from pursue_gen.workspace.robot_size import read_sizes
 
-    size = read_size(robot)
+    told = read_sizes(robot)
     findings = [finding for file in files for finding in findings_in(file)]
     fits: Dict[Path, Fit] = {}
     if floor is not None:
-        more, fits = _on_map(files, floor, spot_distance, size)
+        more, fits = _on_map(files, floor, spot_distance, told)
         findings += more
     if as_json_:
         print(json.dumps([as_json(finding) for finding in findings], indent=1))
@@ -80,7 +80,7 @@ def _moved(file: Path, distance: float, fit: Optional[Fit]) -> List[str]:
 
 
 def _on_map(
-    files: List[Path], floor: Path, spot_distance: float, robot: RobotSize
+    files: List[Path], floor: Path, spot_distance: float, told: Told
 ) -> Tuple[List[Diagnostic], Dict[Path, Fit]]:
     """The findings on the map, for scenarios that lack nothing but ways, and how well spots fit there. Raises
     PursueError for a map that cannot be used."""
@@ -88,13 +88,16 @@ def _on_map(
     from pursue_gen.language.parser import read_text
     from pursue_gen.workspace.map_check import read_placed
     from pursue_gen.workspace.map_spots import fit_on
+    from pursue_gen.workspace.robot_size import sizes_of
 
     ground = read_ground(floor)
     found: List[Diagnostic] = []
     fits: Dict[Path, Fit] = {}
     for file in files:
         with contextlib.suppress(PursueError):  # its errors are reported
-            more, ways = on_map(read_placed(read_text(str(file)), str(file)), ground, spot_distance, robot)
+            scenario = read_placed(read_text(str(file)), str(file))
+            sizes = sizes_of(scenario, told)
+            more, ways = on_map(scenario, ground, spot_distance, sizes)
             found += more
-            fits[file] = fit_on(ground, robot, ways)
+            fits[file] = fit_on(ground, sizes.largest, ways)
     return found, fits

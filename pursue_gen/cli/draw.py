@@ -41,14 +41,14 @@ def draw(
     from pursue_gen.draw.page import DrawPage, file_for
     from pursue_gen.draw.server import DrawServer
     from pursue_gen.synthesis.limits import careful_memory
-    from pursue_gen.workspace.robot_size import read_size
+    from pursue_gen.workspace.robot_size import read_sizes
 
     plan, scenario = _named(files or [])
     file = file_for(scenario, plan)
     if scenario is None:
         storage.check_new(file, force)
     _, version = storage.opened(file)
-    jobs = Jobs(file.name, plan, limit, careful_memory(), read_size(robot))
+    jobs = Jobs(file.name, plan, limit, careful_memory(), read_sizes(robot))
     with DrawServer(DrawPage(file, plan, jobs, anew=scenario is None), port) as server:
         print(server.url, flush=True)
         begins = scenario is None or version == storage.NOTHING

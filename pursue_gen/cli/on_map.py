@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from pursue_gen.drawing.ground import Ground
     from pursue_gen.language.scenario import Scenario
     from pursue_gen.workspace.map_spots import Ways
-    from pursue_gen.workspace.robot_size import RobotSize
+    from pursue_gen.workspace.robot_size import Sizes
 
 
 def on_map(
-    scenario: Scenario, ground: Ground, distance: float, robot: RobotSize
+    scenario: Scenario, ground: Ground, distance: float, sizes: Sizes
 ) -> Tuple[Tuple[Diagnostic, ...], Ways]:
     """The findings of `survey`, and the paths of the ways; of the points alone, and no paths, where its packages or the
     pixels are missing."""
@@ -30,5 +30,5 @@ def on_map(
             info("Ways are not looked at on the map without numpy and scipy: pip install 'pursue-gen[survey]'")
         else:
             del scipy
-            return found_on_map(scenario, ground, distance, robot)
-    return check_spots(scenario, ground, distance, robot), {}
+            return found_on_map(scenario, ground, distance, sizes)
+    return check_spots(scenario, ground, distance, sizes), {}

@@ -155,9 +155,9 @@ SPOT_DISTANCE = typer.Option(
 ROBOT = typer.Option(
     [],
     "--robot",
-    metavar="METRES|YAML",
-    help="The radius of the largest robot (0.3), or parameters of its costmaps and planners: footprint, "
-    "inflation_radius, xy_goal_tolerance; repeatable.",
+    metavar="[ROBOT=]METRES|YAML",
+    help="The radius of all robots, or of this one, or parameters of their costmaps and planners: footprint, "
+    "inflation_radius, xy_goal_tolerance; goes before what the scenario says; repeatable.",
 )
 KEYS = typer.Option(
     None, "--keys", metavar="DIR", help="Where the keys are; ~/.config/pursue/keys by default (XDG_CONFIG_HOME)."

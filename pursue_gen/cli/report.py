@@ -72,7 +72,7 @@ def report(
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.report.make import ReportOptions
     from pursue_gen.workspace.map_spots import with_spots
-    from pursue_gen.workspace.robot_size import read_size
+    from pursue_gen.workspace.robot_size import read_sizes, sizes_of
 
     html = html or output is not None
     seen = html or pictures is not None
@@ -89,15 +89,15 @@ def report(
     target = _target(scenario, file or output)
     if html and not force:
         _check_target(target)
-    size = read_size(robot)
+    told = read_sizes(robot)
     options = ReportOptions(reach_obj, runs if html else 0)
     read = scenario_from(scenario, request)
     if floor is not None:
-        ground = read_ground(floor)
-        findings, paths = on_map(read, ground, DEFAULT_DISTANCE, size)
+        ground, sizes = read_ground(floor), sizes_of(read, told)
+        findings, paths = on_map(read, ground, DEFAULT_DISTANCE, sizes)
         show(findings)
         options = replace(options, floor=replace(read_floor(floor), paths=paths))
-        read = with_spots(read, ground, DEFAULT_DISTANCE, size, paths)
+        read = with_spots(read, ground, DEFAULT_DISTANCE, sizes.largest, paths)
     made = _made(read, options, solving)
     if pictures is not None:
         _write_pictures(made, pictures)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Dict, List, Mapping, Optional, Tuple
 
@@ -19,6 +19,18 @@ from pursue_gen.outcomes import Invalid, Unavailable
 if TYPE_CHECKING:
     from pursue_gen.language.scenario import Scenario
     from pursue_gen.survey.make import Options, Survey
+    from pursue_gen.workspace.robot_size import Told
+
+
+@dataclass(frozen=True)
+class _Given:
+    """What is surveyed, with what was told of its robots."""
+
+    floor: Path
+    scenario: Path
+    sizes: Told
+    radius: Optional[float]
+    speed: List[str]
 
 
 @guarded
@@ -26,7 +38,9 @@ def survey(
     floor: Path = typer.Argument(..., metavar="MAP.yaml", help="A map of map_server: its yaml file."),
     scenario: Path = SCENARIO,
     robot: List[str] = ROBOT,
-    radius: Optional[float] = typer.Option(None, metavar="METRES", help="As --robot: goes before what a file says."),
+    radius: Optional[float] = typer.Option(
+        None, metavar="METRES", help="The radius of all robots in this survey, whatever their size; is not written."
+    ),
     clearance: Optional[float] = typer.Option(
         None, metavar="METRES", help="How far two robots that stand stay from each other: twice their goal tolerance."
     ),
@@ -62,24 +76,23 @@ def survey(
     target = output or scenario.with_name(f"{scenario.stem}_surveyed.pur")
     for file in [*([] if dry_run else [target]), *([picture] if picture else [])]:
         check_new(file, force)
-    given = {"--radius": radius, "--clearance": clearance}
-    _check_numbers({name: value for name, value in given.items() if value is not None}, 0.0)
+    metres = {"--radius": radius, "--clearance": clearance}
+    _check_numbers({name: value for name, value in metres.items() if value is not None}, 0.0)
     _check_numbers({"--start": start, "--reserve": reserve, "--tolerance": tolerance}, 0.0)
     _check_numbers({"--time-unit": time_unit, "--turning": turning, "--acceleration": acceleration}, 0.001)
     _check_numbers({"--unit": unit}, 0.001)
     _check_packages()
     from pursue_gen.survey.make import Options
     from pursue_gen.survey.times import Drive
-    from pursue_gen.workspace.robot_size import read_size
+    from pursue_gen.workspace.robot_size import read_sizes
 
     drive = Drive({}, time_unit, turning, acceleration, start, reserve / 100, tolerance)
-    size = read_size(robot)
-    size = size if radius is None else replace(size, radius=radius)
-    options = Options(size, clearance, unit, ways, tuple(map(_pair, keep)), drive)
-    read, copy, found = _surveyed(floor, scenario, speed, options, "" if dry_run else str(target))
+    options = Options(clearance=clearance, unit=unit, ways=ways, keep=tuple(map(_pair, keep)), drive=drive)
+    given = _Given(floor, scenario, read_sizes(robot), radius, speed)
+    read, copy, found, size = _surveyed(given, options, "" if dry_run else str(target))
     files = {} if dry_run else {target: copy}
     if picture is not None:
-        files[picture] = _picture(read, found, floor, size.radius)
+        files[picture] = _picture(read, found, floor, size)
     write_bytes(files)
     _print(found, as_json_)
     for file in files:
@@ -105,22 +118,25 @@ def _check_packages() -> None:
     del numpy, scipy
 
 
-def _surveyed(
-    floor: Path, file: Path, speed: List[str], options: Options, copy_name: str
-) -> Tuple[Scenario, bytes, Survey]:
-    """The scenario, its copy, and the survey."""
+def _surveyed(given: _Given, options: Options, copy_name: str) -> Tuple[Scenario, bytes, Survey, float]:
+    """The scenario, its copy, the survey, and the radius of the largest robot."""
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.language.parser import read_text
+    from pursue_gen.survey.copying import with_sizes
     from pursue_gen.survey.make import surveyed
     from pursue_gen.workspace.map_check import read_placed
+    from pursue_gen.workspace.robot_size import sizes_of
 
-    text = read_text(str(file))
-    scenario = read_placed(text, str(file))
+    text, file = read_text(str(given.scenario)), str(given.scenario)
+    scenario = read_placed(text, file)
+    scenario = read_placed(with_sizes(scenario, sizes_of(scenario, given.sizes)), file)
     robots = [agent.name for agent in scenario.agents if agent.is_robot and agent.mobile is not None]
-    driven = replace(options, drive=replace(options.drive, speeds=_speeds(speed, robots)))
-    found = surveyed(scenario, read_ground(floor, whole=True), floor.name, driven, copy_name)
+    drive = replace(options.drive, speeds=_speeds(given.speed, robots))
+    sizes = sizes_of(scenario).with_radius(given.radius)
+    ground = read_ground(given.floor, whole=True)
+    found = surveyed(scenario, ground, given.floor.name, replace(options, robots=sizes, drive=drive), copy_name)
     copy = found.text.replace("\n", "\r\n") if "\r\n" in text else found.text
-    return scenario, copy.encode("utf-8"), found
+    return scenario, copy.encode("utf-8"), found, sizes.largest.radius
 
 
 def _picture(scenario: Scenario, found: Survey, floor: Path, radius: float) -> bytes:

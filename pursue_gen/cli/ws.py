@@ -52,18 +52,18 @@ def ws(
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.workspace.make import Extras, make_workspace
     from pursue_gen.workspace.map_spots import with_spots
-    from pursue_gen.workspace.robot_size import read_size
+    from pursue_gen.workspace.robot_size import read_sizes, sizes_of
 
-    size = read_size(robot)
+    told = read_sizes(robot)
     under = None if floor is None else read_floor(floor)
     start = request.options.limits.now()
     read = scenario_from(scenario, request)
     request = request.since(start)
     if floor is not None:
-        ground = read_ground(floor)
-        findings, ways = on_map(read, ground, spot_distance, size)
+        ground, sizes = read_ground(floor), sizes_of(read, told)
+        findings, ways = on_map(read, ground, spot_distance, sizes)
         show(findings)
-        read = with_spots(read, ground, spot_distance, size, ways)
+        read = with_spots(read, ground, spot_distance, sizes.largest, ways)
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")
     found = solve_and_print(read, request, explain)

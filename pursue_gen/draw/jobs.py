@@ -15,7 +15,7 @@ from pursue_gen.draw.fields import refused
 from pursue_gen.draw.play_work import play
 from pursue_gen.draw.solve_work import UNDECIDED, Work, solve
 from pursue_gen.draw.survey_work import SurveyWork, survey
-from pursue_gen.workspace.robot_size import USUAL, RobotSize
+from pursue_gen.workspace.robot_size import NOTHING_TOLD, Told
 
 RUNNING, ENDED, CANCELLED, NONE = "running", "ended", "cancelled", "none"
 _DIED = "the process has ended without an answer; perhaps the machine has too little memory"
@@ -25,12 +25,12 @@ class Jobs:
     """The present job and what it has sent. Methods may be called from several threads."""
 
     def __init__(
-        self, file: str, floor: Optional[Path], seconds: float, memory: int, robot: RobotSize = USUAL
+        self, file: str, floor: Optional[Path], seconds: float, memory: int, told: Told = NOTHING_TOLD
     ) -> None:
-        """`file`: what messages call the text; `floor`: the map that lies under pictures; the limits of a job; `robot`:
-        the size of the robots."""
+        """`file`: what messages call the text; `floor`: the map that lies under pictures; the limits of a job; `told`:
+        what was told of the sizes of robots."""
         self._file, self._floor, self._seconds, self._memory = file, floor, seconds, memory
-        self.robot = robot
+        self.told = told
         self._lock = threading.Lock()
         self._number = 0
         self._state: Dict[str, Any] = {"state": NONE}
@@ -58,14 +58,14 @@ class Jobs:
             self._launch(play, self._work(text))
         return self.state()
 
-    def survey(self, text: str, radius: float, speed: Optional[float], ways: bool) -> Dict[str, Any]:
+    def survey(self, text: str, radius: Optional[float], speed: Optional[float], ways: bool) -> Dict[str, Any]:
         """Measures a text's ways on the map, instead of what is under way; the state. As `SurveyWork`.
 
         Raises PursueError where there is no map.
         """
         if self._floor is None:
             raise refused("there is no map to measure on", "pursue-gen draw map.yaml my_floor.pur")
-        given = SurveyWork(text, self._file, self._floor, self._seconds, self._memory, self.robot, radius, speed, ways)
+        given = SurveyWork(text, self._file, self._floor, self._seconds, self._memory, self.told, radius, speed, ways)
         with self._lock:
             self._launch(survey, given)
         return self.state()
@@ -103,7 +103,7 @@ class Jobs:
             self._process = None
 
     def _work(self, text: str) -> Work:
-        return Work(text, self._file, self._floor, self._seconds, self._memory, self.robot)
+        return Work(text, self._file, self._floor, self._seconds, self._memory, self.told)
 
     def _launch(self, target: Callable[[Any, Connection], None], given: Work) -> None:
         self.end()

@@ -68,12 +68,11 @@ class DrawPage:
             "x": floor.x, "y": floor.y, "yaw": floor.yaw,
         }  # fmt: skip
         new = self._anew or version == storage.NOTHING
-        radius = self.jobs.robot.radius
-        about = {"file": self.file.name, "version": version, "new": new, "floor": plan, "radius": radius}
+        about = {"file": self.file.name, "version": version, "new": new, "floor": plan}
         return {"text": text, **about, "forms": forms(), "anybody": list(ANYBODY), "view": self._view(text)}
 
     def _view(self, text: str) -> Answer:
-        return view(text, self.file.name, self._ground, self.jobs.robot)
+        return view(text, self.file.name, self._ground, self.jobs.told)
 
     def _change(self, values: Mapping[str, Any]) -> Answer:
         """The text after an operation, and how it looks."""
@@ -81,8 +80,8 @@ class DrawPage:
         return {"text": done.text, "statement": done.statement, "view": self._view(done.text)}
 
     def _survey(self, values: Mapping[str, Any]) -> Answer:
-        """Begins to measure the ways on the map: {radius, speed (None: no travel times), ways}."""
-        radius = fields.positive_of(values, "radius", 10)
+        """Begins to measure the ways on the map: {radius, speed, ways}, as for `SurveyWork`."""
+        radius = None if values.get("radius") is None else fields.positive_of(values, "radius", 10)
         speed = None if values.get("speed") is None else fields.positive_of(values, "speed", 100)
         return self.jobs.survey(_text(values), radius, speed, fields.is_set(values, "ways"))
 

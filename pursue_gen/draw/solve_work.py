@@ -7,7 +7,7 @@ import multiprocessing
 import os
 import threading
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Iterable, Iterator, List, Optional
@@ -32,7 +32,7 @@ from pursue_gen.solving.rules import IDEAL
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import Limits, Progress
 from pursue_gen.workspace.map_spots import with_spots
-from pursue_gen.workspace.robot_size import USUAL, RobotSize
+from pursue_gen.workspace.robot_size import Told, sizes_of
 from pursue_gen.workspace.spots import SPOT_DISTANCE
 
 WON, LOST, UNDECIDED, ERRORS = "won", "lost", "undecided", "errors"
@@ -43,14 +43,14 @@ _INTERVAL = 0.3
 @dataclass(frozen=True)
 class Work:
     """A text to solve; `file`: what messages call it, `floor`: the map under pictures; limits in seconds and MiB;
-    `robot`: the size of the robots."""
+    `told`: what was told of the sizes of robots."""
 
     text: str
     file: str
     floor: Optional[Path]
     seconds: float
     memory: int
-    robot: RobotSize = USUAL
+    told: Told = field(default_factory=dict)
 
 
 class Progressing:
@@ -114,7 +114,7 @@ def _solve(given: Work, pipe: Connection) -> None:
     scenario = settled(scenario_of(given), request, progress)
     request = request.since(start)
     if given.floor is not None:
-        scenario = with_spots(scenario, read_ground(given.floor), SPOT_DISTANCE, given.robot)
+        scenario = with_spots(scenario, read_ground(given.floor), SPOT_DISTANCE, sizes_of(scenario, given.told).largest)
     try:
         found = promised_of(scenario, request, progress)
     except (Lost, LimitHit) as problem:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Dict, Optional
@@ -12,6 +12,7 @@ from pursue_gen.draw.solve_work import ERRORS, Work, sentences, working
 from pursue_gen.drawing.ground import read_ground
 from pursue_gen.language.formatter import format_text
 from pursue_gen.workspace.map_check import read_placed
+from pursue_gen.workspace.robot_size import sizes_of
 
 SURVEYED = "surveyed"
 
@@ -20,11 +21,11 @@ SURVEYED = "surveyed"
 class SurveyWork(Work):
     """A text whose ways are to be measured, on the map `floor`.
 
-    `radius`: that of `robot`, in metres, whatever it was; `speed`: metres per second of all robots, None:
-    no travel times; `ways`: those that are missing are added.
+    `radius`: that of all robots, in metres; None: as it is said or was told; `speed`: metres per second of all robots,
+    None: no travel times; `ways`: those that are missing are added.
     """
 
-    radius: float = 0.3
+    radius: Optional[float] = None
     speed: Optional[float] = None
     ways: bool = False
 
@@ -45,14 +46,16 @@ def survey(given: SurveyWork, pipe: Connection) -> None:
 
 
 def _measured(given: SurveyWork, floor: Path) -> Dict[str, Any]:
+    from pursue_gen.survey.copying import with_sizes
     from pursue_gen.survey.make import Options, surveyed  # needs numpy and scipy
     from pursue_gen.survey.texts import table
     from pursue_gen.survey.times import Drive
 
     scenario = read_placed(given.text, given.file)
+    scenario = read_placed(with_sizes(scenario, sizes_of(scenario, given.told)), given.file)
     robots = [agent.name for agent in scenario.agents if agent.is_robot and agent.mobile is not None]
     speeds = {} if given.speed is None else dict.fromkeys(robots, given.speed)
-    options = Options(replace(given.robot, radius=given.radius), ways=given.ways, drive=Drive(speeds))
+    options = Options(sizes_of(scenario).with_radius(given.radius), ways=given.ways, drive=Drive(speeds))
     found = surveyed(scenario, read_ground(floor, whole=True), floor.name, options)
     lines = [*sentences(found.findings), *table(found)]
     paths = [{"a": way.a, "b": way.b, "line": way.line} for way in found.ways if way.line]

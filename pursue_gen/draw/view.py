@@ -19,7 +19,7 @@ from pursue_gen.lsp.map_preview import drawable
 from pursue_gen.lsp.tokens import Statement
 from pursue_gen.solving.inputs import findings_of
 from pursue_gen.workspace.map_check import but_for_ways, check_spots
-from pursue_gen.workspace.robot_size import USUAL, RobotSize
+from pursue_gen.workspace.robot_size import NOTHING_TOLD, Told, sizes_of
 from pursue_gen.workspace.spots import SPOT_DISTANCE
 
 _MOST_FINDINGS = 200
@@ -27,17 +27,17 @@ _OWN_FORMS = ("POI", "CONNECT", "EVENT", "AGENT")
 
 
 def view(
-    text: str, file: str = "scenario.pur", ground: Optional[Ground] = None, robot: RobotSize = USUAL
+    text: str, file: str = "scenario.pur", ground: Optional[Ground] = None, told: Told = NOTHING_TOLD
 ) -> Dict[str, Any]:
     """The picture's parts and the findings of a text, right or wrong, and what is wanted in sentences.
 
-    `ground`: whether robots of this size have room where they stand on it is looked at, too.
+    `ground`: whether robots have room where they stand on it is looked at, too; `told`: of their sizes.
 
     Distances and times are texts as they are written, positions metres, headings degrees; `statement` is the number by
     which `operations.change` knows a part, `from` and `to` are its first and last line, counted from 1.
     """
     document = Document.of(text, file)
-    found = _findings(document, ground, robot)
+    found = _findings(document, ground, told)
     places = _places(document)
     return {
         "places": places,
@@ -68,14 +68,14 @@ def forms() -> List[Dict[str, Any]]:
     return found
 
 
-def _findings(document: Document, ground: Optional[Ground], robot: RobotSize) -> Tuple[Diagnostic, ...]:
+def _findings(document: Document, ground: Optional[Ground], told: Told) -> Tuple[Diagnostic, ...]:
     """What `pursue-gen check` reports, with --map where there is a map."""
     found = findings_of(document.reading)
     scenario = document.reading.scenario
     wrong = but_for_ways(found)
     if ground is None or scenario is None or any(one.severity is Severity.ERROR for one in wrong):
         return found
-    return in_order((*found, *check_spots(scenario, ground, SPOT_DISTANCE, robot)))
+    return in_order((*found, *check_spots(scenario, ground, SPOT_DISTANCE, sizes_of(scenario, told))))
 
 
 def _wanted(document: Document, findings: Sequence[Diagnostic]) -> List[str]:

@@ -29,6 +29,9 @@ _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PM
 MOST_TIMES = 100
 """How often an event can happen at most that is counted: each count is a location of an automaton."""
 
+MOST_METRES = 100
+"""The largest number of a robot's size."""
+
 _LONGEST = 10_000_000
 """The longest time of a movement in time units: ten times that must fit a solver's 32 bits."""
 
@@ -129,6 +132,7 @@ def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
             yield from _window(event.name, event.duration, event.latest, "duration", event.span)
     longest = max((way.distance for way in scenario.connections), default=0)
     for agent in scenario.agents:
+        yield from _size(agent)
         if agent.mobile is None:
             continue
         if agent.mobile <= 0:
@@ -144,6 +148,19 @@ def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
         if isinstance(safety, Patrol) and safety.every is not None and safety.every < 2:
             message = f"every {safety.every} leaves no time to go away and come back: expected 2 or more"
             yield error("PML143", message, safety.span, "write the time units between two visits")
+
+
+def _size(agent: Agent) -> Iterator[Diagnostic]:
+    """A size of what is no robot, or of none that there is."""
+    size = {"radius": agent.radius, "tolerance": agent.tolerance, "inflation": agent.inflation}
+    said = {word: number for word, number in size.items() if number is not None}
+    if said and not agent.is_robot:
+        hint = f"write controllable behind {agent.name} (and no human), or delete {' and '.join(said)}"
+        yield error("PML148", f"{agent.name} is no robot: nothing is sent to places that need room", agent.span, hint)
+    for word, number in said.items():
+        if number > MOST_METRES:
+            message = f"{agent.name} has {word} {number}: expected {MOST_METRES} metres at most"
+            yield error("PML148", message, agent.span, f"write {word} in metres, such as 0.3")
 
 
 def _too_fine(scenario: Scenario) -> Iterator[Diagnostic]:

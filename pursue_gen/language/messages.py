@@ -22,7 +22,7 @@ FORMS: Dict[str, str] = {
     "STATE": 'state "open": initially false, true_if e1, e2 false_if e3',
     "STATEDEPENDENCY": "stateDependency: work only_if open is_true (or is_false)",
     "AGENT": 'agent "bot" human controllable mobile 3 location a can_do e1, e2 reacts_to e3 (location is required; '
-             'behind the name: label "Porter 1")',
+             'behind the name: label "Porter 1"; before location, of a robot: radius 0.2 tolerance 0.1 inflation 0.5)',
     "TRAVEL": "travel bot from a to b takes 5 to 8",
     "BATTERY": "battery bot capacity 100 uses 2 per unit recharges 5 per unit at dock (recharges … is optional)",
     "ASSUME": "assume: guest does call at_most 2 times · assume: guest waits 5 between call · "
@@ -54,7 +54,8 @@ KEYWORDS: Dict[str, str] = {
     "ASSUME": "assume", "DOES": "does", "WAITS": "waits", "BETWEEN": "between", "LEAVES": "leaves", "NEVER": "never",
     "AT": "at", "NOT": "not", "ALWAYS": "always", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no",
     "ROBOT": "robot", "OPTIONAL": "optional", "BATTERY": "battery", "CAPACITY": "capacity", "USES": "uses",
-    "PER": "per", "UNIT": "unit", "RECHARGES": "recharges",
+    "PER": "per", "UNIT": "unit", "RECHARGES": "recharges", "RADIUS": "radius",
+    "TOLERANCE": "tolerance", "INFLATION": "inflation",
 }  # fmt: skip
 """The words of the language, by token."""
 
@@ -64,7 +65,8 @@ MAY_BE_NAMES: Dict[str, str] = {
     "NEVER": "never", "AT": "at", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no", "ROBOT": "robot",
     "ALWAYS": "always", "EACH": "each", "PATROL": "patrol", "ORDER": "order", "EVERY": "every", "BY": "by",
     "OPTIONAL": "optional", "LABEL": "label", "BATTERY": "battery", "CAPACITY": "capacity", "USES": "uses",
-    "PER": "per", "UNIT": "unit", "RECHARGES": "recharges",
+    "PER": "per", "UNIT": "unit", "RECHARGES": "recharges", "RADIUS": "radius",
+    "TOLERANCE": "tolerance", "INFLATION": "inflation",
 }  # fmt: skip
 """Those of them that scenarios may use as names, by token."""
 
@@ -117,7 +119,7 @@ def unknown_statement(chunk: List[Token], span: Span) -> Diagnostic:
         return _unclosed(token, span)
     if _invisible(token):
         return _unseen(token, span)
-    if token.type in ("HUMAN", "CONTROLLABLE", "MOBILE"):
+    if token.type in ("HUMAN", "CONTROLLABLE", "MOBILE", "RADIUS", "TOLERANCE", "INFLATION"):
         hint = f"it belongs to an agent: {FORMS['AGENT']}"
     elif token.type in KEYWORDS and _MEANT.get(str(token)) not in _STARTERS:
         hint = f"{token} stands inside a statement; one begins with " + _list(list(_STARTERS))

@@ -283,19 +283,25 @@ class _Builder:
         return pml.NeverAt(agent, self._ref(rest[0]), span)
 
     def _agent(
-        self, name: Token, _: Any, label: Any, human: Any, controllable: Any, mobile: Any, location: Any, can: Any,
-        reacts: Any, span: Span,
+        self, name: Token, _: Any, label: Any, human: Any, controllable: Any, mobile: Any, radius: Any, tolerance: Any,
+        inflation: Any, location: Any, can: Any, reacts: Any, span: Span,
     ) -> pml.Agent:
+        mobile, radius, tolerance, inflation = (
+            None if number is None else self._number(number) for number in (mobile, radius, tolerance, inflation)
+        )
         return pml.Agent(
             name=_bare(name),
             human=human is not None,
             controllable=controllable is not None,
-            mobile=None if mobile is None else self._number(mobile),
+            mobile=mobile,
             location=self._ref(location),
             can_do=self._refs(can),
             reacts_to=self._refs(reacts),
             span=span_of(name, self.file),
             label=_bare_or_none(label),
+            radius=radius,
+            tolerance=tolerance,
+            inflation=inflation,
         )
 
     def _optional(self, _: Any, number: Token, tree: Any, span: Span) -> Tuple[pml.StatedObjective, ...]:

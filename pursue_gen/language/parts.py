@@ -202,7 +202,8 @@ class Agent:
     """A robot (controllable), a human ally (controllable and human) or an uncontrollable agent.
 
     `mobile` is the time units per unit of distance (the inverse of its speed), None: it never moves. `label`: what
-    people read; None: the name.
+    people read; None: the name. `radius`, `tolerance`, `inflation`: of a robot, in metres, as `workspace.robot_size`
+    has them; None: not said.
     """
 
     name: str
@@ -214,6 +215,9 @@ class Agent:
     reacts_to: Tuple[Ref, ...]
     span: Span
     label: Optional[str] = None
+    radius: Optional[Number] = None
+    tolerance: Optional[Number] = None
+    inflation: Optional[Number] = None
 
     @property
     def shown(self) -> str:

@@ -8,19 +8,20 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from typing import Iterator, List, Optional, Sequence, Tuple
+from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.edits import Edit
 from pursue_gen.language.formatter_items import BLOCK, LINE, Item, items_of
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.poses import end_of_poses
-from pursue_gen.language.scenario import Connection, Event, Poi, Pose, Scenario, Travel
+from pursue_gen.language.scenario import Agent, Connection, Event, Poi, Pose, Scenario, Travel
 from pursue_gen.language.syntax import cut
 
 REMARK = re.compile(r"(?://|/\*)[ \t]*(?P<command>survey|calibrate): ")
 """Begins a remark."""
 
+_SIZE = ("RADIUS", "TOLERANCE", "INFLATION")
 _STATEMENTS = ("poi", "connection", "agent", "travel")
 
 
@@ -55,6 +56,27 @@ class Rewriting:
     def duration(self, event: Event, earliest: Number, latest: Number, remark: str) -> List[Edit]:
         """Writes the window of an event's duration, which it has already."""
         return self._window(event.span, "DURATION", (earliest, latest), remark)
+
+    def size(self, agent: Agent, numbers: Mapping[str, Number], remark: str) -> List[Edit]:
+        """Writes numbers of a robot's size (`radius`, `tolerance`, `inflation` → metres)."""
+        start = self._offset(agent.span)
+        words = [item for item in self._within(start) if not item.is_comment]
+        kinds = [item.kind for item in words]
+        kinds = kinds[: kinds.index("LOCATION") + 1]
+        edits: List[Edit] = []
+        new: Dict[int, str] = {}
+        for number, word in enumerate(_SIZE):
+            if word.lower() not in numbers:
+                continue
+            text = str(numbers[word.lower()])
+            if word in kinds:
+                old = words[kinds.index(word) + 1]
+                edits.append(Edit(old.start, old.start + len(old.text), text))
+            else:
+                following = next(kind for kind in (*_SIZE[number + 1 :], "LOCATION") if kind in kinds)
+                at = words[kinds.index(following)].start
+                new[at] = f"{new.get(at, '')}{word.lower()} {text} "
+        return [*edits, *(Edit(at, at, text) for at, text in new.items()), *self._remarked(self._end(start), remark)]
 
     def written_by(self, span: Span) -> Optional[str]:
         """The command that wrote the numbers of the statement around this place, as its remark says; None: a person."""

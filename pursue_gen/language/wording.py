@@ -232,6 +232,12 @@ def battery_words(battery: Battery) -> str:
     return text if battery.dock is None else f"{text}, recharges {battery.recharges} per unit at {battery.dock.shown}"
 
 
+def size_words(agent: Agent) -> str:
+    """What is said of a robot's size; "": nothing."""
+    size = {"radius": agent.radius, "goal tolerance": agent.tolerance, "inflation radius": agent.inflation}
+    return ", ".join(f"{what} {metres} m" for what, metres in size.items() if metres is not None)
+
+
 def speed_words(agent: Agent, scenario: Scenario) -> str:
     """How fast an agent is, in words, and what its battery holds."""
     batteries = [battery_words(battery) for battery in scenario.batteries if battery.agent.name == agent.name]

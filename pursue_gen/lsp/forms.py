@@ -78,6 +78,9 @@ MEANINGS: Dict[str, str] = {
     "PER": "For each unit of time.",
     "UNIT": "A unit of time.",
     "RECHARGES": "What is added in a unit of time in which the robot does something at the dock.",
+    "RADIUS": "Metres from the middle of the robot to its farthest part: what it needs to turn.",
+    "TOLERANCE": "Metres by which the robot stops beside its goal, at most (xy_goal_tolerance).",
+    "INFLATION": "Metres around obstacles that the robot's planners avoid (inflation_radius).",
     "OPTIONAL": "An objective that is given up where it cannot be promised with the rest; 1 is kept longest.",
     "AFTER": "It counts when it happens later than so many units of time after the start.",
 }

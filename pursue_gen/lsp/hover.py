@@ -33,7 +33,7 @@ from pursue_gen.language.scenario import (
     State,
     Window,
 )
-from pursue_gen.language.wording import answer_text, answered_text, assumption_words, battery_words
+from pursue_gen.language.wording import answer_text, answered_text, assumption_words, battery_words, size_words
 from pursue_gen.lsp.document import Document
 from pursue_gen.lsp.forms import MEANINGS
 from pursue_gen.lsp.tokens import Statement
@@ -233,6 +233,7 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
         known = {(way.a, way.b) for way in scenario.connections} | own  # the other direction takes as long
         movements = scenario.movements(agent).items()
         lines += _listed([f"- {a} to {b}: {lasts(window)}" for (a, b), window in movements if (a, b) in known])
+    lines += [f"- {words} on a map" for words in [size_words(agent)] if words]
     lines += _if_any("can do", [ref.name for ref in agent.can_do])
     lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])
     lines += [f"- {in_markdown(scenario, battery_words(b))}" for b in scenario.batteries if b.agent.name == agent.name]

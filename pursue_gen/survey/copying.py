@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import astuple
 from fractions import Fraction
 from typing import FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple
 
@@ -9,6 +10,10 @@ from pursue_gen.language.edits import Edit, edited
 from pursue_gen.language.numbers import Number, exact, is_fine
 from pursue_gen.language.rewriting import Rewriting
 from pursue_gen.language.scenario import Connection, Pose, Scenario
+from pursue_gen.workspace.robot_size import Sizes, sizes_of
+
+_SIZE = ("radius", "tolerance", "inflation")
+"""The words of a robot's size, in the order of the fields of `RobotSize`."""
 
 SURVEY = "survey"
 """The word that begins the remarks of this command."""
@@ -34,6 +39,22 @@ def with_ways(scenario: Scenario, ways: Sequence[Tuple[str, str, Number, str]]) 
     """The text with further ways: from, to, distance, remark."""
     lines = [f"connect {a} and {b} distance {distance} // {remark}" for a, b, distance, remark in ways]
     return edited(scenario.text, Rewriting(scenario).statements(("connection", "poi"), lines))
+
+
+def with_sizes(scenario: Scenario, sizes: Sizes) -> str:
+    """The text with the sizes of its robots, as far as it does not have them."""
+    rewriting, known = Rewriting(scenario), sizes_of(scenario)
+    edits: List[Edit] = []
+    for agent in scenario.agents:
+        size, said = (astuple(each.of([agent.name])) for each in (sizes, known))
+        numbers = {word: exact(Fraction(f"{new:.3f}")) for word, new, old in zip(_SIZE, size, said) if new != old}
+        if agent.is_robot and numbers:
+            edits += rewriting.size(agent, numbers, f"{SURVEY}: its {_listed(list(numbers))} by --robot")
+    return edited(scenario.text, edits)
+
+
+def _listed(words: Sequence[str]) -> str:
+    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
 def written(

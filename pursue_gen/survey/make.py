@@ -27,7 +27,7 @@ from pursue_gen.survey.spots import Spots, Standing, proposed_spots
 from pursue_gen.survey.times import Drive, window
 from pursue_gen.workspace.map_check import check_spots
 from pursue_gen.workspace.map_spots import Ways, with_poses, with_spots
-from pursue_gen.workspace.robot_size import USUAL, RobotSize
+from pursue_gen.workspace.robot_size import Sizes
 
 MOST_PLACES = 200
 """More places than that take too long and too much memory."""
@@ -40,12 +40,12 @@ _LONGER = 1.3
 
 @dataclass(frozen=True)
 class Options:
-    """What a survey assumes. `robot`: the size of the robots; `clearance`: metres between two of them, None: as their
+    """What a survey assumes. `robots`: their sizes; `clearance`: metres between two of them, None: as their
     tolerances need it; `unit`: metres per unit of distance. `ways`: write the ways that are missing, too. `keep`: ways
     whose distances stay (pairs of places).
     """
 
-    robot: RobotSize = USUAL
+    robots: Sizes = field(default_factory=Sizes)
     clearance: Optional[float] = None
     unit: float = 1.0
     ways: bool = False
@@ -55,7 +55,8 @@ class Options:
     @property
     def room(self) -> float:
         """Metres that the centres of two robots keep between them."""
-        return self.robot.apart if self.clearance is None else 2 * self.robot.radius + self.clearance
+        size = self.robots.largest
+        return size.apart if self.clearance is None else 2 * size.radius + self.clearance
 
 
 @dataclass(frozen=True)
@@ -98,13 +99,14 @@ def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options
     A scenario without ways gets those that are missing in any case. Raises PursueError where nothing can be measured.
     """
     _check_robots(scenario, options)
-    grid = grid_of(ground, options.robot.radius)
+    size = options.robots.largest
+    grid = grid_of(ground, size.radius)
     plan = _plan(scenario, grid, options)
     missing = plan.own_ways([(way.a, way.b) for way in scenario.connections])
     new = missing if options.ways or not scenario.connections else []
     with_new = _with_ways(scenario, new, plan, map_name, options)
-    standing = Standing(grid_of(ground, options.robot.needed), grid_of(ground, options.robot.wanted))
-    lines, body = _lines(with_new, plan), 2 * options.robot.radius
+    standing = Standing(grid_of(ground, size.needed), grid_of(ground, size.wanted))
+    lines, body = _lines(with_new, plan), 2 * size.radius
     spots = proposed_spots(with_new, grid, plan.places, options.room, lines, body, standing)
     poses = {place: {robot: pose for robot, pose in found if pose is not None} for place, found in spots.items()}
     placed = with_poses(replace(scenario, connections=with_new.connections), poses)
@@ -121,21 +123,21 @@ def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options
 
 
 def found_on_map(
-    scenario: Scenario, ground: Ground, distance: float, robot: RobotSize
+    scenario: Scenario, ground: Ground, distance: float, sizes: Sizes
 ) -> Tuple[Tuple[Diagnostic, ...], Ways]:
     """What is wrong on a map with a scenario's places, spots and ways, in order, and the paths of the ways; as far as
     it can be measured.
 
     `distance`: metres between the robots at one place that have no pose of their own. The pixels of `ground` are known.
     """
-    options = Options(robot)
-    grid = grid_of(ground, robot.radius)
+    options = Options(sizes)
+    grid = grid_of(ground, sizes.largest.radius)
     try:
         plan = _plan(scenario, grid, options)
     except Invalid:  # too few places, or too many
-        return check_spots(scenario, ground, distance, robot), {}
+        return check_spots(scenario, ground, distance, sizes), {}
     here = _OnMap(grid, plan, _lines(scenario, plan))
-    placed = with_spots(scenario, ground, distance, robot, here.lines)
+    placed = with_spots(scenario, ground, distance, sizes.largest, here.lines)
     return in_order(_found_on_map(placed, scenario, ground, here, options, distance)), here.lines
 
 
@@ -152,12 +154,12 @@ def _found_on_map(
     placed: Scenario, scenario: Scenario, ground: Ground, here: _OnMap, options: Options, distance: float
 ) -> Iterator[Diagnostic]:
     """What is wrong with places, spots and ways; `placed` has a pose for each robot that shares a place."""
-    robot, plan = options.robot, here.plan
-    yield from found_wrong.apart(scenario, plan, Clearance(ground), robot.needed)
+    size, plan = options.robots.largest, here.plan
+    yield from found_wrong.apart(scenario, plan, Clearance(ground), size.needed)
     yield from found_wrong.crossing(scenario, plan)
-    yield from found_wrong.shut_in_places(placed, here.grid, here.lines, robot.radius, options.room)
+    yield from found_wrong.shut_in_places(placed, here.grid, here.lines, size.radius, options.room)
     spots = scenario if distance else placed  # those that are not written are called so
-    yield from check_spots(spots, ground, distance, robot, plan.is_joined, here.lines)
+    yield from check_spots(spots, ground, distance, options.robots, plan.is_joined, here.lines)
 
 
 def _check_robots(scenario: Scenario, options: Options) -> None:
@@ -189,7 +191,7 @@ def _plan(scenario: Scenario, grid: Grid, options: Options) -> Plan:
         message = f"{len(posed)} places; at most {MOST_PLACES} can be surveyed at once"
         raise Invalid([error("MAP001", message, span, "survey the floors of the building one by one")])
     if not grid.free.any():
-        message = f"the map has no free ground for a robot with a radius of {options.robot.radius:g} m"
+        message = f"the map has no free ground for a robot with a radius of {options.robots.largest.radius:g} m"
         hint = "look at negate, free_thresh, resolution and the picture's opacity, or try a smaller --radius"
         raise Invalid([error("MAP001", message, span, hint)])
     points = {poi.name: (poi.pose.x, poi.pose.y) for poi in posed if poi.pose is not None}

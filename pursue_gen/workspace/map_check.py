@@ -14,14 +14,14 @@ from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.workspace.map_spots import NO_WAYS, Ways, fit_on, is_seen, room_on
-from pursue_gen.workspace.robot_size import USUAL, RobotSize
+from pursue_gen.workspace.robot_size import ALIKE, RobotSize, Sizes
 from pursue_gen.workspace.spots import Fit, placing
 
 _NEAR, _FAR = 1.5, 5.0
 """Metres around a point in which room is looked for that planners like, and any room at all."""
 
 _CORRECT = "poses are metres, from the origin that the map's yaml file gives for its lower left corner"
-_SMALLER = "if the robots are smaller, say so: --robot METRES or --robot PARAMETERS.yaml"
+_SMALLER = "if the robots are smaller, say so: agent … radius METRES, or --robot PARAMETERS.yaml"
 _TOUCH = 1e-9
 """Metres by which a distance counts as equal; numbers are as exact."""
 
@@ -52,19 +52,21 @@ def check_spots(
     scenario: Scenario,
     ground: Ground,
     distance: float,
-    robot: RobotSize = USUAL,
+    sizes: Sizes = ALIKE,
     may_be: Callable[[Point], bool] = lambda point: True,
     ways: Ways = NO_WAYS,
 ) -> Tuple[Diagnostic, ...]:
     """A warning for each place or spot that is not on free ground, has too little room for a robot, or is too near
     another one, with the nearest point at which there is room; places without a pose are left out.
 
+    Each is measured against the largest of the robots that are sent there.
+
     `distance`: metres between the robots at one place; those without a pose of their own stand where there is room.
     `may_be`: whether a point (metres) may be proposed. `ways`: their paths, where they are known; spots on the way of
     others are warned about then.
     """
-    points = tuple(_points(scenario, distance, fit_on(ground, robot, ways)))
-    look = _Look(ground, Clearance(ground), robot, points, may_be, ways)
+    points = tuple(_points(scenario, distance, fit_on(ground, sizes.largest, ways)))
+    look = _Look(ground, Clearance(ground), sizes, points, may_be, ways)
     present = robots_at(scenario)
     found = []
     for number, point in enumerate(points):
@@ -101,14 +103,18 @@ class _Point:
 
 @dataclass(frozen=True)
 class _Look:
-    """The points of a scenario on the ground, for robots of a size."""
+    """The points of a scenario on the ground."""
 
     ground: Ground
     clearance: Clearance
-    robot: RobotSize
+    sizes: Sizes
     points: Tuple[_Point, ...]
     may_be: Callable[[Point], bool]
     ways: Ways
+
+    def size(self, point: _Point) -> RobotSize:
+        """That of the largest robot that is sent to a point."""
+        return self.sizes.of(point.robots)
 
     def on_ground(self, point: _Point) -> Optional[Diagnostic]:
         """A point that is not on free ground."""
@@ -120,7 +126,7 @@ class _Look:
 
     def room(self, point: _Point) -> Optional[Diagnostic]:
         """A point that is too near an obstacle."""
-        robot = self.robot
+        robot = self.size(point)
         metres = self.clearance.metres(point.pose.x, point.pose.y, robot.wanted + 1)
         if metres > robot.wanted + _TOUCH:
             return None
@@ -141,13 +147,18 @@ class _Look:
 
     def neighbour(self, point: _Point, others: Sequence[_Point]) -> List[Diagnostic]:
         """The nearest of other points, where two robots cannot stand there and here."""
-        robot = self.robot
-        near = [(one.apart(point.pose.x, point.pose.y), one.what) for one in others if point.meets(one)]
-        metres, what = min(near, default=(math.inf, ""))
-        if metres >= robot.apart - _TOUCH:
+        x, y, size = point.pose.x, point.pose.y, self.size(point)
+        close = [one for one in others if point.meets(one) and one.apart(x, y) < self._room(point, one) - _TOUCH]
+        other = min(close, key=lambda one: one.apart(x, y), default=None)
+        if other is None:
             return []
-        message = f"{point} is {metres:.2f} m from {what}: two robots with a radius of {robot.radius:g} m and a goal "
-        message += f"tolerance of {robot.tolerance:g} m need {robot.apart:g} m"
+        room, radii = self._room(point, other), f"a radius of {size.radius:g} m"
+        tolerances = f"a goal tolerance of {size.tolerance:g} m"
+        if self.size(other) != size:
+            radii = f"{radii} and of {self.size(other).radius:g} m"
+            tolerances = f"{tolerances} and of {self.size(other).tolerance:g} m"
+        message = f"{point} is {other.apart(x, y):.2f} m from {other.what}: two robots with {radii} and {tolerances} "
+        message += f"need {room:g} m"
         hint = f"{self.remedy(point)}; or keep robots from being at both at once (objective: avoid …); {_SMALLER}"
         return [warning("MAP005", message, point.span, hint)]
 
@@ -170,15 +181,21 @@ class _Look:
 
     def _room_on(self, ends: Tuple[str, str], line: Sequence[Point], point: _Point) -> float:
         """How far from a way a robot at a point has to stand; a place itself is where its ways end."""
+        size = self.sizes.largest
         if point.place not in ends:
-            return self.robot.apart
-        return room_on(line, line[0] if ends[0] == point.place else line[-1], self.robot) if point.is_spot else 0.0
+            return size.apart
+        return room_on(line, line[0] if ends[0] == point.place else line[-1], size) if point.is_spot else 0.0
+
+    def _room(self, point: _Point, other: _Point) -> float:
+        """How far apart robots at two points have to be."""
+        return self.size(point).needed + self.size(other).needed
 
     def remedy(self, point: _Point) -> str:
         """What to do about a point where there is too little room."""
-        better = self._better(point, self.robot.wanted, _NEAR) or self._better(point, self.robot.needed, _FAR)
+        size = self.size(point)
+        better = self._better(point, size.wanted, _NEAR) or self._better(point, size.needed, _FAR)
         if better is None:
-            return f"move it: near it there is no room for a robot that needs {self.robot.needed:g} m"
+            return f"move it: near it there is no room for a robot that needs {size.needed:g} m"
         return self._move(point, better)
 
     def _better(self, point: _Point, radius: float, reach: float) -> Optional[Point]:
@@ -188,7 +205,8 @@ class _Look:
         rooms = [(line, self._room_on(ends, line, point)) for ends, line in self.ways.items()]
 
         def is_apart(at: Point) -> bool:
-            return self.may_be(at) and all(one is point or one.apart(*at) >= self.robot.apart for one in self.points)
+            others = (one for one in self.points if one is not point)
+            return self.may_be(at) and all(one.apart(*at) >= self._room(point, one) for one in others)
 
         def is_here(at: Point) -> bool:
             aside = all(to_line(line, at)[0] >= room for line, room in rooms)

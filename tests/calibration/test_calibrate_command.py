@@ -55,8 +55,10 @@ def test_the_proposal_is_written_into_a_copy_with_where_it_comes_from(folder: Pa
     assert (folder / "floor.pur").read_text(encoding="utf-8") == FLOOR
     assert load(str(copy)).travels[0].window[1] == Fraction(34, 5)
     again = tmp_path / "again.pur"
+    sized = text.replace(" location desk", " radius 0.2 inflation 0.55 location desk")
+    copy.write_text(sized, encoding="utf-8")
     called(copy, folder / "drives.bag", "-o", again, "--no-solve")
-    assert again.read_text(encoding="utf-8") == text
+    assert again.read_text(encoding="utf-8") == sized != text
 
 
 def test_what_changes_is_said(folder: Path) -> None:

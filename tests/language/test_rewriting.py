@@ -88,6 +88,18 @@ def test_windows_of_movements_and_actions_are_replaced_with_one_number_or_two() 
     assert Rewriting(again).written_by(again.events[1].span) == "calibrate"
 
 
+def test_sizes_are_replaced_or_come_before_the_location() -> None:
+    text = 'poi "a"\nagent "radius" /* old */ controllable radius 0.3 inflation 1 // mine\n  location a\n'
+    text += 'agent "b" controllable location a\n'
+    scenario = read(text)
+    first, second = scenario.agents
+    rewriting, size = Rewriting(scenario), {"radius": exact(Fraction("0.21")), "tolerance": exact(Fraction("0.1"))}
+    done = edited(text, [*rewriting.size(first, size, ""), *rewriting.size(second, size, "survey: its radius")])
+    assert '/* old */ controllable radius 0.21 tolerance 0.1 inflation 1 // mine\n  location a\n' in done
+    assert done.endswith('"b" controllable radius 0.21 tolerance 0.1 location a // survey: its radius\n')
+    assert [one.radius for one in read(done).agents] == [Fraction("0.21")] * 2
+
+
 def test_spots_come_behind_the_pose_and_the_rest_of_the_comment_stays() -> None:
     scenario = read()
     rewriting = Rewriting(scenario)

@@ -26,6 +26,7 @@ def labels(text: str, kind: str = "") -> List[str]:
 
 
 WHOLE = SMALL + "{}"
+SIZE = ["radius", "tolerance", "inflation"]
 
 
 @pytest.mark.parametrize(
@@ -46,6 +47,7 @@ WHOLE = SMALL + "{}"
         ("stateDependency: |", ["work", "hand", "rest"]),
         ("stateDependency: work only_if |", ["tired"]),
         ('agent "new" location |', ["a", "b"]),
+        ('agent "new" controllable radius 0.2 location |', ["a", "b"]),
         ('agent "new" location a can_do |', ["work", "hand", "rest"]),
         ('agent "new" location a can_do work, |', ["hand", "rest"]),
         ('agent "new" location a can_do work, re|', ["hand", "rest"]),
@@ -110,8 +112,8 @@ def test_a_robots_pose_begins_with_that_of_the_place() -> None:
         ('event "new" |', ["location", "duration", "at_most", "collaborative", "label", "only_if"]),
         ('event "new" collaborative loc|', ["location", "duration", "at_most", "together", "only_if"]),
         ('event "new" collaborative together |', ["location", "duration", "at_most", "only_if"]),
-        ('agent "new" |', ["location", "label", "human", "controllable", "mobile"]),
-        ('agent "new" label "a" |', ["location", "human", "controllable", "mobile"]),
+        ('agent "new" |', ["location", "label", "human", "controllable", "mobile", *SIZE]),
+        ('agent "new" label "a" |', ["location", "human", "controllable", "mobile", *SIZE]),
         ('agent "new" label |', []),
         ('agent "new" location a |', ["can_do", "reacts_to"]),
         ('state "new": initially |', ["true", "false"]),

@@ -151,6 +151,23 @@ def test_a_door_that_is_too_narrow_is_reported_with_the_way(folder: Path) -> Non
     assert codes(surveyed("--radius", "0.2")) == []
 
 
+def test_the_copy_has_the_size_that_was_told_and_other_commands_find_it_there() -> None:
+    Path("costmap.yaml").write_text("footprint: [[0.3, 0.4], [-0.3, -0.4]]\nfootprint_padding: 0\n")
+    text = TEXT.replace("location hall", "radius 0.6 location hall")
+    done = surveyed("--robot", "bot1=costmap.yaml", "--robot", "0.2", text=text)
+    remark = "survey: its radius by --robot"
+    assert f'"bot1" controllable mobile 2.5 radius 0.5 location desk can_do fetch, drop // {remark}\n' in copied()
+    assert f"radius 0.2 location hall can_do fetch, drop /* {remark} */ // the old one\n" in copied()
+    Path("near.pur").write_text(copied().replace("//[1.0, 1.0", "//[0.5, 1.0"))
+    checked = pursue("check", "near.pur", "--map", "map.yaml")
+    assert "the pose of desk (0.5, 1) is nearer than 0.5 m, the robots' radius, to an obstacle" in checked.out
+    assert "nearer than 0.5 m" not in pursue("check", "near.pur", "--map", "map.yaml", "--robot", "0.2").out
+    again = surveyed(text=copied())
+    assert codes(again) == codes(done) and copied().count("--robot") == 2
+    surveyed("--radius", "0.2")
+    assert "radius" not in copied(), "that is for one survey only"
+
+
 def test_places_too_near_for_two_robots_and_ways_through_third_places_are_reported() -> None:
     near = TEXT.replace('poi "shelf"', 'poi "sofa" //[6.0, 3.5, 0, 0, 0, 0, 1]\npoi "shelf"')
     near = near.replace("connect hall and shelf distance 5.8", "connect desk and shelf distance 12")

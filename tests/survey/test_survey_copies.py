@@ -14,7 +14,7 @@ from pursue_gen.language.formatter import format_text
 from pursue_gen.survey.make import Options, Survey, surveyed
 from pursue_gen.survey.times import Drive
 from pursue_gen.workspace.map_check import read_placed
-from pursue_gen.workspace.robot_size import RobotSize
+from pursue_gen.workspace.robot_size import RobotSize, Sizes
 from tests.conftest import ROOT
 from tests.survey.maps import drawn, ground_of
 
@@ -47,7 +47,8 @@ def test_a_copy_is_sound_and_is_its_own_copy(file: Path, ways: bool) -> None:
     def survey(text: str) -> Survey:
         scenario = read_placed(text, str(file))
         speeds = {agent.name: 0.5 for agent in scenario.agents if agent.is_robot and agent.mobile is not None}
-        return surveyed(scenario, ground(text), "map.yaml", Options(RobotSize(0.2), ways=ways, drive=Drive(speeds)))
+        options = Options(Sizes(RobotSize(0.2)), ways=ways, drive=Drive(speeds))
+        return surveyed(scenario, ground(text), "map.yaml", options)
 
     copy = survey(text).text
     assert not [one for one in check(parse(copy, str(file))) if one.severity is Severity.ERROR]

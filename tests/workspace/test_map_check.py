@@ -13,7 +13,7 @@ import pytest
 from pursue_gen.drawing.ground import Ground, read_ground
 from pursue_gen.language import parse
 from pursue_gen.workspace.map_check import check_spots
-from pursue_gen.workspace.robot_size import RobotSize
+from pursue_gen.workspace.robot_size import RobotSize, Sizes, sizes_of
 from tests.authoring.commands import pursue
 
 WALL, UNKNOWN, FREE = 0, 205, 254
@@ -102,7 +102,7 @@ def found_in(floor: Ground, poses: str, robot: RobotSize, robots: int = 2) -> Li
     text = "".join(f'poi "{name}" //{pose}\n' for name, pose in zip(names, poses.splitlines()))
     text += "".join(f"connect {a} and {b} distance 3\n" for a, b in zip(names, names[1:])) + 'event "work"\n'
     text += "".join(f'agent "bot{k}" controllable mobile 1 location a can_do work\n' for k in range(1, robots + 1))
-    findings = check_spots(parse(text + "reach_objective: do work\n", "test.pur"), floor, 0.8, robot)
+    findings = check_spots(parse(text + "reach_objective: do work\n", "test.pur"), floor, 0.8, Sizes(robot))
     return [(finding.code, finding.message, finding.hint) for finding in findings]
 
 
@@ -140,6 +140,22 @@ def test_two_robots_do_not_stand_in_each_other(tmp_path: Path) -> None:
     assert found_in(floor, poses, RobotSize(0.17, 0.1), 1) == [], "one robot is at one of them at a time"
 
 
+def test_each_spot_is_measured_against_the_robots_that_are_sent_there(tmp_path: Path) -> None:
+    floor = floor_of(tmp_path, ROOM_YAML, ROOM)
+    text = 'poi "a" //[2, 2, 0, 0, 0, 0, 1] small [%s, 2, 0, 0, 0, 0, 1]\nevent "work"\n'
+    text += 'agent "large" controllable radius 0.5 location a can_do work\n'
+    text += 'agent "small" controllable radius 0.1 tolerance 0.05 location a\nreach_objective: do work\n'
+
+    def found(x: float) -> List[Tuple[str, str]]:
+        made = parse(text % x, "test.pur")
+        return [(one.code, one.message) for one in check_spots(made, floor, 0.8, sizes_of(made))]
+
+    assert found(0.35) == [], "the large robot has no room there, the small one has"
+    ((code, message),) = found(1.3)
+    assert code == "MAP005" and "radius of 0.1 m and of 0.5 m and a goal tolerance of 0.05 m and of 0.1 m" in message
+    assert message.endswith("need 0.75 m") and found(1.24) == []
+
+
 def test_a_spot_before_its_place_is_in_the_way_of_those_who_come(tmp_path: Path) -> None:
     floor = floor_of(tmp_path, ROOM_YAML, ROOM)
     text = 'poi "a" //[2, 2, 0, 0, 0, 0, 1] bot2 [2.9, %s, 0, 0, 0, 0, 1]\npoi "b" //[6, 2, 0, 0, 0, 0, 1]\n'
@@ -148,7 +164,7 @@ def test_a_spot_before_its_place_is_in_the_way_of_those_who_come(tmp_path: Path)
     ways = {("a", "b"): [(2.0, 2.0), (6.0, 2.0)]}
     for y, told in ((2.3, True), (2.5, False)):
         made = parse(text % y + "reach_objective: do work\n", "test.pur")
-        found = check_spots(made, floor, 0.8, RobotSize(0.2, 0.1), ways=ways)
+        found = check_spots(made, floor, 0.8, Sizes(RobotSize(0.2, 0.1)), ways=ways)
         assert [one.code for one in found if one.code == "MAP006"] == ["MAP006"] * told
         assert all("is 0.30 m from the way from a to b" in one.message and "need 0.4 m" in one.message for one in found)
 

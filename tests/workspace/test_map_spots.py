@@ -16,7 +16,7 @@ from pursue_gen.drawing.ground import Ground, cells_of
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.workspace.map_check import check_spots
 from pursue_gen.workspace.map_spots import with_spots
-from pursue_gen.workspace.robot_size import RobotSize
+from pursue_gen.workspace.robot_size import RobotSize, Sizes
 from pursue_gen.workspace.spots import placing
 from tests.authoring.commands import pursue
 from tests.workspace.test_spots import scenario, spots_of
@@ -114,7 +114,7 @@ def test_robots_are_apart_and_no_spot_is_worse_than_without_a_map(
     assert min(apart) >= 0.79
     counts = []
     for placed in (made, with_spots(made, ground([]), 0.8, size)):
-        messages = [one.message for one in check_spots(placed, floor, 0.8, size) if one.code == "WSP008"]
+        messages = [one.message for one in check_spots(placed, floor, 0.8, Sizes(size)) if one.code == "WSP008"]
         counts.append(sum("spot" in message for message in messages))
     assert counts[0] <= counts[1]
 

@@ -11,8 +11,8 @@ syntax keyword pursueConstant false is_false is_true true
 syntax keyword pursueKeyword after and at at_most avoid before between can_do collaborative controllable distance do does
 syntax keyword pursueKeyword duration false_if from human if initially leaves location mobile never never_with one_way
 syntax keyword pursueKeyword only_if or reacts_to takes then times to together true_if waits within
-syntax keyword pursueKeyword always any by capacity every in label order patrol doing no not on_way per recharges
-syntax keyword pursueKeyword robot each for unit uses
+syntax keyword pursueKeyword always any by capacity every in label order patrol doing no not on_way per radius recharges
+syntax keyword pursueKeyword robot each for unit uses tolerance inflation
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

@@ -71,7 +71,6 @@ async function begin() {
   press("cancel", cancel);
   press("measure", measure);
   byId("measuring").hidden = opened.floor === null;
-  byId("radius").value = opened.radius;
   press("format", () => change({ do: "format" }));
   press("overwrite", () => { byId("changed").close(); save(true); });
   press("keep", () => byId("changed").close());

@@ -6,8 +6,8 @@ let mine = 0; // the number of the job that measures
 
 export async function measure() {
   const text = state.text;
-  const speed = byId("speed").value.trim();
-  const settings = { radius: Number(byId("radius").value), speed: speed ? Number(speed) : null, ways: byId("add-ways").checked };
+  const [radius, speed] = ["radius", "speed"].map((id) => byId(id).value.trim() ? Number(byId(id).value) : null);
+  const settings = { radius, speed, ways: byId("add-ways").checked };
   const answer = await ask("survey", { text, ...settings });
   mine = answer.job;
   take(answer, text);
