@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, List, Optional
 
@@ -59,10 +60,11 @@ def ws(
     start = request.options.limits.now()
     read = scenario_from(scenario, request)
     request = request.since(start)
-    if floor is not None:
+    if floor is not None and under is not None:
         ground, sizes = read_ground(floor), sizes_of(read, told)
         findings, ways = on_map(read, ground, spot_distance, sizes)
         show(findings)
+        under = replace(under, paths=ways)
         read = with_spots(read, ground, spot_distance, sizes.largest, ways)
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")

@@ -40,9 +40,7 @@ def draw(
     looks = agent_looks([agent.name for agent in scenario.agents])
     body = [paper.floor(floor)] if floor else []
     for way in scenario.connections:
-        path = floor.paths.get((way.a, way.b), ()) if floor else ()
-        inner = [paper.point(*bend) for bend in path[1:-1]]
-        body += _connection([places[way.a], *inner, places[way.b]], way)
+        body += _connection(paper.way(way.a, way.b, poses, floor), way)
     body += [_poi(scenario.shown(name), places[name]) for name in sorted(places)]
     for agent_name, table in (spots or {}).items():
         beside = [pose for place, pose in table.items() if pose != poses[place]]
@@ -93,6 +91,13 @@ class Paper:
     def point(self, x: float, y: float) -> Point:
         """Where a point of the map is on the picture."""
         return self._left + self.scale * x, self._top - self.scale * y
+
+    def way(self, a: str, b: str, poses: Mapping[str, Pose], floor: Optional[Floor]) -> List[Point]:
+        """The way from one place to another on the picture, along its path where that is known."""
+        paths = floor.paths if floor else {}
+        bends = paths.get((a, b)) or list(paths.get((b, a), ()))[::-1]
+        inner = [self.point(*bend) for bend in bends[1:-1]]
+        return [self.point(poses[a].x, poses[a].y), *inner, self.point(poses[b].x, poses[b].y)]
 
     def floor(self, floor: Floor) -> str:
         """The floor plan, pale, so that what is drawn on it can be read."""

@@ -13,12 +13,22 @@ for (const source of document.querySelectorAll("script[type='application/json'][
     for (const segment of segments) if (segment[0] <= now) found = segment;
     return found;
   };
+  const along = (line, share) => { // the point after so much of a line with bends
+    const sizes = line.slice(1).map(([x, y], k) => Math.hypot(x - line[k][0], y - line[k][1]));
+    let left = share * sizes.reduce((sum, size) => sum + size, 0);
+    for (const [k, size] of sizes.entries()) {
+      if (size > 0 && size >= left) return [0, 1].map((axis) => line[k][axis] + (left / size) * (line[k + 1][axis] - line[k][axis]));
+      left -= size;
+    }
+    return line[line.length - 1];
+  };
   const show = () => {
     data.agents.forEach((agent, number) => {
-      const [start, end, x, y, toX, toY, description, busy] = segmentAt(agent.segments);
+      const [start, end, line, description, busy] = segmentAt(agent.segments);
       const share = end > start ? Math.min(1, Math.max(0, (now - start) / (end - start))) : 1;
-      const inner = x === toX && y === toY ? 0 : 0.8 * Math.min(1, 5 * Math.min(share, 1 - share)); // on the way: nearer to its line
-      const [atX, atY] = [x + share * (toX - x) - inner * agent.offset[0], y + share * (toY - y) - inner * agent.offset[1]];
+      const inner = line.length === 1 ? 0 : 0.8 * Math.min(1, 5 * Math.min(share, 1 - share)); // on the way: nearer to its line
+      const [x, y] = along(line, share);
+      const [atX, atY] = [x - inner * agent.offset[0], y - inner * agent.offset[1]];
       marks[number].setAttribute("transform", `translate(${atX.toFixed(1)} ${atY.toFixed(1)})`);
       marks[number].querySelector(".busy").setAttribute("visibility", busy ? "visible" : "hidden");
       lines[number].querySelector("span").textContent = description;

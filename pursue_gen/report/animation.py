@@ -1,7 +1,8 @@
 """An animation of a mission on the map, with controls; without scripts a picture of its start.
 
-The picture that is drawn here shows the start. The script moves the marks along the connections; the times of departure
-and arrival are those of the recording, and between them an agent moves at an even speed.
+The picture that is drawn here shows the start. The script moves the marks along the connections, which follow the paths
+of a floor plan where these are known; the times of departure and arrival are those of the recording, and between them
+an agent moves at an even speed.
 """
 
 from __future__ import annotations
@@ -10,10 +11,11 @@ import math
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Tuple
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing import map_svg
+from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.layout import poses
 from pursue_gen.drawing.look import AgentLook, agent_looks, mark, safe, tag, text
 from pursue_gen.explanation.network_words import Words, words_of
@@ -33,12 +35,11 @@ Point = Tuple[float, float]
 
 @dataclass(frozen=True)
 class Segment:
-    """A movement from point `a` to `b` (px), from `start` to `end` (time units); a stop where the points are equal."""
+    """A movement along a line (px), from `start` to `end` (time units); a stop where the line is one point."""
 
     start: float
     end: float
-    a: Point
-    b: Point
+    line: Tuple[Point, ...]
     description: str
 
 
@@ -60,9 +61,11 @@ def write(recording: Recording, file: Path) -> None:
     write_texts({file: page(title, [section(recording.scenario, recording), timeline.section(recording)])})
 
 
-def section(scenario: Scenario, recording: Recording, ident: str = _ID) -> Section:
-    """The animation as a part of a page."""
-    content = {"end": recording.end, "agents": _tracks(scenario, recording), "steps": _steps(recording)}
+def section(
+    scenario: Scenario, recording: Recording, floor: Optional[Floor] = None, ident: str = _ID
+) -> Section:
+    """The animation as a part of a page; `floor` lies under the map, and everybody moves along its paths."""
+    content = {"end": recording.end, "agents": _tracks(scenario, recording, floor), "steps": _steps(recording)}
     controls = (
         f'<div class="animation-controls" role="group" aria-label="Controls" hidden>'
         f'<button type="button" id="{ident}-back" aria-label="One step back">◀ step</button>'
@@ -77,19 +80,19 @@ def section(scenario: Scenario, recording: Recording, ident: str = _ID) -> Secti
     ending = safe(ending_text(recording))
     caption = f'<p id="{ident}-caption" class="animation-caption">0: start; {ending} at the end</p>'
     where = f'<ul id="{ident}-where" class="animation-where">{"".join(_agent_lines(scenario, recording))}</ul>'
-    shown = draw(scenario, recording, ident)
+    shown = draw(scenario, recording, floor, ident)
     picture = f'<div class="wide picture" tabindex="0" role="region" aria-label="Map">{shown}</div>'
     note = '<noscript><p class="quiet">This is the start; the animation needs JavaScript.</p></noscript>'
     body = f"{controls}{caption}<figure>{picture}</figure>{where}{note}{data(f'{ident}-movements', content)}"
     return Section(ident, "The mission on the map", body, asset("animation.css"), asset("animation.js"))
 
 
-def draw(scenario: Scenario, recording: Recording, ident: str = _ID) -> str:
+def draw(scenario: Scenario, recording: Recording, floor: Optional[Floor] = None, ident: str = _ID) -> str:
     """The map with all agents where they were at the start, as an SVG document."""
     where, computed = poses(scenario)
-    ground = map_svg.draw(replace(scenario, agents=()), where, computed, None, f"{ident}-map")
-    looks, tracks = agent_looks(recording.agents), _segments(scenario, recording)
-    marks = [_mark(agent, looks[agent.name], tracks[agent.name][0].a, k, len(scenario.agents), ident)
+    ground = map_svg.draw(replace(scenario, agents=()), where, computed, floor, f"{ident}-map")
+    looks, tracks = agent_looks(recording.agents), _segments(scenario, recording, floor)
+    marks = [_mark(agent, looks[agent.name], tracks[agent.name][0].line[0], k, len(scenario.agents), ident)
              for k, agent in enumerate(scenario.agents)]
     cut = ground.rindex("</svg>")
     return f"{ground[:cut]}{''.join(marks)}{ground[cut:]}"
@@ -119,15 +122,15 @@ def _offset(number: int, count: int) -> Point:
 # The data of the script -----------------------------------------------------------------------------------------------
 
 
-def _tracks(scenario: Scenario, recording: Recording) -> List[Dict[str, Any]]:
-    """For each agent its name, its offset, and its segments: [start, end, x, y, x, y, description, acting?]."""
-    segments, count = _segments(scenario, recording), len(scenario.agents)
+def _tracks(scenario: Scenario, recording: Recording, floor: Optional[Floor]) -> List[Dict[str, Any]]:
+    """For each agent its name, its offset, and its segments: [start, end, [[x, y], …], description, acting?]."""
+    segments, count = _segments(scenario, recording, floor), len(scenario.agents)
     return [
         {
             "name": agent.shown,
             "offset": [round(v, 1) for v in _offset(number, count)],
             "segments": [
-                [one.start, one.end, *(round(v, 1) for v in (*one.a, *one.b)), one.description,
+                [one.start, one.end, [[round(x, 1), round(y, 1)] for x, y in one.line], one.description,
                  one.description.startswith("doing ")]
                 for one in segments[agent.name]
             ],
@@ -155,42 +158,58 @@ def _step_text(step: Step, words: Words, recording: Recording) -> str:
 
 def _agent_lines(scenario: Scenario, recording: Recording) -> List[str]:
     """A line for each agent: where it is at the start."""
-    segments = _segments(scenario, recording)
+    segments = _segments(scenario, recording, None)
     return [f"<li><b>{safe(agent.shown)}</b> <span>{safe(segments[agent.name][0].description)}</span></li>"
             for agent in scenario.agents]
 
 
-def _segments(scenario: Scenario, recording: Recording) -> Dict[str, List[Segment]]:
+def _segments(scenario: Scenario, recording: Recording, floor: Optional[Floor]) -> Dict[str, List[Segment]]:
     """Agent → its movements and stops on the picture, in order of time."""
     words = words_of(scenario, recording.network)
     where, computed = poses(scenario)
     places_alone = replace(scenario, agents=())
-    ground = map_svg.draw(places_alone, where, computed)
+    ground = map_svg.draw(places_alone, where, computed, floor)
     found = re.search(r'viewBox="0 0 ([\d.]+)', ground)
     assert found is not None, "a map has a size"
-    paper = map_svg.Paper(where, None, float(found.group(1)), map_svg.margin_of(places_alone))
-    places = {name: paper.point(pose.x, pose.y) for name, pose in where.items()}
-    return {agent.name: _segments_of(agent, recording, words, places) for agent in scenario.agents}
+    paper = map_svg.Paper(where, floor, float(found.group(1)), map_svg.margin_of(places_alone))
+
+    def line(a: str, b: str) -> List[Point]:
+        return paper.way(a, b, where, floor)
+
+    return {agent.name: _segments_of(agent, recording, words, line) for agent in scenario.agents}
 
 
-def _segments_of(agent: Agent, recording: Recording, words: Words, places: Mapping[str, Point]) -> List[Segment]:
+def _segments_of(
+    agent: Agent, recording: Recording, words: Words, line: Callable[[str, str], List[Point]]
+) -> List[Segment]:
+    """`line`: the way from one place to another on the picture."""
     segments = []
     for stay in stays(recording, agent.name):
         part = words.parts.get(stay.what, ("at", agent.location.name))
         description = words.place(agent.name, stay.what)
-        a = places[part[1]]
-        b = _end_point(recording, stay, agent, a, places[part[2]], part) if part[0] == "way" else a
-        segments.append(Segment(stay.start, stay.end, a, b, description))
+        points = line(part[1], part[2] if part[0] == "way" else part[1])
+        done = _part_done(recording, stay, agent, part) if part[0] == "way" else 0.0
+        segments.append(Segment(stay.start, stay.end, tuple(_first_part(points, done)), description))
     return segments
 
 
-def _end_point(
-    recording: Recording, stay: Stay, agent: Agent, a: Point, b: Point, part: Tuple[str, ...]
-) -> Point:
-    """Where a movement ends: at the other POI, or on the way where the recording ends or the movement is given up."""
+def _part_done(recording: Recording, stay: Stay, agent: Agent, part: Tuple[str, ...]) -> float:
+    """How much of its way an agent comes: all, or less where the recording ends or the movement is given up."""
     after = next((step.locations.get(agent.name) for step in recording.steps if step.at >= stay.end), None)
     if stay.over and after == part[2]:
-        return b
+        return 1.0
     _, longest = recording.scenario.movements(agent).get((part[1], part[2]), (1, 2))
-    share = min(0.95, (stay.end - stay.start) / longest)
-    return a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])
+    return float(min(0.95, (stay.end - stay.start) / longest))
+
+
+def _first_part(line: Sequence[Point], part: float) -> List[Point]:
+    """So much of a line with bends, from 0 to 1."""
+    left = part * sum(math.dist(a, b) for a, b in zip(line, line[1:]))
+    found = [line[0]]
+    for a, b in zip(line, line[1:]):
+        if left <= 0:
+            break
+        size = math.dist(a, b)
+        found.append(map_svg.along((a, b), min(1.0, left / size)) if size else b)
+        left -= size
+    return found

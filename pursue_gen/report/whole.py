@@ -51,7 +51,7 @@ def report_page(report: Report) -> str:
     scenario, won = report.scenario, report.won
     sections = [verdict.section(scenario, report.rules, won, report.margin, report.lost), _map(report)]
     if report.recording is not None:
-        sections += [timeline.section(report.recording), animation.section(scenario, report.recording)]
+        sections += [timeline.section(report.recording), animation.section(scenario, report.recording, report.floor)]
     if won is not None:
         sections.append(strategy.section(_strategy_data(report, won)))
         sections.append(tables.section(scenario, won, report.tables, report.missions))

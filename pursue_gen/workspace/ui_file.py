@@ -73,14 +73,17 @@ def render_strategies(
 
 
 def floor_files(floor: Floor, generator: str) -> Dict[str, bytes]:
-    """The floor plan in the package of the UI: its picture, and where that is on the map."""
-    data = {
+    """The floor plan in the package of the UI: its picture, where that is on the map, and the paths of ways on it."""
+    data: Dict[str, Any] = {
         "format": 1,
         "width": floor.width,
         "height": floor.height,
         "resolution": floor.resolution,
         "origin": inline([floor.x, floor.y, floor.yaw]),
     }
+    if floor.paths:
+        lines = {ends: [[round(x, 2), round(y, 2)] for x, y in line] for ends, line in floor.paths.items()}
+        data["paths"] = inline([[*ends, line] for ends, line in lines.items()])
     head = "The floor plan under the map of the page: width and height in pixels, metres per pixel, lower left corner."
     text = yaml_text(data, [f"{head} Written by pursue-gen {generator}."]).encode()
     return {"map/floor.yaml": text, "map/floor.png": floor.picture}

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import sys
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 from pathlib import Path
 from typing import Iterator, List, Tuple
 
 import pytest
 from missions import made_up, mission
 
+from pursue_gen.drawing.floor import Floor
+from pursue_gen.language.scenario import Pose
 from pursue_gen.report import animation
 from pursue_gen.report.html import page
 from pursue_runtime.state import RUNNING
@@ -100,6 +103,25 @@ def test_the_slider_moves_the_agents_along_their_ways(window: "browsers.Browser"
     assert "bot1 begins bot1_inb" in window.text("#animation-caption")
     assert "doing bot1_inb at b" in window.text("#animation-where")
     assert window.complaints == []
+
+
+def test_everybody_moves_along_the_paths_of_a_floor_plan() -> None:
+    made = made_up(*MOVES)
+    around = {"c": (0.0, 0.0), "b": (4.0, 0.0), "a": (0.0, 9.0)}
+    poses = {name: Pose(x, y, 0.0, 0.0, 0.0, 0.0, 1.0) for name, (x, y) in around.items()}
+    pois = tuple(replace(poi, pose=poses.get(poi.name)) for poi in made.scenario.pois if poi.name in poses)
+    scenario = replace(made.scenario, pois=pois)
+    paths = {
+        ("b", "c"): ((4.0, 0.0), (4.0, 3.0), (0.0, 3.0), (0.0, 0.0)),
+        ("c", "a"): ((0.0, 0.0), (1.0, 0.0), (1.0, 9.0), (0.0, 9.0)),
+    }
+    floor = Floor("data:image/png;base64,", 20, 20, 0.5, -0.5, -0.5, 0.0, paths)
+    segments = animation._segments(scenario, made, floor)
+    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = segments["bot1"][1].line
+    assert (x0, x2, y1, y0) == pytest.approx((x1, x3, y2, y3)) and (x2 - x0) / (y1 - y0) == pytest.approx(-4 / 3)
+    start, bend, end = segments["bot2"][-1].line  # it is not there yet
+    assert (start[1], bend[0]) == pytest.approx((bend[1], end[0])) and end[1] < bend[1]
+    assert floor.uri in animation.draw(scenario, made, floor)
 
 
 @in_browser

@@ -39,12 +39,25 @@ def test_the_page_finds_the_plan_that_ws_has_put_there(folder: Path) -> None:
     assert "the pose of b (9, 9) is off the map" in done.out + done.err, "places are checked as by check --map"
     found, given = read_floor(str(folder / "out/src/UI/config")), desk.read_floor(folder / "map.yaml")
     assert found is not None and found.picture == given.picture
-    assert found.scene() == {"width": 4, "height": 6, "resolution": 0.5, "x": -1.0, "y": 0.25, "yaw": 0.1}
+    assert found.scene() == {"width": 4, "height": 6, "resolution": 0.5, "x": -1.0, "y": 0.25, "yaw": 0.1, "paths": ()}
     assert "map" in (folder / "out/src/UI/CMakeLists.txt").read_text(), "it is installed"
     assert pursue("ws", "visit.pur", "-o", "bare").status == 0
     assert read_floor(str(folder / "bare/src/UI/config")) is None
     out, bare = ((folder / name / "src/UI/config/mission.yaml").read_bytes() for name in ("out", "bare"))
     assert out == bare, "the building is no part of the mission"
+
+
+def test_the_page_finds_the_paths_of_ways_that_the_map_has(folder: Path) -> None:
+    greys = bytes(0 if column == 40 and row > 10 else 254 for row in range(40) for column in range(80))
+    (folder / "floor.pgm").write_bytes(b"P5 80 40 255\n" + greys)
+    (folder / "map.yaml").write_text("image: floor.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\n")
+    (folder / "visit.pur").write_text(SCENARIO.replace("[9.0, 9.0", "[7.0, 1.0"))
+    done = pursue("ws", "visit.pur", "--map", "map.yaml", "-o", "out")
+    found = read_floor(str(folder / "out/src/UI/config"))
+    assert done.status == 0 and found is not None
+    ((a, b, line),) = found.paths
+    assert (a, b, line[0], line[-1]) == ("a", "b", (1.0, 1.0), (7.0, 1.0))
+    assert max(y for _, y in line) > 3.2, "around the wall"
 
 
 def test_without_a_map_file_nothing_is_written(folder: Path) -> None:
@@ -54,7 +67,9 @@ def test_without_a_map_file_nothing_is_written(folder: Path) -> None:
 
 @pytest.mark.parametrize("change", [
     {"width": 0}, {"height": "tall"}, {"resolution": -1}, {"resolution": float("inf")}, {"origin": [1, 2]},
-    {"origin": 7}, {"origin": [float("nan"), 0, 0]}, {"width": None},
+    {"origin": 7}, {"paths": [["a", "b"]]}, {"paths": [["a", "b", [[0, 0]]]]}, {"paths": [["a", "b", [[0, "x"]]]]},
+    {"paths": [["a", "b", [[0, 0], [1, float("nan")]]]]}, {"paths": 3},
+    {"origin": [float("nan"), 0, 0]}, {"width": None},
 ])
 def test_a_plan_that_somebody_has_spoilt_is_refused(tmp_path: Path, change: Any) -> None:
     (tmp_path / "map").mkdir()

@@ -18,8 +18,8 @@ function setMap() {
   const longest = Math.max(...[...names, ...scene.agents.map((agent) => agent.name)].map((name) => short(shown(name)).length));
   const above = 2 * POI + ROW * Math.min(3, scene.agents.length), below = 2 * POI + ROW, side = Math.min(width / 4, 16 + 4.2 * longest);
   const room = scene.floor ? AROUND : 0;
-  const xs = names.flatMap((name) => [scene.places[name][0] - room, scene.places[name][0] + room]);
-  const ys = names.flatMap((name) => [scene.places[name][1] - room, scene.places[name][1] + room]);
+  const seen = [...Object.values(scene.places), ...known().flatMap(([, , line]) => line)];
+  const xs = seen.flatMap(([x]) => [x - room, x + room]), ys = seen.flatMap(([, y]) => [y - room, y + room]);
   const across = Math.max(...xs) - Math.min(...xs), up = Math.max(...ys) - Math.min(...ys);
   const scale = Math.min((width - 2 * side) / (across || 1e-6), 420 / (up || 1e-6), across || up ? Infinity : 1);
   const left = (width - scale * across) / 2, high = Math.max(above + below + scale * up, 200);
@@ -57,14 +57,28 @@ function drawFloor(picture, scale) { // pale, so that what is drawn on it can be
   draw("image", draw("g", picture, { class: "floor", transform: turn }), inside);
 }
 
+const known = () => (scene.floor ? scene.floor.paths : []); // the paths of ways on the floor plan
+
+function lineOf(a, b) { // the way from one place to another, along its path where that is known
+  const path = known().find(([one, two]) => (one === a && two === b) || (one === b && two === a));
+  const inner = path ? path[2].slice(1, -1).map(([x, y]) => map.at(x, y)) : [];
+  return [map.points.get(a), ...(path && path[0] === b ? inner.reverse() : inner), map.points.get(b)];
+}
+
+function along(line, part) { // the point after so much of a line
+  const sizes = line.slice(1).map((end, k) => Math.hypot(end.x - line[k].x, end.y - line[k].y));
+  let left = part * sizes.reduce((sum, one) => sum + one, 0);
+  const k = sizes.findIndex((one) => one >= left || (left -= one, false));
+  if (k < 0 || !sizes[k]) return line[line.length - 1];
+  const [a, b] = [line[k], line[k + 1]];
+  return { x: a.x + (left / sizes[k]) * (b.x - a.x), y: a.y + (left / sizes[k]) * (b.y - a.y) };
+}
+
+const inText = (points) => points.map(({ x, y }) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" ");
+
 function drawWays(picture) {
-  for (const [a, b] of scene.ways) {
-    const from = map.points.get(a), to = map.points.get(b);
-    draw("line", picture, { class: "way", x1: from.x, y1: from.y, x2: to.x, y2: to.y });
-  }
-  for (const [a, b] of scene.one_ways) {
-    draw("polygon", picture, { class: "arrow", points: arrow(map.points.get(a), map.points.get(b)) });
-  }
+  for (const [a, b] of scene.ways) draw("polyline", picture, { class: "way", points: inText(lineOf(a, b)) });
+  for (const [a, b] of scene.one_ways) draw("polygon", picture, { class: "arrow", points: arrow(...lineOf(a, b).slice(-2)) });
 }
 
 function drawPlaces(picture, names, under) { // where two would cover each other, one is beside its point
@@ -83,12 +97,12 @@ function drawPlaces(picture, names, under) { // where two would cover each other
 function drawLengths(picture) { // in the middle of the way, or where there is room; nowhere rather than over a name
   map.lengths = [];
   for (const [a, b, length] of scene.ways) {
-    const from = map.points.get(a), to = map.points.get(b);
+    const line = lineOf(a, b);
     const first = scene.one_ways.some(([one, two]) => one === a && two === b) ? 0.42 : 0.5;
     const text = draw("text", picture, { class: "length" });
     text.textContent = length;
     const half = text.getComputedTextLength() / 2 + 2;
-    const boxes = [first, 0.6, 0.4, 0.68, 0.32].map((part) => ({ x: from.x + part * (to.x - from.x), y: from.y + part * (to.y - from.y), half, tall: 9 }));
+    const boxes = [first, 0.6, 0.4, 0.68, 0.32].map((part) => ({ ...along(line, part), half, tall: 9 }));
     const box = boxes.find((one) => !map.places.some((other) => covers(one, other)) && !map.lengths.some((other) => covers(one, other.box)));
     if (!box) {
       text.remove();
@@ -161,14 +175,15 @@ function pointOf(agent, now) { // on the picture: where it is known to be, else 
   }
   if (!from) return null;
   if (!to) return { ...from, away: 2 * POI };
-  const part = share(agent, now);
-  return { x: from.x + part * (to.x - from.x), y: from.y + part * (to.y - from.y), away: POI + 4 };
+  return { ...along(lineOf(agent.place, agent.to), share(agent, now)), away: POI + 4 };
 }
 
-function remaining(agent, point) { // of its planned path, from where it is; null where there is none for this movement
-  const path = paths.get(agent.name);
-  if (!path || !path.of || path.of.to !== agent.to || Math.abs(path.of.since - agent.since) > 0.5) return null;
-  const points = path.points.map(([x, y]) => map.at(x, y)), away = points.map(({ x, y }) => Math.hypot(x - point.x, y - point.y));
+function remaining(agent, point) { // of the path planned for this movement, else of its way, from where it is
+  const path = paths.get(agent.name), way = lineOf(agent.place, agent.to);
+  const planned = path && path.of && path.of.to === agent.to && Math.abs(path.of.since - agent.since) <= 0.5;
+  if (!planned && way.length === 2) return [point, way[1]];
+  const points = planned ? path.points.map(([x, y]) => map.at(x, y)) : Array.from({ length: 101 }, (_, k) => along(way, k / 100));
+  const away = points.map(({ x, y }) => Math.hypot(x - point.x, y - point.y));
   return [point, ...points.slice(away.indexOf(Math.min(...away)) + 1)];
 }
 
@@ -181,8 +196,7 @@ function showDot(mark, agent, point, to, named) { // the point itself, with its 
   const ahead = to && headed && mark.kind !== "agent";
   mark.path.style.display = ahead ? "" : "none";
   if (!ahead) return;
-  const line = remaining(agent, point) || [point, to];
-  mark.path.setAttribute("points", line.map(({ x, y }) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" "));
+  mark.path.setAttribute("points", inText(remaining(agent, point)));
 }
 
 // Labels -------------------------------------------------------------------------------------------------------------

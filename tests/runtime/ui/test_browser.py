@@ -630,6 +630,21 @@ def test_robots_are_shown_where_they_really_are_on_the_floor_plan(page: Browser,
     assert page.complaints == []
 
 
+def test_everybody_moves_along_the_paths_of_the_floor_plan(page: Browser, show: Callable[..., Node]) -> None:
+    path = ("b", "a", ((9.0, 0.0), (9.0, 12.0), (0.0, 12.0), (0.0, 0.0)))
+    node = show(*everybody(), floor=Floor(picture(), 40, 20, 0.5, -4.0, -3.0, 0.1, (path,)))
+    node.show(2, 2.0, clock=4.5, bot="going_a_to_b")
+    page.wait("document.querySelector('.dot.robot') !== null")
+    line = "[...document.querySelector('#map .way').points].map(({x, y}) => [x, y])"
+    ends = "[scene.places.a, [0, 12], [9, 12], scene.places.b]"
+    bends = page.value(f"{ends}.map(([x, y]) => map.at(x, y)).map(({{x, y}}) => [x, y])")
+    assert page.value(line) == [pytest.approx(bend, abs=0.1) for bend in bends]
+    assert page.value("map.at(9, 12).y >= 0"), "the picture has room for it"
+    dot = "document.querySelector('.dot.robot').getAttribute('transform').match(/[-\\d.]+/g).map(Number)"
+    page.wait(f"(([x, y]) => y < map.at(0, 11.5).y)({dot})")  # in its middle it is at the top, between the corners
+    assert page.complaints == []
+
+
 def test_after_the_mission_the_page_says_how_to_replay_it_and_offers_what_there_is(
     page: Browser, show: Callable[..., Node]
 ) -> None:
