@@ -75,5 +75,5 @@ def ws(
     show(made.findings)
     print(made.folder)
     info(f"A workspace for {read.name} is in {made.folder}; its README.md says what is in it.")
-    launch = f"roslaunch {read.name}_bringup mission.launch"
+    launch = f"rosrun {read.name}_bringup run_mission"
     suggest(f"cd {shell_quoted(made.folder)} && catkin_make", "source devel/setup.bash", launch)

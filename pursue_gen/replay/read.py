@@ -43,8 +43,8 @@ CONNECTING = 5.0
 """Seconds within which a recorder that is started during a mission is connected to every node."""
 
 _SIMPLE, _ACTION = "/move_base_simple/goal", "/move_base/goal"
-_ORDERS = (_SIMPLE, "/pursue/actions", _ACTION)
-"""Topics of a robot, below its name."""
+_ORDERS = (_SIMPLE, "/pursue/actions", "/move_base_flex" + _ACTION, _ACTION)
+"""Topics of a robot, below its namespace."""
 _MISSION = ("pursue/events", "pursue/system_state", "pursue/plan", "pursue/game")
 _SHOWN = 40  # topics that a message names
 
@@ -95,7 +95,7 @@ def _bag(file: Path, stream: BinaryIO, drives: bool) -> MissionRecord:
 
 def _is_ours(topic: str) -> bool:
     """True for a topic whose messages `from_messages` does not pass over."""
-    return topic.strip("/").endswith((*_ORDERS, DRIVES, *_MISSION))
+    return ("/" + topic.strip("/")).endswith((*_ORDERS, DRIVES, *_MISSION))
 
 
 def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> MissionRecord:
@@ -110,15 +110,15 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
     game: Optional[Mapping[str, Any]] = None
     drives: List[Drive] = []
     received: Dict[int, float] = {}
-    strange, latest = 0, -math.inf
+    strange, latest, robot_at = 0, -math.inf, _namespaces(messages)
     # without `seq`, which counts what was sent to one subscriber alone, too
-    simple = {(message.topic.strip("/"), message.data[4:]) for message in messages if message.topic.endswith(_SIMPLE)}
+    simple = {(_name(each), each.data[4:]) for each in messages if _name(each).endswith(_SIMPLE)}
     for message in messages:
-        topic = message.topic.strip("/")
+        topic = _name(message)
         if message.at < latest <= message.at + BEHIND:  # /clock may reach the recorder later than a state
             message = replace(message, at=latest)
         if topic.endswith(_ORDERS):
-            orders += [] if _is_published_again(message, topic, simple) else [_order(message, topic)]
+            orders += [] if _is_published_again(message, topic, simple) else [_order(message, topic, robot_at)]
         elif topic.endswith(DRIVES):
             drive = parse_drive(_text(message.data))
             drives += [] if drive is None else [drive]
@@ -147,6 +147,11 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
     return replace(record, whole_from=_connected(messages)) if known and record.is_late else record
 
 
+def _name(message: Message) -> str:
+    """The topic of a message, with a slash before it."""
+    return "/" + message.topic.strip("/")
+
+
 def _connected(messages: Sequence[Message]) -> float:
     """The moment from which on a recorder that came late has the messages of all nodes: when it has one of each, and a
     second more for the other topics of the last one."""
@@ -165,10 +170,19 @@ def _is_published_again(message: Message, topic: str, simple: AbstractSet[Tuple[
     return any((own, message.data[-size:]) in simple for size in {len(data) for _, data in simple})
 
 
-def _order(message: Message, topic: str) -> RobotOrder:
-    """An order to a robot; the robot's name stands first in the topic's last parts."""
+def _namespaces(messages: Sequence[Message]) -> Dict[str, str]:
+    """Namespaces, and the robots that have them, where they are not the robots' names."""
+    games = [_json(_text(each.data)) for each in messages if _name(each).endswith("pursue/game")]
+    found = [game.get("namespaces") for game in games if game is not None]
+    return {str(at).strip("/"): name for each in found if isinstance(each, dict) for name, at in each.items()}
+
+
+def _order(message: Message, topic: str, robot_at: Mapping[str, str]) -> RobotOrder:
+    """An order to a robot, whose namespace stands first in the topic's last parts."""
     kind = next(kind for kind in _ORDERS if topic.endswith(kind))
-    robot = topic[: -len(kind)].rpartition("/")[2]
+    before = topic[: -len(kind)]
+    own = max((at for at in robot_at if at == before or (at and before.endswith(f"/{at}"))), key=len, default=None)
+    robot = before.rpartition("/")[2] if own is None else robot_at[own]
     if kind == "/pursue/actions":
         text = _text(message.data).strip() or "?"
         word = parse_word(text)

@@ -1,7 +1,7 @@
 """Why a robot's navigation gives up a goal: its texts, and what each means for the mission.
 
 The texts are those of move_base 1.17 (`move_base.cpp`), of move_base_flex (`mbf_abstract_nav`), whose relay passes them
-on, and move_base_flex's names of its outcome codes (`mbf_utility::outcome2str`).
+on, and move_base_flex's names of its outcome codes (`mbf_utility::outcome2str`), which its results have as numbers.
 """
 
 from __future__ import annotations
@@ -87,12 +87,32 @@ _MEANINGS = (
 """How a text begins, small letters or capitals, and its meaning."""
 
 
+_OUTCOMES = {
+    12: "Collision", 13: "Oscillation", 14: "Start blocked", 15: "Goal blocked", 16: "TF error", 17: "Internal error",
+    52: "Invalid start", 53: "Invalid goal", 54: "Blocked start", 55: "Blocked goal", 56: "No path found",
+    57: "Global planner exceeded the patience time", 58: "Empty path", 59: "TF error", 60: "Not initialized",
+    61: "Invalid plugin", 62: "Internal error", 63: "Out of map", 64: "Map error", 65: "Stopped",
+    102: "No valid command", 103: "No valid command", 104: "Collision", 105: "Oscillation", 106: "Robot stuck",
+    107: "Missed goal", 108: "Missed path", 109: "Blocked goal", 110: "Blocked path", 111: "Invalid path",
+    112: "TF error", 113: "Not initialized", 114: "Invalid plugin", 115: "Internal error", 116: "Out of map",
+    117: "Map error", 118: "Stopped",
+}  # fmt: skip
+"""Codes of `mbf_msgs` (MoveBase, GetPath, ExePath), and their names above; not those that say only that it failed."""
+
+
+def outcome_name(code: int) -> str:
+    """Return the name of an outcome code of move_base_flex; "" where it says no more than that the goal failed."""
+    return _OUTCOMES.get(code, "")
+
+
 def meaning_of(answer: Answer) -> Meaning:
-    """Return what an answer means that ends a goal with a failure. A text that is not known is quoted; it says no more
-    than that the robot cannot go on, if its goal was aborted."""
+    """Return what an answer means that ends a goal with a failure: what its outcome says, else its text: plugins have
+    texts of their own. A text that is not known is quoted; it says no more than that the robot cannot go on, if its
+    goal was aborted."""
     text = answer.text.strip()
-    for begin, meaning in _MEANINGS:
-        if text.casefold().startswith(begin.casefold()):
-            return meaning
+    for said in (answer.outcome, text):
+        for begin, meaning in _MEANINGS:
+            if said.casefold().startswith(begin.casefold()):
+                return meaning
     says = f"its goal was {FAILURES[answer.status]}" + (f": {quoted(text)}" if text else "")
     return Meaning(says, STUCK if answer.status == ABORTED else FAILED)

@@ -38,12 +38,14 @@ class Goal(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """What move_base publishes about a goal, in a result or in its status: `text` is its own explanation."""
+    """What move_base publishes about a goal, in a result or in its status: `text` is its own explanation, `outcome`
+    the name of the code that a move_base_flex gives."""
 
     goal: str
     stamp: float
     status: int
     text: str = ""
+    outcome: str = ""
 
 
 class GoalTracker:

@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any, Mapping, NamedTuple, Tuple
 
 from pursue_runtime.data import DataError
 
 GOALS, ENDS, ON_STOP = ("simple", "action"), ("words", "result", "pose", "tf"), ("finish", "cancel")
 ORDERS = ("numbered", "plain", "person")
+NAVIGATION = {"move_base": "move_base", "move_base_flex": "move_base_flex/move_base"}
+"""What drives a robot, and the action that takes its goals, in the robot's namespace."""
+
 POSITIONS = {"pose": ("pose",), "tf": ("tf",), "none": ()}
 """The sources of positions by `~position`: amcl_pose, tf, or none."""
 
 DEFAULT_POSITIONS = {"words": (), "result": ("pose", "tf"), "pose": ("pose",), "tf": ("tf",)}
 """The sources of positions by `~ends`, with `~position` auto; tf counts for `result` where tf2_ros is installed."""
+
+
+_NAMESPACE = re.compile(r"(/?[A-Za-z]\w*(/\w+)*)?", re.ASCII)
+"""Of a robot's nodes; "": they run in none."""
 
 
 class Settings(NamedTuple):
@@ -33,8 +41,19 @@ class Settings(NamedTuple):
     position: str = "auto"
     clock_skew: float = 0.5
     map_frame: str = "map"
-    base_frame: str = "{robot}/base_link"
+    base_frame: str = "{namespace}/base_link"
+    namespace: str = "{robot}"
+    navigation: str = "move_base"
     simulated: bool = False
+
+    def topic(self, name: str) -> str:
+        """Return the name of a topic of the robot; without a namespace its nodes run where ours do."""
+        return f"{self.namespace}/{name}" if self.namespace else name
+
+    @property
+    def action(self) -> str:
+        """Return the name of the action that takes its goals."""
+        return self.topic(NAVIGATION[self.navigation])
 
     @property
     def uses_results(self) -> bool:
@@ -67,6 +86,7 @@ def read_settings(robot: str, given: Mapping[str, Any]) -> Settings:
     settings = Settings(**{name: _checked(name, values[name], defaults[name]) for name in defaults if name in values})
     known_values = (
         ("goals", GOALS), ("ends", ENDS), ("on_stop", ON_STOP), ("orders", ORDERS), ("position", ("auto", *POSITIONS)),
+        ("navigation", NAVIGATION),
     )  # fmt: skip
     for name, known in known_values:
         if getattr(settings, name) not in known:
@@ -83,8 +103,45 @@ def read_settings(robot: str, given: Mapping[str, Any]) -> Settings:
             f"goals:={settings.goals} and ends:={settings.ends} for {robot}, which is simulated: the simulator takes"
             " simple goals and reports ends as words; leave these out, or set simulate:=false for real robots"
         )
-    frames = (settings.map_frame.replace("{robot}", robot), settings.base_frame.replace("{robot}", robot))
-    return settings._replace(map_frame=frames[0], base_frame=frames[1])
+    if settings.navigation == "move_base_flex" and settings.goals == "simple":
+        raise DataError(
+            f"~goals of {robot} is 'simple', but move_base_flex takes no simple goals; expected goals:=action, or"
+            " navigation: move_base where its relay (move_base_legacy_relay.py) runs"
+        )
+    namespace = _namespace(robot, settings, given)
+    map_frame, base_frame = (_in_names(each, robot, namespace) for each in (settings.map_frame, settings.base_frame))
+    return settings._replace(namespace=namespace, map_frame=map_frame, base_frame=base_frame)
+
+
+def _namespace(robot: str, settings: Settings, given: Mapping[str, Any]) -> str:
+    """The namespace of the robot's nodes, without the slash at its end. Raises DataError where two robots would have
+    the same one: each would get the goals of the other."""
+    found = settings.namespace.replace("{robot}", robot).rstrip("/")
+    if not _NAMESPACE.fullmatch(found):
+        raise DataError(f"~namespace of {robot} is {settings.namespace!r}; expected a name such as tb3_0")
+    if settings.simulated and found != robot:
+        raise DataError(
+            f"~namespace of {robot} is {found!r}, but it is simulated, in the namespace {robot}; leave it out, or set"
+            " simulate:=false for real robots"
+        )
+    everybodys = given.get("namespace")
+    if isinstance(everybodys, str) and "{robot}" not in everybodys and settings.namespace == everybodys:
+        raise DataError(
+            f"~namespace is {everybodys!r} for all robots, who would all get the same goals; expected it below the"
+            f" robot's name, {robot}: {{namespace: {found or repr(found)}}}"
+        )
+    for other, own in given.items():
+        if other != robot and isinstance(own, dict) and own.get("namespace", other) == found:
+            raise DataError(
+                f"~namespace of {robot} is {found!r}, and so is that of {other}: both would get the same goals;"
+                " expected another one for one of them"
+            )
+    return found
+
+
+def _in_names(text: str, robot: str, namespace: str) -> str:
+    """A frame with its names in it; tf2 has no frame that begins with a slash."""
+    return text.replace("{robot}", robot).replace("{namespace}", namespace).lstrip("/")
 
 
 def _checked(name: str, value: Any, default: Any) -> Any:

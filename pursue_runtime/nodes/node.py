@@ -286,6 +286,7 @@ def run_node(
         return REFUSED
     init_node(name)
     warn_of_ignored(known)
+    threading.Thread(target=warn_without_clock, daemon=True).start()
     try:
         return run(told)
     except expected as problem:
@@ -300,6 +301,17 @@ def warn_of_ignored(known: Sequence[Argument]) -> None:
             sentence = ignored(known, rospy.get_param("~", {}))
             if sentence:
                 rospy.logwarn("%s", sentence)
+
+
+def warn_without_clock(wait: float = 5.0) -> None:
+    """Log a warning where time is simulated, and nobody tells it within these seconds of real time."""
+    if not rospy.rostime.is_wallclock():
+        time.sleep(wait)
+        if rospy.get_rostime().is_zero() and not rospy.is_shutdown():
+            rospy.logwarn(
+                "/use_sim_time is true, but nobody publishes /clock: start the simulator that does, or where there is"
+                " none: rosparam set /use_sim_time false, and launch again"
+            )
 
 
 def lower_priority() -> None:

@@ -1,7 +1,7 @@
 """Where the robots really are, for the page: from amcl_pose or tf, as the parameters of their controllers say; and the
 paths that their move_base plans.
 
-Parameter ~path: the topic of a robot's path (nav_msgs/Path), "{robot}/move_base/NavfnROS/plan".
+Parameter ~path: the topic of a robot's path (nav_msgs/Path), "{namespace}/move_base/NavfnROS/plan".
 """
 
 from __future__ import annotations
@@ -27,8 +27,11 @@ PERIOD = 0.5
 STALE = 3.0
 """Seconds of real time after which a transform that is not renewed does not say any more where a robot is."""
 
-PATH = "{robot}/move_base/NavfnROS/plan"
+PATH = "{namespace}/move_base/NavfnROS/plan"
 """Where move_base with its usual planner publishes its path."""
+
+NEWEST: Mapping[str, Any] = {"queue_size": 1, "tcp_nodelay": True}
+"""Only the last message counts."""
 
 MOST = 100
 """So many points of a path are shown, about."""
@@ -39,24 +42,26 @@ Paths = Mapping[str, Sequence[Tuple[float, float]]]
 
 
 def settings_of(robots: Iterable[str]) -> Dict[str, Settings]:
-    """How the controllers know where these robots are, of those that have a position; by the parameters that they were
-    launched with. Settings that cannot be read are the controllers' to report."""
+    """How these robots are connected, by the parameters that their controllers were launched with. Settings that cannot
+    be read are the controllers' to report."""
     found = {}
     for robot in robots:
         given = rospy.get_param(f"controller_{robot}", None) or rospy.get_param("controller", None)
-        try:
-            settings = read_settings(robot, given) if isinstance(given, dict) else Settings()
-        except DataError:
-            continue
-        if settings.sources and not settings.simulated:
-            found[robot] = settings
+        with contextlib.suppress(DataError):
+            found[robot] = read_settings(robot, given if isinstance(given, dict) else {})
     return found
+
+
+def namespaces(robots: Iterable[str]) -> Dict[str, str]:
+    """The namespace of each robot's nodes, as far as it is not the robot's name."""
+    return {robot: each.namespace for robot, each in settings_of(robots).items() if each.namespace != robot}
 
 
 def watch_positions(robots: Iterable[str], ending: Ending, show: Callable[[Positions, Paths], None]) -> None:
     """Call `show` with the positions of all robots that have one, and their paths, in a thread, whenever one has
     changed."""
-    settings = settings_of(robots)
+    known = settings_of(robots).items()
+    settings = {robot: each for robot, each in known if each.sources and not each.simulated}
     if settings:
         watch = _Watch(settings, ending)
         start_thread("positions", lambda: watch.run(show), ending)
@@ -75,8 +80,7 @@ class _Watch:
             self._listen_to_tf()
         for robot, each in settings.items():
             if "pose" in each.sources:
-                topic = f"{robot}/amcl_pose"
-                subscribe(topic, PoseWithCovarianceStamped, self._pose, ending, robot, queue_size=1, tcp_nodelay=True)
+                subscribe(each.topic("amcl_pose"), PoseWithCovarianceStamped, self._pose, ending, robot, **NEWEST)
         self._listen_to_paths()
 
     def run(self, show: Callable[[Positions, Paths], None]) -> None:
@@ -93,9 +97,10 @@ class _Watch:
         """Of robots with move_base; without its messages there is no path to be had, either."""
         with contextlib.suppress(DataError):
             kind = needed("nav_msgs", "nav_msgs.msg", "a planned path").Path
-            for robot in self._settings:
-                topic = text(rospy.get_param("~", {}), "path", PATH).replace("{robot}", robot)
-                subscribe(topic, kind, self._path, self._ending, robot, queue_size=1, tcp_nodelay=True)
+            wanted = text(rospy.get_param("~", {}), "path", PATH)
+            for robot, each in self._settings.items():
+                topic = wanted.replace("{robot}", robot).replace("{namespace}/", each.topic(""))
+                subscribe(topic, kind, self._path, self._ending, robot, **NEWEST)
 
     def _path(self, message: Any, robot: str) -> None:
         frame = message.header.frame_id or (message.poses[0].header.frame_id if message.poses else "")

@@ -38,6 +38,7 @@ from pursue_runtime.nodes.node import (
     run_node,
     subscribe,
 )
+from pursue_runtime.nodes.positions import namespaces
 from pursue_runtime.nodes.state_message import state_of
 from pursue_runtime.parameters import names
 from pursue_runtime.state import ENDED, WAITING, WON, SystemState
@@ -85,9 +86,10 @@ class Recorder:
         self.open = True
         self.master = rosgraph.Master(rospy.get_name())
         self.states, self.texts = rospy.resolve_name(STATE), rospy.resolve_name(SYSTEM_STATE)
-        self.note_game()
+        others = namespaces(robot.name for robot in model.of_kind("robot"))
+        self.note_game(others)
         more = names(given, "topics")
-        wanted = [*topics(model, not rospy.rostime.is_wallclock()), *more]
+        wanted = [*topics(model, not rospy.rostime.is_wallclock(), others), *more]
         self.subscribers: List[rospy.Subscriber] = [
             subscribe(topic, rospy.AnyMsg, self.on_message, self.ending, rospy.resolve_name(topic), tcp_nodelay=True)
             for topic in dict.fromkeys(wanted)
@@ -96,9 +98,9 @@ class Recorder:
         links = Links(*pulses, ending=self.ending, lost=lambda _: self.ending.end(1))
         Diagnostics(self.report, self.ending, links)
 
-    def note_game(self) -> None:
+    def note_game(self, others: Mapping[str, str]) -> None:
         """The bag begins with what is needed to check it."""
-        game = self.membership.source.read("game.yaml")
+        game = {**self.membership.source.read("game.yaml"), **({"namespaces": others} if others else {})}
         self.bag.write(rospy.resolve_name(GAME), String(json.dumps(game)), stamp())
 
     def on_message(self, message: rospy.AnyMsg, topic: str) -> None:

@@ -11,7 +11,8 @@ import rospy
 from geometry_msgs.msg import Pose, PoseStamped, PoseWithCovarianceStamped
 from std_msgs.msg import String
 
-from pursue_runtime.controller.goal import Answer, Goal
+from pursue_runtime.controller.answers import outcome_name
+from pursue_runtime.controller.goal import ABORTED, Answer, Goal
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.whereabouts import Position, yaw_of
 from pursue_runtime.data import DataError
@@ -21,6 +22,12 @@ from pursue_runtime.orders import Order, order_text
 
 STALE = 1.0
 """Seconds of ROS time after which a transform that was not renewed does not say any more where the robot is."""
+
+_NOT_DEBIANS = ("mbf_msgs",)
+"""ROS packages that Debian does not have."""
+
+_KNOWN = 20
+"""So many goals have a known outcome; a status lists those of the last five seconds."""
 
 Log = Callable[[str, str], None]
 """Takes a level (info, warn, err) and a sentence."""
@@ -50,9 +57,10 @@ def needed(package: str, module: str, why: str) -> Any:
     try:
         return importlib.import_module(module)
     except ImportError as problem:
+        name = package.replace("_", "-")
+        debian = "" if package in _NOT_DEBIANS else f", or python3-{name} on Debian"
         raise DataError(
-            f"{why} needs the ROS package {package}, which is not here ({problem}):"
-            f" install ros-noetic-{package.replace('_', '-')}, or python3-{package.replace('_', '-')} on Debian"
+            f"{why} needs the ROS package {package}, which is not here ({problem}): install ros-noetic-{name}{debian}"
         ) from problem
 
 
@@ -96,31 +104,34 @@ class RobotLink(rospy.SubscribeListener):
         self.has_lost_position = False
         self._messages: Any = None
         self._tf: Any = None
-        if settings.uses_results:
+        self._outcomes: Dict[str, str] = {}  # of the last goals of a move_base_flex
+        if settings.navigation == "move_base_flex":
+            self._messages = needed("mbf_msgs", "mbf_msgs.msg", "navigation: move_base_flex")
+        elif settings.uses_results:
             why = "goals:=action" if settings.goals == "action" else "ends:=result"
             self._messages = needed("move_base_msgs", "move_base_msgs.msg", why)
         if "tf" in settings.sources:
             with contextlib.suppress(*([DataError] if "pose" in settings.sources else [])):  # one of them is enough
                 self._tf = needed("tf2_ros", "tf2_ros", "a position by tf")
-        self._act = rospy.Publisher(f"{robot}/pursue/actions", String, self, queue_size=10)
+        self._act = rospy.Publisher(settings.topic("pursue/actions"), String, self, queue_size=10)
         if settings.goals == "action":
-            topic, kind = f"{robot}/move_base/goal", self._messages.MoveBaseActionGoal
+            topic, kind = f"{settings.action}/goal", self._messages.MoveBaseActionGoal
         else:
-            topic, kind = f"{robot}/move_base_simple/goal", PoseStamped
+            topic, kind = settings.topic("move_base_simple/goal"), PoseStamped
         self._move = rospy.Publisher(topic, kind, self, queue_size=10)
         for orders in (self._act, self._move):
             ServedFirst(orders, lambda _: True)
         if settings.on_stop == "cancel":
             self._ids = needed("actionlib_msgs", "actionlib_msgs.msg", "on_stop:=cancel").GoalID
-            self._cancel = rospy.Publisher(f"{robot}/move_base/cancel", self._ids, queue_size=10)
+            self._cancel = rospy.Publisher(f"{settings.action}/cancel", self._ids, queue_size=10)
         if settings.uses_results:
             kind = self._messages.MoveBaseActionResult
-            topic = f"{robot}/move_base/result"
+            topic = f"{settings.action}/result"
             self._results = subscribe(topic, kind, self._result, ending, queue_size=100, tcp_nodelay=True)
         if not settings.simulated:
             with contextlib.suppress(DataError):  # without these messages the robot has no such status either
                 kind = needed("actionlib_msgs", "actionlib_msgs.msg", "move_base/status").GoalStatusArray
-                topic = f"{robot}/move_base/status"
+                topic = f"{settings.action}/status"
                 self._status = subscribe(topic, kind, self._statuses, ending, queue_size=10, tcp_nodelay=True)
 
     # To the robot -----------------------------------------------------------------------------------------------------
@@ -223,10 +234,19 @@ class RobotLink(rospy.SubscribeListener):
     # From the robot ---------------------------------------------------------------------------------------------------
 
     def _result(self, message: Any) -> None:
-        self._on_result(_answer(message.status))
+        answer = _answer(message.status)
+        if self._settings.navigation == "move_base_flex":
+            answer = answer._replace(outcome=outcome_name(message.result.outcome))
+            self._outcomes = {**dict(list(self._outcomes.items())[-_KNOWN:]), answer.goal: answer.outcome}
+        self._on_result(answer)
 
     def _statuses(self, message: Any) -> None:
-        self._on_statuses([_answer(status) for status in message.status_list])
+        """Of a move_base_flex, a goal that was aborted counts from its result on, which has the outcome."""
+        answers = [_answer(status) for status in message.status_list]
+        if self._settings.navigation == "move_base_flex":
+            known = [each for each in answers if each.status != ABORTED or each.goal in self._outcomes]
+            answers = [each._replace(outcome=self._outcomes.get(each.goal, "")) for each in known]
+        self._on_statuses(answers)
 
     def watch(self) -> None:
         """Read the robot's position from now on. What is received first is recent: amcl_pose is latched."""
@@ -237,7 +257,7 @@ class RobotLink(rospy.SubscribeListener):
             self._frames = self._tf.Buffer(debug=False)
             self._positions.append(self._tf.TransformListener(self._frames))
         if "pose" in self._settings.sources:
-            topic, kind = f"{self._robot}/amcl_pose", PoseWithCovarianceStamped
+            topic, kind = self._settings.topic("amcl_pose"), PoseWithCovarianceStamped
             self._positions.append(subscribe(topic, kind, self._pose, self._ending, queue_size=10, tcp_nodelay=True))
 
     @property
@@ -248,7 +268,7 @@ class RobotLink(rospy.SubscribeListener):
     def _pose(self, message: PoseWithCovarianceStamped) -> None:
         frame, wanted = message.header.frame_id, self._settings.map_frame
         if frame.lstrip("/") != wanted.lstrip("/"):
-            what = f"{self._robot}/amcl_pose is in frame {frame!r}; expected {wanted!r} (~map_frame)"
+            what = f"{self._settings.topic('amcl_pose')} is in frame {frame!r}; expected {wanted!r} (~map_frame)"
             rospy.logwarn_throttle(10.0, what)
         elif not self._seen_by_tf:
             pose = message.pose.pose

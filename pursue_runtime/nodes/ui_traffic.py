@@ -8,6 +8,7 @@ import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.nodes.node import subscribe
+from pursue_runtime.nodes.positions import settings_of
 from pursue_runtime.state import parse_state
 from pursue_runtime.ui.mission_view import traffic_lines
 from pursue_runtime.ui.options import ALL_TOPICS, IN_WORDS
@@ -23,7 +24,8 @@ class Traffic:
     def __init__(self, ui: UI) -> None:
         self._ui = ui
         self._last: Tuple[object, ...] = ()
-        robots = [f"{robot.name}/pursue/actions" for robot in ui.model.of_kind("robot")]
+        known = settings_of(robot.name for robot in ui.model.of_kind("robot"))
+        robots = [each.topic("pursue/actions") for each in known.values()]
         more = [*robots, SYSTEM_STATE] if ui.options.show == ALL_TOPICS else []
         for topic in [] if ui.options.show == IN_WORDS else [EVENTS, *more]:
             subscribe(topic, String, self.on_message, ui.ending, topic, queue_size=1000, tcp_nodelay=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 from itertools import count
+from types import MappingProxyType
 from typing import Callable, Collection, Iterator, List, Mapping, Sequence
 
 from pursue_runtime.model import Model
@@ -16,6 +17,9 @@ OF_A_ROBOT = (
     "move_base/goal",
     "move_base/cancel",
     "move_base/result",
+    "move_base_flex/move_base/goal",
+    "move_base_flex/move_base/cancel",
+    "move_base_flex/move_base/result",
     "amcl_pose",
 )
 """Topics of each robot; those that nobody publishes cost nothing."""
@@ -27,13 +31,16 @@ _NO_LINKS = (errno.EPERM, errno.EOPNOTSUPP, errno.ENOTSUP, errno.ENOSYS, errno.E
 """What file systems without hard links answer, such as FAT."""
 
 GAME = "pursue/game"
-"""Only in the recording: the scenario and the rules of the game, so that nothing else is needed to check it."""
+"""Only in the recording: the scenario and the rules of the game, so that nothing else is needed to check it, and the
+`namespaces` of robots that have another one than their name."""
 
 
-def topics(model: Model, simulated_time: bool) -> List[str]:
-    """The names of the topics, so that the first message on each is not missed."""
-    robots = [robot.name for robot in model.of_kind("robot")]
-    names = [EVENTS, STATE, SYSTEM_STATE, PLAN, *(f"{robot}/{topic}" for robot in robots for topic in OF_A_ROBOT)]
+def topics(model: Model, simulated_time: bool, namespaces: Mapping[str, str] = MappingProxyType({})) -> List[str]:
+    """The names of the topics, so that the first message on each is not missed. `namespaces`: those of robots that have
+    another one than their name."""
+    robots = [namespaces.get(robot.name, robot.name) for robot in model.of_kind("robot")]
+    of_robots = [f"{robot}/{topic}" if robot else topic for robot in robots for topic in OF_A_ROBOT]
+    names = [EVENTS, STATE, SYSTEM_STATE, PLAN, *of_robots]
     return [*names, "/diagnostics", *(["/clock"] if simulated_time else [])]
 
 

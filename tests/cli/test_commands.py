@@ -660,7 +660,7 @@ def test_ws_writes_a_workspace_and_says_how_to_go_on(tmp_path: Path) -> None:
     told = pursue("ws", FIRST, "-o", folder)
     assert (told.status, told.out) == (0, f"{folder}\n")
     assert f"cd '{folder}' && catkin_make" in told.err
-    assert "roslaunch scenario_1_bringup mission.launch" in told.err
+    assert "rosrun scenario_1_bringup run_mission" in told.err
     packages = {p.name for p in (folder / "src").iterdir()}
     mission = {"UI", "controllerObj", "controller_bot1", "controller_bot2", "observer", "scenario_1_bringup"}
     assert packages == mission | {"communication_manager", "pursue_reader", "pursue_msgs", "pursue_runtime"}

@@ -50,6 +50,26 @@ def test_a_bag_is_read_whatever_its_compression(tmp_path: Path, compression: str
     assert check(record, game()).kept
 
 
+NAMESPACES = [
+    ({"bot1": "tb3_0", "bot2": "/lab/tb3_1"}, "/tb3_0/move_base_simple/goal", "/lab/tb3_1/pursue/actions"),
+    ({"bot1": "", "bot2": "bot"}, "/move_base_simple/goal", "/bot/pursue/actions"),
+    ({"bot1": "tb3", "bot2": "lab/tb3"}, "/tb3/move_base_flex/move_base/goal", "/lab/tb3/pursue/actions"),
+    ({"bot1": "tb3", "bot2": "lab/tb3"}, "/floor/tb3/move_base/goal", "/floor/lab/tb3/pursue/actions"),
+]
+
+
+@pytest.mark.parametrize(("namespaces", "goal", "action"), NAMESPACES)
+def test_the_orders_of_a_robot_are_those_in_its_namespace(namespaces: Dict[str, str], goal: str, action: str) -> None:
+    told = json.dumps({**GAME, "namespaces": namespaces}).encode()
+    word = b"fetch@7"
+    record = from_messages([
+        Message("/pursue/game", "", "recorder", 1.0, struct.pack("<L", len(told)) + told),
+        Message(goal, "", "controller_bot1", 2.0, b"\0" * 100),
+        Message(action, "", "controller_bot2", 3.0, struct.pack("<L", len(word)) + word),
+    ])  # fmt: skip
+    assert [(order.robot, order.is_goal) for order in record.orders] == [("bot1", True), ("bot2", False)]
+
+
 def test_a_journal_is_worked_out_to_the_same_states(tmp_path: Path) -> None:
     journal = read_recording(write_journal(PLAY, tmp_path / "j.jsonl", unit=0.5))
     assert isinstance(journal, Journal)

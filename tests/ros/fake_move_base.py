@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Robots as move_base and amcl show them: goals of both kinds, status, feedback, results, positions; and their faults.
 
-Parameter ~robots; of each of them: start ([x, y] or [x, y, yaw]), travel (seconds to any goal), acts (seconds that an
-action takes; negative: the robot does not report its end), boot (seconds from the start of move_base until its action
-server is up), reboot (the same after a restart; boot where it is not given), recovery (seconds until a robot that is
-stuck gives up, and answers other goals and cancellations), status (seconds between two status messages), plays (what
-becomes of its first goal, of its second …; the last one of all that follow): succeed, abort (at once), reject (at
-once), never, stuck (it finds no plan, and gives up after the recovery), oscillating (gives up then, with that text),
-twice (the result comes twice), stale (a result of long ago comes first), turned (it arrives, but looks the wrong way).
+Parameter ~robots; of each of them: namespace (of its topics and frames; its name where it is not given), start ([x, y]
+or [x, y, yaw]), travel (seconds to any goal), acts (seconds that an action takes; negative: the robot does not report
+its end), boot (seconds from the start of move_base until its action server is up), reboot (the same after a restart;
+boot where it is not given), recovery (seconds until a robot that is stuck gives up, and answers other goals and
+cancellations), status (seconds between two status messages), plays (what becomes of its first goal, of its second …;
+the last one of all that follow): succeed, abort (at once), reject (at once), never, stuck (it finds no plan, and gives
+up after the recovery), oscillating (gives up then, with that text), twice (the result comes twice), stale (a result of
+long ago comes first), turned (it arrives, but looks the wrong way).
 
 Orders of a test on <robot>/test: `put X Y YAW` (a person carries it there), `restart SECONDS` (move_base is killed
 and started again after so long), `play NAME` (what becomes of the goals from now on), `travel SECONDS`,
@@ -127,7 +128,8 @@ class FakeMoveBase:
     def __init__(self, name: str, settings: Dict[str, Any], body: Optional[Body] = None) -> None:
         self.name = name
         self.lock = threading.RLock()
-        self.body = body or Body(name, settings.get("start", [0.0, 0.0]))
+        self.namespace = settings.get("namespace", name)
+        self.body = body or Body(self.namespace, settings.get("start", [0.0, 0.0]))
         self.travel, self.acts = float(settings.get("travel", 1.0)), float(settings.get("acts", 1.0))
         boot, self.recovery = float(settings.get("boot", 0.0)), float(settings.get("recovery", 2.0))
         self.reboot = float(settings.get("reboot", boot))
@@ -142,7 +144,7 @@ class FakeMoveBase:
         self.gives_up = math.inf
         self.words = rospy.Publisher("pursue/events", String, queue_size=10)
         self.body.show()
-        rospy.Subscriber(f"{name}/pursue/actions", String, self.on_action)
+        rospy.Subscriber(f"{self.namespace}/pursue/actions", String, self.on_action)
         rospy.Subscriber(f"{name}/test", String, self.on_order)
         self.start(boot)
         rospy.Timer(rospy.Duration(STEP), self.step)
@@ -157,8 +159,9 @@ class FakeMoveBase:
         """The process starts: simple goals are received and published again as action goals, which nobody takes for so
         many seconds."""
         with self.lock:
-            self.republish = rospy.Publisher(f"{self.name}/move_base/goal", MoveBaseActionGoal, queue_size=1)
-            simple = rospy.Subscriber(f"{self.name}/move_base_simple/goal", PoseStamped, self.on_simple, queue_size=1)
+            topic = f"{self.namespace}/move_base"
+            self.republish = rospy.Publisher(f"{topic}/goal", MoveBaseActionGoal, queue_size=1)
+            simple = rospy.Subscriber(f"{topic}_simple/goal", PoseStamped, self.on_simple, queue_size=1)
             self.process = [self.republish, simple]
         if boot > 0.0:
             rospy.Timer(rospy.Duration(boot), lambda _: self.start_server(), oneshot=True)
@@ -168,7 +171,7 @@ class FakeMoveBase:
     def start_server(self) -> None:
         """The action server starts."""
         with self.lock:
-            topic = f"{self.name}/move_base"
+            topic = f"{self.namespace}/move_base"
             self.results = rospy.Publisher(f"{topic}/result", MoveBaseActionResult, queue_size=50)
             self.feedback = rospy.Publisher(f"{topic}/feedback", MoveBaseActionFeedback, queue_size=50)
             self.plans = rospy.Publisher(f"{topic}/NavfnROS/plan", Path, queue_size=1) if Path is not None else None

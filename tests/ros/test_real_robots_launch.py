@@ -40,7 +40,8 @@ reach_objective: do greet
 
 def documented() -> str:
     """The launch line of docs/robots.md, for scenario_1."""
-    lines = set(re.findall(r"^ +(roslaunch my_floor_bringup .*)$", PAGE.read_text(encoding="utf-8"), re.MULTILINE))
+    page = PAGE.read_text(encoding="utf-8")
+    lines = set(re.findall(r"^ +(rosrun my_floor_bringup run_mission .*)$", page, re.MULTILINE))
     (line,) = lines
     return str(line).replace("my_floor", "scenario_1")
 

@@ -12,6 +12,8 @@ import pytest
 from fake_robots import UNIT, Robots, played, playing, robots_workspace, wait_for, well
 from ros_world import Ros, end
 
+from pursue_gen.replay import MissionRecord, read_recording
+
 pytestmark = pytest.mark.ros
 
 
@@ -49,6 +51,21 @@ def test_ends_are_seen_by_pose_and_by_tf(ros: Ros, workspace: Path, tmp_path: Pa
     well(said)
     assert robots.heard("bot1") == ["goal b", "action bot1_inb"]
     assert robots.heard("bot2") == ["goal a", "action bot2_ina"]
+
+
+def test_robots_have_namespaces_that_are_not_their_names(ros: Ros, workspace: Path, tmp_path: Path) -> None:
+    own = "bot1: {namespace: tb3_0}\nbot2: {namespace: /lab/tb3_1, ends: tf, end_settle: 0.2}\n"
+    (tmp_path / "own.yaml").write_text(own)
+    bot1, bot2 = {"namespace": "tb3_0"}, {"namespace": "lab/tb3_1", "travel": 9.2 * UNIT}
+    arguments = f"robots:={tmp_path}/own.yaml record:={tmp_path}/mission.bag"
+    robots, said = played(ros, workspace, tmp_path, arguments, bot1=bot1, bot2=bot2)
+    well(said)
+    assert robots.heard("bot1") == ["goal b", "action bot1_inb"]
+    assert robots.heard("bot2") == ["goal a", "action bot2_ina"]
+    record = read_recording(tmp_path / "mission.bag")
+    assert isinstance(record, MissionRecord)
+    given = [(order.robot, order.is_goal) for order in record.orders]
+    assert sorted(given) == [("bot1", False), ("bot1", True), ("bot2", False), ("bot2", True)]
 
 
 def test_a_robot_that_cannot_go_fails_and_others_are_called_back_when_the_mission_stops(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 from pathlib import Path
-from typing import Any, Callable, Dict, List
+from typing import Any, Callable, Dict, List, Sequence
 
 import pytest
 
@@ -193,9 +193,9 @@ def test_one_launch_line_for_real_robots_is_documented_everywhere(packages: Path
     pages = {root / "README.md": "my_floor", root / "docs" / "robots.md": "my_floor",
              packages.parent / "README.md": "scenario_1"}
     for page, name in pages.items():
-        lines = re.findall(r"^ +(roslaunch \w+ mission\.launch .*simulate:=false.*)$", page.read_text(), re.MULTILINE)
+        lines = re.findall(r"^ +(rosrun \w+ run_mission .*simulate:=false.*)$", page.read_text(), re.MULTILINE)
         bare = {re.sub(rf"{name}(_surveyed|_calibrated)?_bringup|( record:=\S+)?$", "", line) for line in lines}
-        assert bare == {"roslaunch  mission.launch simulate:=false"}, page
+        assert bare == {"rosrun  run_mission simulate:=false"}, page
 
 
 READ: Dict[str, Callable[[List[str]], Any]] = {
@@ -343,3 +343,23 @@ def test_what_has_a_default_is_optional_and_all_say_what_they_are(packages: Path
     required = [name for name, (_, default) in told.items() if not default]
     assert required == (["name"] if file == "robot.launch" else [])
     assert [name for name, (doc, _) in told.items() if not doc] == []
+
+
+@pytest.mark.parametrize(
+    ("file", "arguments", "clock", "runs"),
+    [
+        ("mission.launch", (), False, False),
+        ("mission.launch", ("use_sim_time:=true",), True, True),
+        ("mission.launch", ("simulate:=false",), None, False),
+        ("mission.launch", ("simulate:=false", "use_sim_time:=false"), False, False),
+        ("mission.launch", ("simulate:=false", "use_sim_time:=true"), True, True),
+        ("robot.launch", ("name:=base",), None, False),
+        ("robot.launch", ("name:=base", "use_sim_time:=true"), True, True),
+    ],
+)
+def test_the_clock_of_real_robots_stays_as_their_launch_has_set_it(
+    launch: Any, file: str, arguments: Sequence[str], clock: object, runs: bool
+) -> None:
+    """Gazebo, for example, sets /use_sim_time and publishes /clock."""
+    launched = launch(file, *arguments)
+    assert (launched.params.get("/use_sim_time"), "sim_clock" in launched.names) == (clock, runs)

@@ -85,10 +85,12 @@ class World:
         unanswered = {order.seq for order in self.ordered} - self.acknowledged
         self.robot.on_state(self.seen._replace(unanswered=frozenset(unanswered)), self.now)
 
-    def result(self, status: int, goal: Optional[str] = None, stamp: Optional[float] = None, text: str = "") -> None:
+    def result(
+        self, status: int, goal: Optional[str] = None, stamp: Optional[float] = None, text: str = "", outcome: str = ""
+    ) -> None:
         """The answer to the last goal, unless another is named."""
         name = self.goals[-1].name if goal is None else goal
-        self.robot.on_result(Answer(name, self.now if stamp is None else stamp, status, text), self.now)
+        self.robot.on_result(Answer(name, self.now if stamp is None else stamp, status, text, outcome), self.now)
         self.act()
 
     def status(self, *answers: Answer) -> None:

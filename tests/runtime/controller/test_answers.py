@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from pursue_runtime.controller.answers import outcome_name
 from tests.runtime.controller.robot_world import ABORTED, BLOCKED, FAILED, LOST, REJECTED, STUCK, B, C, World
 
 AGAIN, ONCE = 3, 1
@@ -92,6 +93,34 @@ def test_each_text_has_its_reason_and_its_recovery(text: str, word: str, says: s
     assert robot.texts == [f"{word}#0 on its way to {{b}}: {says}{often}"]
     assert len(robot.goals) == goals and {goal.movement.place for goal in robot.goals} == {B}
     assert not text or all(text in said for _, said in robot.said)
+
+
+@pytest.mark.parametrize(
+    ("code", "text", "word", "says"),
+    [
+        (56, "All recovery behaviors failed.", BLOCKED, "it finds no way"),
+        (55, "The plugin's own words", STUCK, "its spot there is occupied"),
+        (102, "", STUCK, "it finds no free motion"),
+        (112, "lookup would require extrapolation", FAILED, "it does not know where it is"),
+        (100, "Robot is oscillating for 30.05s!", STUCK, "it moves to and fro"),
+        (71, "The plugin's own words", STUCK, "its goal was aborted: The plugin's own words"),
+    ],
+)
+def test_an_outcome_of_move_base_flex_says_more_than_a_text(code: int, text: str, word: str, says: str) -> None:
+    robot = World(goals="action", ends="result", retries=0)
+    robot.go()
+    robot.result(ABORTED, text=text, outcome=outcome_name(code))
+    assert robot.texts == [f"{word}#0 on its way to {{b}}: {says}"]
+
+
+def test_each_outcome_that_has_a_name_has_a_meaning() -> None:
+    named = {outcome_name(code) for code in range(256)} - {""}
+    assert len(named) == 24
+    for name in named:
+        robot = World(goals="action", ends="result", retries=0)
+        robot.go()
+        robot.result(ABORTED, outcome=name)
+        assert "its goal was aborted" not in robot.texts[0], name
 
 
 @pytest.mark.parametrize(("status", "says"), [(REJECTED, "its goal was rejected"), (LOST, "its goal was lost")])

@@ -174,7 +174,7 @@ def test_it_reports_why_it_shows_nothing(markers: Any) -> None:
 
 def test_a_position_is_shown_when_it_has_changed(monkeypatch: pytest.MonkeyPatch) -> None:
     watch: Any = positions._Watch.__new__(positions._Watch)
-    watch._settings = {"bot": Settings(simulated=False, ends="pose")}
+    watch._settings = {"bot": Settings(simulated=False, ends="pose", namespace="bot")}
     watch._poses, watch._paths, watch._frames, watch._renewed = {}, {}, None, {}
     shown: List[Dict[str, Position]] = []
     looks = iter([Position(1.0, 2.0, 0.0), Position(1.001, 2.0, 0.0), Position(3.0, 2.0, 0.0)])
@@ -212,7 +212,7 @@ def link(monkeypatch: pytest.MonkeyPatch) -> Any:
     places: List[Any] = []
     nothing: Any = lambda *_: None
     statuses: List[Any] = []
-    settings = Settings(simulated=False, ends="pose", on_stop="keep")
+    settings = Settings(simulated=False, ends="pose", on_stop="keep", namespace="bot")
     made: Any = RobotLink("bot", settings, nothing, nothing, nothing, statuses.append, places.append, nothing)
     made.topics, made.places, made.statuses = topics, places, statuses
     return made

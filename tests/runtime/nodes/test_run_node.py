@@ -16,7 +16,7 @@ from rosgraph.xmlrpc import XmlRpcHandler, XmlRpcNode
 
 from pursue_runtime.arguments import CONFIG
 from pursue_runtime.data import DataError
-from pursue_runtime.nodes.node import init_node, run_node
+from pursue_runtime.nodes.node import init_node, run_node, warn_without_clock
 from tests.waiting import PATIENCE, until
 
 
@@ -88,3 +88,18 @@ def test_the_server_of_a_node_ends_when_rospy_closes_its_socket(log: List[str]) 
     node.shutdown("the mission is over")
     serving.join(PATIENCE)
     assert not serving.is_alive()
+
+
+@pytest.mark.parametrize(("simulated", "seconds", "warned"), [(True, 0, True), (True, 7, False), (False, 7, False)])
+def test_a_node_whose_time_stands_still_says_so(
+    monkeypatch: pytest.MonkeyPatch, simulated: bool, seconds: int, warned: bool
+) -> None:
+    lines: List[str] = []
+    monkeypatch.setattr(rospy.rostime, "is_wallclock", lambda: not simulated)
+    monkeypatch.setattr(rospy, "get_rostime", lambda: rospy.Time(seconds))
+    monkeypatch.setattr(rospy, "is_shutdown", lambda: False)
+    monkeypatch.setattr(rospy, "logwarn", lines.append)
+    warn_without_clock(wait=0.0)
+    assert [line.split(":")[0] for line in lines] == [
+        "/use_sim_time is true, but nobody publishes /clock"
+    ] * warned  # fmt: skip

@@ -26,6 +26,12 @@ def test_topics_are_named_and_each_stands_once() -> None:
     assert not [topic for topic in real if topic.startswith("thief")], "nobody sends it anything"
 
 
+def test_the_topics_of_a_robot_are_in_its_namespace() -> None:
+    other, none = topics(MODEL, False, {"bot": "tb3_0"}), topics(MODEL, False, {"bot": ""})
+    assert {"tb3_0/move_base/goal", "tb3_0/pursue/actions"} <= set(other) and "bot/move_base/goal" not in other
+    assert {"move_base/goal", "pursue/actions"} <= set(none)
+
+
 def test_a_bag_goes_where_it_was_asked_for_else_to_the_folder(tmp_path: Path) -> None:
     assert reserve_file("", str(tmp_path / "new")) == str(tmp_path / "new" / "mission.bag")
     asked = str(tmp_path / "other" / "my.bag")
