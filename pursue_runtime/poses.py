@@ -1,7 +1,8 @@
 """poses.yaml: where the places of a mission are on the robots' map, for each robot.
 
 `poses` has a pose for each place, for every robot that commands of this package are for. `robots` (format 2) has, by
-robot and place, those that differ: two robots at one place stand side by side.
+robot and place, those that differ: two robots at one place stand side by side. `spare` (format 3) has, by robot and
+place, where this robot alone may stand instead, if its navigation cannot bring it to its pose.
 """
 
 from __future__ import annotations
@@ -19,10 +20,11 @@ Table = Dict[str, List[float]]
 
 
 class Poses(NamedTuple):
-    """The poses of the `places`, and by robot the ones of its `own`."""
+    """The poses of the `places`, and by robot the ones of its `own` and its `spare` ones."""
 
     places: Table
     own: Dict[str, Table]
+    spare: Dict[str, Table]
 
     def of(self, robots: Iterable[str]) -> Dict[str, Table]:
         """Return for each of the robots where it is sent: a pose for each place."""
@@ -31,18 +33,25 @@ class Poses(NamedTuple):
 
 def read_poses(data: Mapping[str, Any]) -> Poses:
     """Read the content of poses.yaml. Raises DataError."""
-    places, robots = data.get("poses"), data.get("robots", {})
-    if not isinstance(places, dict) or not isinstance(robots, dict):
-        raise DataError("poses.yaml: expected poses: and a line for each place, robots: and a table for each robot")
-    where, own = _table(places, ""), {}
+    places = data.get("poses")
+    if not isinstance(places, dict):
+        raise DataError("poses.yaml: expected poses: and a line for each place")
+    where = _table(places, "")
+    return Poses(where, _of_robots(data, "robots", where), _of_robots(data, "spare", where))
+
+
+def _of_robots(data: Mapping[str, Any], key: str, places: Table) -> Dict[str, Table]:
+    robots, own = data.get(key, {}), {}
+    if not isinstance(robots, dict):
+        raise DataError(f"poses.yaml: expected {key}: and a table for each robot")
     for robot, table in robots.items():
         if not isinstance(table, dict):
             raise DataError(f"poses.yaml: expected a line for each place of {robot}'s own, got {table!r}")
         own[str(robot)] = _table(table, f" for {robot}")
-        unknown = sorted(set(own[str(robot)]) - set(where))
+        unknown = sorted(set(own[str(robot)]) - set(places))
         if unknown:
             raise DataError(f"poses.yaml: {robot} has a pose at {unknown[0]}, which is not a place under poses:")
-    return Poses(where, own)
+    return own
 
 
 def _table(given: Mapping[Any, Any], whose: str) -> Table:

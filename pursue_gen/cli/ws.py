@@ -52,10 +52,11 @@ def ws(
     from pursue_gen.drawing.floor_picture import read_floor
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.workspace.make import Extras, make_workspace
-    from pursue_gen.workspace.map_spots import with_spots
+    from pursue_gen.workspace.map_spots import spare_spots, with_spots
     from pursue_gen.workspace.robot_size import read_sizes, sizes_of
 
     told = read_sizes(robot)
+    extras = Extras(machines, docker, systemd, spot_distance)
     under = None if floor is None else read_floor(floor)
     start = request.options.limits.now()
     read = scenario_from(scenario, request)
@@ -64,12 +65,12 @@ def ws(
         ground, sizes = read_ground(floor), sizes_of(read, told)
         findings, ways = on_map(read, ground, spot_distance, sizes)
         show(findings)
-        under = replace(under, paths=ways)
         read = with_spots(read, ground, spot_distance, sizes.largest, ways)
+        spare = spare_spots(read, ground, spot_distance, sizes, ways) if ways else {}
+        extras = replace(extras, floor=replace(under, paths=ways), spare=spare)
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")
     found = solve_and_print(read, request, explain)
-    extras = Extras(machines, docker, systemd, spot_distance, under)
     made = make_workspace(found.scenario, found.solution, request, extras, folder, force)
     info(made.margin)
     show(made.findings)

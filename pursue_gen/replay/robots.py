@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bisect
+import math
 from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.drawing.layout import poses
@@ -13,6 +14,7 @@ from pursue_gen.replay.game import Game
 from pursue_gen.replay.orders import Orders
 from pursue_gen.replay.receipts import receipts_in, without_receipt
 from pursue_gen.replay.record import MissionRecord, RobotOrder
+from pursue_gen.workspace.map_spots import SPARE_REACH
 from pursue_runtime.state import SystemState
 
 LATE = 2.0
@@ -63,6 +65,7 @@ def check_robots(
             text = f"{order.node or 'an unknown node'} gave {order.robot} {what} that follows from no state"
             found.append(Finding(FAULT, "order", seq, text))
             continue
+        again = place in ordered
         ordered.add(place)
         state, _, robot, location = activities[place]
         if state.seq in uncommanded:
@@ -73,7 +76,7 @@ def check_robots(
             text = f"{order.node} commands {robot}, which is for {' or '.join(sorted(owners))}"
             found.append(Finding(FAULT, "owner", state.seq, text))
         if order.goal is not None and location in ways:
-            problem = _elsewhere(order.goal, ways[location], places[robot], where[robot])
+            problem = _elsewhere(order.goal, ways[location], again, places[robot], where[robot])
             found += [Finding(FAULT, "goal", state.seq, f"{robot} is sent {problem}")] if problem else []
     if not record.problems:
         commanded = {state.seq for _, state, _, is_command in steps if is_command}
@@ -183,10 +186,13 @@ def _places(scenario: Scenario, robot: str) -> Dict[str, Point]:
 
 
 def _elsewhere(
-    goal: Point, poi: str, places: Dict[str, Point], where: Mapping[str, Point]
+    goal: Point, poi: str, again: bool, places: Dict[str, Point], where: Mapping[str, Point]
 ) -> str:
-    """Where a goal leads that should lead to the POI; "" where it may be right: poses are the workspace's."""
+    """Where a goal leads that should lead to the POI; "" where it may be right: poses are the workspace's. One that is
+    sent `again` may be for the robot's spare pose, near its own one."""
     known = places.setdefault(poi, goal)
+    if again and _far(goal, known) and math.dist(goal, known) <= SPARE_REACH + NEAR:
+        known = places.setdefault(f"{poi} (spare)", goal)
     if _far(goal, known):
         return f"to ({goal[0]:.2f}, {goal[1]:.2f}), and {poi} was at ({known[0]:.2f}, {known[1]:.2f}) before"
     others = [name for name, place in where.items() if not _far(goal, place)]

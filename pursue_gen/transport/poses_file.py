@@ -16,7 +16,7 @@ from pursue_gen.language.similar import closest
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _FORM = "write NAME: [x, y, z, qx, qy, qz, qw]: metres on the map, and a unit quaternion; 0, 0, 0, 1 looks along x"
-_KEYS = ("format", "computed", "poses", "robots")
+_KEYS = ("format", "computed", "poses", "robots", "spare")
 _FARTHEST = 1e6  # metres; anything beyond is a slip of the pen
 _LOOSE = 0.05  # so much may a quaternion's length be off, as in scenarios
 _ROUNDING = 1e-9
@@ -70,9 +70,9 @@ class _Reader:
 
     def poses(self, root: Any) -> GivenPoses:
         top = {} if root is None else self._entries(root, "the lines format: 1 and poses:")
-        form, computed, listed, robots = (top.get(name, (None, None))[1] for name in _KEYS)
-        if form is not None and form.value not in ("1", "2"):
-            self._wrong(form, "this is of a format that is not known; expected format: 1 or 2", _FORM)
+        form, computed, listed, robots, _ = (top.get(name, (None, None))[1] for name in _KEYS)
+        if form is not None and form.value not in ("1", "2", "3"):
+            self._wrong(form, "this is of a format that is not known; expected format: 1, 2 or 3", _FORM)
         if computed is not None and str(computed.value).lower() in ("true", "yes", "on"):
             hint = "put your map's poses here and say computed: false; for simulated robots use --computed-poses"
             self._wrong(computed, "these poses are computed from distances, not measured", hint)

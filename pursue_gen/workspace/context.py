@@ -31,7 +31,7 @@ from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.partition import SubStrategy
 from pursue_gen.tga.network import Kind, Objective, is_end
 from pursue_gen.workspace.machines import ONE_MACHINE, Machines, nodes_of
-from pursue_gen.workspace.spots import SPOT_DISTANCE
+from pursue_gen.workspace.spots import SPOT_DISTANCE, Table
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,8 @@ class Options:
     `answers`: by automata, how many time units after they are due promises are kept at worst, as far as it is known.
     `time_unit`: the default length of a time unit in seconds. `machines`: which machine runs which node; `docker` and
     `systemd`: with files for containers, and for services. `spot_distance`: metres between the robots at one place
-    where the scenario does not say where they stand. The rest goes into the manifests.
+    where the scenario does not say where they stand; `spare`: robot → place → pose that it alone may take if need be.
+    The rest goes into the manifests.
     """
 
     controllers: str = "distributed"
@@ -68,6 +69,7 @@ class Options:
     docker: bool = False
     systemd: bool = False
     spot_distance: float = SPOT_DISTANCE
+    spare: Mapping[str, Table] = field(default_factory=dict)
     maintainer: str = "maintainer"
     maintainer_email: str = "maintainer@example.org"
     license: str = "BSD-3-Clause"

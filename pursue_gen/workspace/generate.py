@@ -86,7 +86,7 @@ def generate(
     }
     files: Dict[str, bytes] = {}
     sent = {sub.controller: [agent for agent in sub.agents if agent in where.spots] for sub in subs}
-    poses_of = {controller: poses_text(scenario, where, robots) for controller, robots in sent.items()}
+    poses_of = {controller: poses_text(scenario, where, robots, options.spare) for controller, robots in sent.items()}
     packages = _with_mission(_packages(scenario, subs, data, poses_of, options), scenario)
     _check_packages(packages)
     for package in packages:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
-from typing import Optional, Tuple
+from typing import Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.drawing.floor import Floor
@@ -17,7 +17,7 @@ from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.verdict import margin_text, margins
 from pursue_gen.tga.network import Kind
 from pursue_gen.workspace import Options, machines_for, write_workspace
-from pursue_gen.workspace.spots import SPOT_DISTANCE, spots_in_one
+from pursue_gen.workspace.spots import SPOT_DISTANCE, Table, spots_in_one
 
 _STATES = 10_000
 """Symbolic states of the checker that may tell the worst-case time: a second at most, as a rule."""
@@ -27,7 +27,8 @@ _STATES = 10_000
 class Extras:
     """What a workspace may have besides: a machines.yaml, and files for containers and for services.
 
-    `spot_distance`: metres between the robots at one place. `floor`: a floor plan for the UI's page.
+    `spot_distance`: metres between the robots at one place; `spare`: as `map_spots.spare_spots` finds them. `floor`: a
+    floor plan for the UI's page.
     """
 
     machines: Optional[Path] = None
@@ -35,6 +36,7 @@ class Extras:
     systemd: bool = False
     spot_distance: float = SPOT_DISTANCE
     floor: Optional[Floor] = None
+    spare: Mapping[str, Table] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,7 @@ def options_for(request: SolveRequest, won: Solution, margin: str = "", extras: 
         docker=extras.docker,
         systemd=extras.systemd,
         spot_distance=extras.spot_distance,
+        spare=extras.spare,
     )
 
 

@@ -5,14 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Dict, Mapping, Sequence, Tuple
+from typing import Dict, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.drawing.clearance import Clearance, Point, to_line
 from pursue_gen.drawing.ground import FREE, Ground
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Pose, Ref, Scenario, Spot
-from pursue_gen.workspace.robot_size import RobotSize
+from pursue_gen.workspace.robot_size import RobotSize, Sizes
 from pursue_gen.workspace.spots import Fit, placing
+
+SPARE_REACH = 1.6
+"""Metres around a spot in which a spare one is looked for."""
 
 _SAME = 0.001
 """Metres by which two points are one."""
@@ -45,6 +48,43 @@ def with_poses(scenario: Scenario, beside: Mapping[str, Mapping[str, Pose]]) -> 
         added = [Spot(Ref(robot, poi.span), pose) for robot, pose in beside.get(poi.name, {}).items()]
         pois.append(replace(poi, spots=(*poi.spots, *added)))
     return replace(scenario, pois=tuple(pois))
+
+
+def spare_spots(
+    scenario: Scenario, ground: Ground, distance: float, sizes: Sizes, ways: Ways
+) -> Dict[str, Dict[str, Pose]]:
+    """robot → place → another pose that this robot alone may take there, if its navigation cannot bring it to its spot.
+
+    It is near the spot, with the room to stop and turn, seen from it, apart from the poses and spots of all other
+    robots, and off the ways; robots have none where there is no such point. `scenario` is that of `with_spots`.
+    """
+    where, present = placing(scenario, distance), robots_at(scenario)
+    posed = [poi for poi in scenario.pois if poi.pose is not None]
+    taken = [(robot, where.spots[robot][poi.name]) for poi in posed for robot in present[poi.name]]
+    clearance = Clearance(ground)
+
+    def spare(robot: str, spot: Pose) -> Optional[Pose]:
+        size, here = sizes.of([robot]), (spot.x, spot.y)
+        rooms = [(line, room_on(line, here, sizes.largest)) for line in ways.values()]
+        others = [(pose, size.needed + sizes.of([other]).needed) for other, pose in taken if other != robot]
+
+        def is_free(at: Point) -> bool:
+            apart = all(math.dist(at, (pose.x, pose.y)) >= room for pose, room in others)
+            aside = all(to_line(line, at)[0] >= room for line, room in rooms)
+            near = size.needed <= math.dist(at, here) <= SPARE_REACH
+            return near and apart and aside and is_seen(ground, here, at)
+
+        point = clearance.nearest(*here, size.wanted, SPARE_REACH, is_free)
+        return None if point is None else replace(spot, x=round(point[0], 3) + 0.0, y=round(point[1], 3) + 0.0)
+
+    found: Dict[str, Dict[str, Pose]] = {}
+    for poi in posed:
+        for robot in present[poi.name]:
+            pose = spare(robot, where.spots[robot][poi.name])
+            if pose is not None:
+                found.setdefault(robot, {})[poi.name] = pose
+                taken.append((robot, pose))
+    return found
 
 
 def fit_on(ground: Ground, robot: RobotSize, ways: Ways = NO_WAYS) -> Fit:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, Sequence
+from types import MappingProxyType
+from typing import Any, Dict, List, Mapping, Sequence
 
 from pursue_gen import __version__
 from pursue_gen.language.behaviour import robots_at
@@ -10,11 +11,16 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.workspace.spots import Placing, Table
 
+NOTHING: Mapping[str, Table] = MappingProxyType({})
 
-def poses_text(scenario: Scenario, placing: Placing, robots: Sequence[str] = ()) -> bytes:
+
+def poses_text(
+    scenario: Scenario, placing: Placing, robots: Sequence[str] = (), spare: Mapping[str, Table] = NOTHING
+) -> bytes:
     """The text of poses.yaml for a package that sends these robots to their spots; without robots it has the places.
 
-    One robot has a table of its own. Of several, those that differ from the places' poses are named (format 2).
+    One robot has a table of its own. Of several, those that differ from the places' poses are named (format 2). Those
+    that each robot alone may take if need be are named in any case (`spare`: robot → place → pose, format 3).
     """
     places, spots = placing.places, placing.spots
     head = [_title(scenario, robots)]
@@ -33,9 +39,13 @@ def poses_text(scenario: Scenario, placing: Placing, robots: Sequence[str] = ())
     else:
         differ = {robot: {name: p for name, p in spots[robot].items() if p != places[name]} for robot in robots}
         own = {robot: table for robot, table in differ.items() if table}
-    data: Dict[str, Any] = {"format": 2 if own else 1, "computed": placing.computed, "poses": _lines(places, alone)}
+    spare = {robot: spare[robot] for robot in robots if robot in spare}
+    form = 3 if spare else 2 if own else 1
+    data: Dict[str, Any] = {"format": form, "computed": placing.computed, "poses": _lines(places, alone)}
     if own:
         data["robots"] = {robot: _lines(table, _computed(scenario, robot)) for robot, table in own.items()}
+    if spare:
+        data["spare"] = {robot: _lines(table, ()) for robot, table in spare.items()}
     return yaml_text(data, head).encode()
 
 

@@ -37,7 +37,7 @@ class Part(NamedTuple):
 def read_part(source: Source) -> Part:
     """Read a part from one source. Raises DataError."""
     if source.empty:
-        return Part(source.mission, None, Poses({}, {}))
+        return Part(source.mission, None, Poses({}, {}, {}))
     try:
         poses = read_poses(source.read(POSES))
     except DataError as problem:

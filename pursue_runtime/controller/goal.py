@@ -24,10 +24,11 @@ FIRST_WAIT, LAST_WAIT = 1.0, 8.0
 
 
 class Movement(NamedTuple):
-    """Where a robot is sent, and the location of the agent meanwhile."""
+    """Where a robot is sent, and the location of the agent meanwhile; `spare`: where it may go at that place, too."""
 
     location: str
     place: Place
+    spare: Optional[Place] = None
 
 
 class Goal(NamedTuple):

@@ -52,6 +52,8 @@ class Navigation:
     action's place. If it is not, that is reported; while the state lists it as `returning` it gets a goal for its
     place. A goal that a goal of another node has replaced is sent again, `~retries` times. One that another node has
     cancelled, or replaced once more, is sent again when the state has listed the robot as `held`, and does so no more.
+    A goal that fails is sent again, `~retries` times, the last time to the robot's spare pose at the place if it has
+    one. No other robot is sent there.
     """
 
     def __init__(self, name: str, settings: Settings, log: Log) -> None:
@@ -339,10 +341,14 @@ class Navigation:
     def _on_failure(self, trip: Trip, answer: Answer, now: float) -> None:
         meaning = meaning_of(answer)
         what, own_text = trip.describe(meaning.says), f" (move_base: {answer.text})" if answer.text else ""
-        if meaning.again and trip.attempts <= self.settings.retries:
-            self.trouble = f"{what}; it tries again"
+        elsewhere = meaning.event != FAILED and (trip.attempts >= self.settings.retries or not meaning.again)
+        spare = trip.movement.spare if elsewhere else None
+        if (meaning.again or spare) and trip.attempts <= self.settings.retries:
+            self.trouble = f"{what}; it tries {'another spot there' if spare else 'again'}"
             self._log("warn", f"{self.name} {in_words(self.trouble)}{own_text}")
             trip.goal_at = now + self.settings.retry_delay
+            if spare:
+                trip.movement = trip.movement._replace(place=spare, spare=None)
         else:
             self.trouble = what + (f", in {trip.attempts} attempts" if trip.attempts > 1 else "")
             self._log("err", f"{self.name} {in_words(self.trouble)}{own_text}")

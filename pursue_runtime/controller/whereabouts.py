@@ -6,7 +6,7 @@ Distances are metres, angles radians, times seconds of ROS time.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, Optional, Sequence
+from typing import NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.sentences import marked
@@ -21,18 +21,19 @@ class Position(NamedTuple):
 
 
 class Place(NamedTuple):
-    """A place of the scenario on the map; `yaw` is None where no orientation is demanded."""
+    """A place of the scenario on the map; `yaw` is None where no orientation is demanded. `pose`: as goals have it."""
 
     poi: str
     x: float
     y: float
     yaw: Optional[float] = None
+    pose: Tuple[float, ...] = ()
 
 
 def place_of(poi: str, pose: Sequence[float]) -> Place:
     """Return the place with this pose [x, y, z, qx, qy, qz, qw]; a quaternion of zeros demands no orientation."""
     orientation = pose[3:7]
-    return Place(poi, pose[0], pose[1], yaw_of(*orientation) if any(orientation) else None)
+    return Place(poi, pose[0], pose[1], yaw_of(*orientation) if any(orientation) else None, tuple(pose))
 
 
 def yaw_of(x: float, y: float, z: float, w: float) -> float:

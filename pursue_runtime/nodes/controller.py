@@ -71,7 +71,8 @@ class Controller:
             rospy.loginfo("has %s mission %s", what, part.mission or "own")
         self.alarm.set()
         reaction = part.strategy.reaction if part and part.strategy is not None else 0.0
-        self.exegg.take_up(part.poses.of(part.robots) if part else {}, reaction)
+        poses, spare = (part.poses.of(part.robots), part.poses.spare) if part else ({}, {})
+        self.exegg.take_up(poses, reaction, spare)
 
     def update_state(self, state: SystemState, publisher: str) -> None:
         """Handle a state: order the robots what was taken, and plan the next command."""

@@ -40,7 +40,6 @@ class Exeggutor:
 
     def __init__(self, ending: Ending) -> None:
         self._lock = threading.RLock()
-        self._poses: Mapping[str, Table] = {}
         self._places: Dict[str, Dict[str, Place]] = {}
         self._ways: Dict[str, Dict[str, Movement]] = {}
         self._status, self._reaction = RUNNING, 0.0
@@ -59,10 +58,10 @@ class Exeggutor:
         self._alarm = Alarm(self._on_alarm, ending)
         rospy.on_shutdown(self._call_back)
 
-    def take_up(self, poses: Mapping[str, Table], reaction: float) -> None:
-        """Take these robots, each with its poses of the places; orders given before are over. `reaction`: the time
-        units that the strategy allows a command. Raises DataError, with no robots, where the settings of one are
-        wrong."""
+    def take_up(self, poses: Mapping[str, Table], reaction: float, spare: Mapping[str, Table]) -> None:
+        """Take these robots, each with its poses of the places, and `spare` ones; orders given before are over.
+        `reaction`: the time units that the strategy allows a command. Raises DataError, with no robots, where the
+        settings of one are wrong."""
         with self._lock:
             self._reaction = reaction
             self._call_back()
@@ -70,9 +69,8 @@ class Exeggutor:
                 link.keep("", False, "")
             positions = {name: robot.position for name, robot in self._robots.items()}
             self._robots, self._status = {}, RUNNING
-            self._poses = poses
             self._places = {robot: {poi: place_of(poi, pose) for poi, pose in poses[robot].items()} for robot in poses}
-            self._ways = {robot: _ways(places) for robot, places in self._places.items()}
+            self._ways = {robot: _ways(places, spare.get(robot, {})) for robot, places in self._places.items()}
             given = rospy.get_param("~", {})
             settings = {robot: read_settings(robot, given) for robot in poses}
             for robot in set(self._links) - set(settings):
@@ -216,7 +214,7 @@ class Exeggutor:
         for name, robot in self._robots.items():
             goal, actions, word = robot.due(now, real)
             if goal is not None:
-                self._links[name].go(goal, self._poses[name][goal.movement.place.poi])
+                self._links[name].go(goal, goal.movement.place.pose)
             for order in actions:
                 if self._links[name].do(order):
                     self.announce(format_word(Word(name, ORDERED, order.seq, at=order.given or None)))
@@ -259,6 +257,7 @@ class Exeggutor:
             self._links[name].cancel(robot.goal)
 
 
-def _ways(places: Mapping[str, Place]) -> Dict[str, Movement]:
+def _ways(places: Mapping[str, Place], spare: Table) -> Dict[str, Movement]:
     """A robot's movement for each location in which it is under way."""
-    return {movement(x, y): Movement(movement(x, y), places[y]) for x in places for y in places}
+    others = {poi: place_of(poi, pose) for poi, pose in spare.items()}
+    return {movement(x, y): Movement(movement(x, y), places[y], others.get(y)) for x in places for y in places}

@@ -312,7 +312,15 @@ def test_two_robots_may_be_sent_to_different_spots_of_one_place_but_each_always_
     made.heard[-1] = (*made.heard[-1][:3], beside)
     assert "goal" not in {kind for kind, _ in kinds(found(made))}
     made.order(made.states[-1].stamp + 0.01, "bot2", "a")
-    assert "goal" in {kind for kind, _ in kinds(found(made))}
+    assert "goal" not in {kind for kind, _ in kinds(found(made))}, "sent again, it may be to its spare spot"
+    made.heard[-1] = (*made.heard[-1][:3], replace(made.heard[-1][3], y=made.heard[-1][3].y + 2.5))
+    assert "goal" in {kind for kind, _ in kinds(found(made))}, "which is near its own one"
+    made.heard[-1] = (*made.heard[-1][:3], beside)
+    made.order(made.states[-1].stamp + 0.02, "bot2", "a")
+    made.heard[-1] = (*made.heard[-1][:3], replace(beside, y=beside.y - 0.4))
+    assert "goal" not in {kind for kind, _ in kinds(found(made))}
+    made.order(made.states[-1].stamp + 0.03, "bot2", "a")
+    assert "goal" in {kind for kind, _ in kinds(found(made))}, "and always the same one"
 
 
 def test_what_was_not_read_makes_no_goal_missing_but_is_reported() -> None:

@@ -67,6 +67,12 @@ def alone(ros: Ros, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return workspace(ros, tmp_path_factory.mktemp("alone"), "bot1")
 
 
+def need_messages(ros: Ros) -> None:
+    found = ros.run("python3 -c 'import move_base_msgs.msg, actionlib_msgs.msg, tf2_ros'", ros.home)
+    if found.returncode:
+        pytest.skip(f"no messages of move_base here: {found.stdout.strip().splitlines()[-1]}")
+
+
 def drive(run: LaunchedMission, until_location: str = "") -> State:
     """Robots do what the state shows, each in its window, until one is at this location or the mission is over."""
     ended = set()
@@ -130,9 +136,7 @@ def test_where_its_navigation_gives_up_a_robot_goes_back_and_then_round_or_there
     ros: Ros, alone: Path, tmp_path: Path, play: str, says: str, stations: str
 ) -> None:
     """Goals and results as real robots have them; bot1 cannot go on from b to c."""
-    found = ros.run("python3 -c 'import move_base_msgs.msg, actionlib_msgs.msg, tf2_ros'", ros.home)
-    if found.returncode:
-        pytest.skip(f"no messages of move_base here: {found.stdout.strip().splitlines()[-1]}")
+    need_messages(ros)
     poses = yaml.safe_load((alone / "src/controller_bot1/config/poses.yaml").read_text())["poses"]
     plays = ["succeed", play, play, play, "succeed"]  # its goal is sent again twice
     bot1 = {"start": poses["a"][:2], "travel": 3.2, "acts": 1.2, "recovery": 0.5, "plays": plays}
@@ -147,3 +151,23 @@ def test_where_its_navigation_gives_up_a_robot_goes_back_and_then_round_or_there
     names = {f"{x:.2f} {y:.2f}": place for place, (x, y, *_) in poses.items()}
     goals = re.findall(r"^bot1 goal (.*)$", robot.output(), re.MULTILINE)
     assert [names.get(goal, goal) for goal in goals] == ["b", "c", "c", "c", *stations]
+
+
+def test_a_robot_that_cannot_stand_at_its_spot_takes_its_spare_one(ros: Ros, tmp_path: Path) -> None:
+    need_messages(ros)
+    there = workspace(ros, tmp_path, "bot1")
+    file = there / "src/controller_bot1/config/poses.yaml"
+    data = yaml.safe_load(file.read_text())
+    spare = [data["poses"]["c"][0] + 0.7, *data["poses"]["c"][1:]]
+    file.write_text(yaml.safe_dump({**data, "format": 3, "spare": {"bot1": {"c": spare}}}))
+    plays = ["succeed", "oscillating", "oscillating", "succeed"]
+    bot1 = {"start": data["poses"]["a"][:2], "travel": 3.2, "acts": 1.2, "recovery": 0.5, "plays": plays}
+    (tmp_path / "fake.yaml").write_text(yaml.safe_dump({"robots": {"bot1": bot1}}))
+    arguments = {**PLAYED, "goals": "action", "ends": "result", "time_unit": 0.5, "planner": PLANNER}
+    command = f"rosparam load {tmp_path}/fake.yaml /fake_move_base && exec python3 {FAKE}"
+    with launched(ros, there, tmp_path, ["bot1"], **arguments) as run, run.program(command, "fake_move_base") as robot:
+        assert run.until_over(4 * PATIENCE) == "won", run.output()
+    assert not [state for state in run.states() if state.status == "holding"], "it arrives in time"
+    goals = [[float(number) for number in goal.split()] for goal in re.findall(r"bot1 goal (.*)", robot.output())]
+    assert goals == [pytest.approx(pose[:2], abs=0.01) for pose in (*map(data["poses"].get, "bcc"), spare)]
+    assert re.search(r"bot1 action fetch", robot.output())

@@ -15,13 +15,18 @@ A, B, OWN = ([float(x), 2.0, 0.0, 0.0, 0.0, 0.0, 1.0] for x in (1, 5, 9))
 
 def test_without_poses_of_their_own_all_robots_have_those_of_the_places() -> None:
     poses = read_poses({"poses": {"a": A, "b": B}})
-    assert poses == Poses({"a": A, "b": B}, {})
+    assert poses == Poses({"a": A, "b": B}, {}, {})
     assert poses.of(["bot1", "bot2"]) == {"bot1": {"a": A, "b": B}, "bot2": {"a": A, "b": B}}
 
 
 def test_a_pose_of_a_robot_replaces_that_of_the_place_for_this_robot_alone() -> None:
     poses = read_poses({"poses": {"a": A, "b": B}, "robots": {"bot2": {"a": OWN}, "bot3": {"b": OWN}}})
     assert poses.of(["bot1", "bot2"]) == {"bot1": {"a": A, "b": B}, "bot2": {"a": OWN, "b": B}}
+
+
+def test_spare_poses_are_of_single_robots_and_no_pose_of_a_place() -> None:
+    poses = read_poses({"poses": {"a": A, "b": B}, "spare": {"bot2": {"a": OWN}}})
+    assert poses.spare == {"bot2": {"a": OWN}} and poses.of(["bot2"]) == {"bot2": {"a": A, "b": B}}
 
 
 def test_whole_numbers_and_those_that_yaml_takes_for_a_text_count() -> None:
@@ -37,6 +42,9 @@ def test_whole_numbers_and_those_that_yaml_takes_for_a_text_count() -> None:
         ({"poses": {"a": A}, "robots": {"bot2": A}}, "bot2's own"),
         ({"poses": {"a": A}, "robots": {"bot2": {"b": B}}}, "bot2 has a pose at b"),
         ({"poses": {"a": A}, "robots": {"bot2": {"a": B[:6]}}}, "the pose of a for bot2"),
+        ({"poses": {"a": A}, "spare": [A]}, "spare: and a table"),
+        ({"poses": {"a": A}, "spare": {"bot2": {"b": B}}}, "bot2 has a pose at b"),
+        ({"poses": {"a": A}, "spare": {"bot2": {"a": 3}}}, "the pose of a for bot2"),
         ({"poses": {"a": A[:6]}}, "the pose of a is"),
         ({"poses": {"a": [*A[:6], "east"]}}, "expected seven numbers"),
         ({"poses": {"a": [*A[:6], float("nan")]}}, "expected seven numbers"),
@@ -49,11 +57,11 @@ def test_what_is_no_table_of_poses_is_refused(data: Dict[str, Any], what: str) -
         read_poses(data)
 
 
-def test_both_formats_of_the_file_are_read_and_a_newer_one_is_refused(tmp_path: Path) -> None:
+def test_all_formats_of_the_file_are_read_and_a_newer_one_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "poses.yaml"
-    for number in (1, 2):
+    for number in (1, 2, 3):
         file.write_text(f"format: {number}\nposes: {{a: {A}}}\n")
         assert read_poses(read_data(str(file))).places == {"a": A}
-    file.write_text("format: 3\nposes: {}\n")
-    with pytest.raises(DataError, match=r"poses\.yaml has format 3, and pursue_runtime [\d.]+ reads format 2"):
+    file.write_text("format: 4\nposes: {}\n")
+    with pytest.raises(DataError, match=r"poses\.yaml has format 4, and pursue_runtime [\d.]+ reads format 3"):
         read_data(str(file))

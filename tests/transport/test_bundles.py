@@ -322,7 +322,7 @@ def test_computed_poses_are_not_taken_for_measured_ones() -> None:
         ("b: [1,", "b: [1\n  ,,", "6:4", "not YAML"),
         ("b: [1,", "b: &x [*x,", "5:6", "anchors"),
         ("  b: [1,", '  "a": [1,', "5:3", "twice"),
-        ("format: 1", "format: 3", "1:9", "format"),
+        ("format: 1", "format: 4", "1:9", "format"),
         (POSES, POSES + "robots: {bot3: {b: [1, 2, 0, 0, 0, 0, 1]}}\n", "7:10", "no robot 'bot3'"),
         (POSES, POSES + "robots: {bot2: {x: [1, 2, 0, 0, 0, 0, 1]}}\n", "7:17", "no point 'x'"),
         (POSES, POSES + "robots: {bot2: {b: [1, 2, 0, 0, 0, 0]}}\n", "7:20", "seven numbers, here are 6"),

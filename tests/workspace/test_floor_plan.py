@@ -10,7 +10,8 @@ import yaml
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.drawing import floor_picture as desk
-from pursue_runtime.data import DataError
+from pursue_runtime.data import DataError, read_data
+from pursue_runtime.poses import read_poses
 from pursue_runtime.ui.floor import read_floor
 from tests.authoring.commands import pursue
 
@@ -58,6 +59,11 @@ def test_the_page_finds_the_paths_of_ways_that_the_map_has(folder: Path) -> None
     ((a, b, line),) = found.paths
     assert (a, b, line[0], line[-1]) == ("a", "b", (1.0, 1.0), (7.0, 1.0))
     assert max(y for _, y in line) > 3.2, "around the wall"
+    poses = read_poses(read_data(str(folder / "out/src/controller_bot/config/poses.yaml")))
+    assert list(poses.spare["bot"]) == ["a", "b"] and poses.spare["bot"]["a"] != poses.places["a"]
+    assert pursue("ws", "visit.pur", "-o", "bare").status == 0
+    bare = (folder / "bare/src/controller_bot/config/poses.yaml").read_text()
+    assert "format: 1\n" in bare and "spare" not in bare
 
 
 def test_without_a_map_file_nothing_is_written(folder: Path) -> None:

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
-from typing import Dict, List
+from typing import Dict, List, Tuple
 
 import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pursue_gen.drawing.clearance import Clearance, to_line
 from pursue_gen.drawing.floor import MapSettings
 from pursue_gen.drawing.ground import Ground, cells_of
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.workspace.map_check import check_spots
-from pursue_gen.workspace.map_spots import with_spots
+from pursue_gen.workspace.map_spots import SPARE_REACH, is_seen, spare_spots, with_spots
 from pursue_gen.workspace.robot_size import RobotSize, Sizes
 from pursue_gen.workspace.spots import placing
 from tests.authoring.commands import pursue
@@ -95,6 +97,38 @@ def test_a_pose_of_its_own_and_a_place_without_a_pose_stay() -> None:
     made = scenario({"a": f"//[4, 3, 0, {EAST}] bot2 [4, 5.95, 0, {EAST}]", "b": ""}, 2)
     done = with_spots(made, ground([]), 0.8, SIZE)
     assert done.pois == made.pois and done.text == made.text
+
+
+@settings(deadline=None, max_examples=40)
+@given(
+    st.lists(st.tuples(st.integers(1, 70), st.integers(1, 50), st.integers(1, 12), st.integers(1, 12)), max_size=8),
+    st.integers(2, 4),
+)
+def test_a_spare_spot_has_room_and_is_apart_from_all_others_and_off_the_ways(
+    things: List[Tuple[int, int, int, int]], robots: int
+) -> None:
+    floor = ground([[x / 10, y / 10, (x + w) / 10, (y + h) / 10] for x, y, w, h in things])
+    made = scenario({"a": f"//[4, 3, 0, {EAST}]", "b": f"//[6, 5, 0, {EAST}]"}, robots)
+    ways = {("a", "b"): [(4.0, 3.0), (4.0, 5.0), (6.0, 5.0)]}
+    sizes = Sizes(RobotSize(0.3, 0.1), {"bot1": RobotSize(0.2, 0.1, 0.5)})
+    placed = with_spots(made, floor, 0.8, sizes.largest, ways)
+    found, spots, clear = spare_spots(placed, floor, 0.8, sizes, ways), placing(placed, 0.8).spots, Clearance(floor)
+    points = [(robot, at, pose) for table in (spots, found) for robot in table for at, pose in table[robot].items()]
+    for robot, table in found.items():
+        for place, pose in table.items():
+            size, own, here = sizes.of([robot]), spots[robot][place], (pose.x, pose.y)
+            assert clear.metres(*here, 2.0) > size.wanted and to_line(ways["a", "b"], here)[0] >= 2 * 0.3
+            assert size.needed <= math.dist(here, (own.x, own.y)) <= SPARE_REACH + 0.001
+            assert is_seen(floor, (own.x, own.y), here) and pose == replace(own, x=pose.x, y=pose.y)
+            for other, _, at in points:
+                room = size.needed + sizes.of([other]).needed
+                assert other == robot or math.dist(here, (at.x, at.y)) >= room - 0.001
+
+
+def test_where_there_is_room_each_robot_has_a_spare_spot_at_each_place() -> None:
+    made, ways = scenario({"a": f"//[4, 3, 0, {EAST}]"}, 2), {("a", "b"): [(4.0, 3.0), (8.0, 3.0)]}
+    found = spare_spots(with_spots(made, ground([]), 0.8, SIZE, ways), ground([]), 0.8, Sizes(SIZE), ways)
+    assert {robot: list(table) for robot, table in found.items()} == {"bot1": ["a"], "bot2": ["a"]}
 
 
 @settings(deadline=None, max_examples=60)

@@ -5,7 +5,21 @@ from __future__ import annotations
 import pytest
 
 from pursue_runtime.controller.answers import outcome_name
-from tests.runtime.controller.robot_world import ABORTED, BLOCKED, FAILED, LOST, REJECTED, STUCK, B, C, World
+from pursue_runtime.controller.whereabouts import Place
+from tests.runtime.controller.robot_world import (
+    ABORTED,
+    BLOCKED,
+    END,
+    FAILED,
+    LOST,
+    REJECTED,
+    STUCK,
+    SUCCEEDED,
+    WAY,
+    B,
+    C,
+    World,
+)
 
 AGAIN, ONCE = 3, 1
 
@@ -121,6 +135,52 @@ def test_each_outcome_that_has_a_name_has_a_meaning() -> None:
         robot.go()
         robot.result(ABORTED, outcome=name)
         assert "its goal was aborted" not in robot.texts[0], name
+
+
+SPARE = Place("b", 3.0, 5.0, 0.0)
+
+
+@pytest.mark.parametrize(("text", "word", "says", "goals"), [*MOVE_BASE, *MOVE_BASE_FLEX])
+def test_a_robot_with_a_spare_spot_at_the_place_tries_that_last(text: str, word: str, says: str, goals: int) -> None:
+    robot = World(goals="action", ends="result")
+    robot.go(WAY._replace(spare=SPARE))
+    while not robot.words and len(robot.goals) < 9:
+        robot.result(ABORTED, text=text)
+        robot.wait(1.5)
+    places = [goal.movement.place for goal in robot.goals]
+    expected = {AGAIN: [B, B, SPARE], ONCE: [B, SPARE]}[goals] if word != FAILED else [B, B, B]
+    assert places == expected, "as often as without one, but for a pose that is refused"
+    assert robot.words[0] == word
+
+
+def test_it_arrives_where_it_is_sent_at_last() -> None:
+    for ends in ("result", "tf"):
+        robot = World(goals="action", ends=ends, retries=1)
+        robot.go(WAY._replace(spare=SPARE))
+        robot.result(ABORTED, text="Robot is oscillating.")
+        assert robot.robot.trouble == "on its way to {b}: it moves to and fro; it tries another spot there"
+        robot.wait(1.5)
+        assert [goal.movement.place for goal in robot.goals] == [B, SPARE]
+        robot.at(SPARE.x, SPARE.y)
+        robot.result(SUCCEEDED)
+        robot.wait(1.0)
+        assert robot.words and set(robot.words) == {END}
+        robot.stay(B)
+        robot.wait(9.0)
+        robot.stay(B, "load")
+        robot.order("load", "doing_load_in_b")
+        assert robot.actions == ["load"] and set(robot.words) == {END}, "it is at the place"
+
+
+def test_a_spare_spot_is_not_tried_while_the_mission_holds() -> None:
+    robot, way = World(goals="action", ends="result", retries=1), WAY._replace(spare=SPARE)
+    robot.go(way)
+    robot.state(way, running=False)
+    robot.result(ABORTED, text="Robot is oscillating.")
+    robot.wait(9.0)
+    assert len(robot.goals) == 1
+    robot.state(way)
+    assert [goal.movement.place for goal in robot.goals] == [B, SPARE]
 
 
 @pytest.mark.parametrize(("status", "says"), [(REJECTED, "its goal was rejected"), (LOST, "its goal was lost")])
