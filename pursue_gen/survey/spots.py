@@ -15,7 +15,7 @@ from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Poi, Pose, Scenario
 from pursue_gen.survey.grid import Array, Grid, Point
 from pursue_gen.survey.times import yaw_of
-from pursue_gen.workspace.map_spots import Ways
+from pursue_gen.workspace.map_spots import NEAR, Ways
 
 _REACH = 4
 """How far from a place its spots are looked for: so many times the room of a robot, and 3 m at least."""
@@ -142,14 +142,15 @@ class _Candidates:
         self._grid, self._room, self._middle = grid, room, grid.cell(pose.x, pose.y)
         reach = max(_LEAST_REACH, _REACH * room)
         found = _connected(grid, self._middle, reach)
-        likes = np.ones(len(found), dtype=bool)
         if standing is not None:
             found = found[standing.may.free[found[:, 1], found[:, 0]]]
-            likes = standing.likes.free[found[:, 1], found[:, 0]]
         cells = found + 0.5
         points = np.round(np.column_stack(grid.metres((cells[:, 0], cells[:, 1]))), 3) + 0.0
         x, y = points[:, 0] - pose.x, points[:, 1] - pose.y
         apart = np.hypot(x, y)
+        likes = apart <= NEAR
+        if standing is not None:
+            likes &= standing.likes.free[found[:, 1], found[:, 0]]
         aside = np.ones(len(points), dtype=bool)
         for others, least in passed:
             aside &= cKDTree(others).query(points)[0] >= least if len(others) else True

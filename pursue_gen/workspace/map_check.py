@@ -13,12 +13,12 @@ from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Pose, Scenario
-from pursue_gen.workspace.map_spots import NO_WAYS, Ways, fit_on, is_seen, room_on
+from pursue_gen.workspace.map_spots import NEAR, NO_WAYS, Ways, fit_on, is_seen, room_on
 from pursue_gen.workspace.robot_size import ALIKE, RobotSize, Sizes
 from pursue_gen.workspace.spots import Fit, placing
 
-_NEAR, _FAR = 1.5, 5.0
-"""Metres around a point in which room is looked for that planners like, and any room at all."""
+_FAR = 5.0
+"""Metres around a point in which any room is looked for."""
 
 _CORRECT = "poses are metres, from the origin that the map's yaml file gives for its lower left corner"
 _SMALLER = "if the robots are smaller, say so: agent … radius METRES, or --robot PARAMETERS.yaml"
@@ -131,11 +131,13 @@ class _Look:
         if metres > robot.wanted + _TOUCH:
             return None
         if metres > robot.needed + _TOUCH:
-            better = self._better(point, robot.wanted, _NEAR)
+            better = self._better(point, robot.wanted, NEAR, beyond_walls=False)
             if better is None:
                 return None  # there is no better one
-            message = f"{point} is {metres:.2f} m from an obstacle, within the robots' inflation radius of "
-            message += f"{robot.inflation:g} m, where planners may oscillate"
+            message = f"{point} is {metres:.2f} m from an obstacle: a robot that stops there reaches into what is "
+            message += f"inflated, where TrajectoryPlannerROS may move to and fro; more than {robot.wanted:.10g} m, "
+            message += f"its radius of {robot.radius:g} m, its goal tolerance of {robot.tolerance:g} m and its "
+            message += f"inflation radius of {robot.inflation:g} m, are enough for any planner"
             return warning("MAP003", message, point.span, self._move(point, better))
         if metres > robot.radius + _TOUCH:
             message = f"{point} is {metres:.2f} m from an obstacle: to stop and turn there a robot needs more than "
@@ -193,14 +195,14 @@ class _Look:
     def remedy(self, point: _Point) -> str:
         """What to do about a point where there is too little room."""
         size = self.size(point)
-        better = self._better(point, size.wanted, _NEAR) or self._better(point, size.needed, _FAR)
+        better = self._better(point, size.wanted, NEAR) or self._better(point, size.needed, _FAR)
         if better is None:
             return f"move it: near it there is no room for a robot that needs {size.needed:g} m"
         return self._move(point, better)
 
-    def _better(self, point: _Point, radius: float, reach: float) -> Optional[Point]:
+    def _better(self, point: _Point, radius: float, reach: float, beyond_walls: bool = True) -> Optional[Point]:
         """The nearest point that is farther from obstacles than a radius, far enough from all other points; if there
-        is such a one, not on the way of others and not beyond a wall."""
+        is such a one, not on the way of others and not beyond a wall, or else none where it must not be there."""
         x, y = point.pose.x, point.pose.y
         rooms = [(line, self._room_on(ends, line, point)) for ends, line in self.ways.items()]
 
@@ -213,7 +215,7 @@ class _Look:
             return aside and is_apart(at) and is_seen(self.ground, (x, y), at)
 
         here = self.clearance.nearest(x, y, radius, reach, is_here) if self.ground.at(x, y) == FREE else None
-        return here or self.clearance.nearest(x, y, radius, reach, is_apart)
+        return here or (self.clearance.nearest(x, y, radius, reach, is_apart) if beyond_walls else None)
 
     def _move(self, point: _Point, to: Point) -> str:
         x, y = (round(number, 3) + 0.0 for number in to)

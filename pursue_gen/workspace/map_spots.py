@@ -17,6 +17,8 @@ from pursue_gen.workspace.spots import Fit, placing
 SPARE_REACH = 1.6
 """Metres around a spot in which a spare one is looked for."""
 
+NEAR = 1.5
+"""Metres around a place in which room is looked for that planners like: farther away it would be another place."""
 _SAME = 0.001
 """Metres by which two points are one."""
 
@@ -101,7 +103,8 @@ def fit_on(ground: Ground, robot: RobotSize, ways: Ways = NO_WAYS) -> Fit:
         if metres <= robot.needed or not is_seen(ground, place, here):
             return 0
         is_aside = all(to_line(line, here)[0] >= room_on(line, place, robot) for line in ways.values())
-        return 1 + 2 * is_aside + (metres > robot.wanted)
+        is_liked = metres > robot.wanted and math.dist(place, here) <= NEAR
+        return 1 + 2 * is_aside + is_liked
 
     return fit
 

@@ -18,6 +18,8 @@ from pursue_runtime.bounded import SETTINGS, BadText, read_yaml
 
 _PADDING = 0.01
 """Metres that costmap_2d adds to a footprint where `footprint_padding` does not say otherwise."""
+_CARELESS = "DWAPlannerROS"
+"""The planner that drives to goals within what is inflated: it weighs obstacles little in comparison with its path."""
 _OF_ONE = re.compile(r"([^\W\d]\w*)=(.*)", re.DOTALL)
 _FORM = "METRES, or the yaml file of a robot's costmap or planner, with footprint, robot_radius, inflation_radius or "
 _FORM += "xy_goal_tolerance"
@@ -28,8 +30,8 @@ class RobotSize:
     """What a robot needs, in metres.
 
     `radius`: from the middle to the farthest part, so that it can turn; `tolerance`: how far from its goal it stops at
-    most (`xy_goal_tolerance`); `inflation`: how far from obstacles its planners avoid to drive, 0 where that is not
-    known.
+    most (`xy_goal_tolerance`); `inflation`: how far around obstacles its planner does not like any part of it to be, 0
+    where that is not known, or its planner does not care.
     """
 
     radius: float = 0.3
@@ -43,8 +45,8 @@ class RobotSize:
 
     @property
     def wanted(self) -> float:
-        """How far from an obstacle its goal should be, so that its planners need not cross what is inflated."""
-        return max(self.needed, self.inflation)
+        """How far from an obstacle its goal should be, so that no part of it comes into what is inflated."""
+        return self.needed + self.inflation
 
     @property
     def apart(self) -> float:
@@ -121,6 +123,9 @@ def read_sizes(texts: Sequence[str]) -> Told:
         sizes = found.setdefault(robot, {})
         for name, value in [("radius", metres)] if metres is not None else _in_file(Path(size)):
             sizes[name] = max(sizes.get(name, 0.0), math.ceil(round(1000 * value, 6)) / 1000)
+    for sizes in found.values():
+        if sizes.pop(_CARELESS, 0.0):
+            sizes.pop("inflation", None)
     return found
 
 
@@ -161,7 +166,9 @@ def _sizes(data: Any, file: Path) -> Iterator[Any]:
         value = _number(data, key, file)
         if value is not None:
             yield name, value
-    for value in data.values():
+    for name, value in data.items():
+        if name == _CARELESS or (name == "base_local_planner" and str(value).endswith(_CARELESS)):
+            yield _CARELESS, 1.0
         yield from _sizes(value, file)
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from pursue_gen.language.parser import parse
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.survey.grid import Point, grid_of
-from pursue_gen.survey.spots import Spots, proposed_spots, shut_in
+from pursue_gen.survey.spots import Spots, Standing, proposed_spots, shut_in
 from tests.survey.maps import drawn, ground_of
 
 GRID = grid_of(ground_of(drawn((8, 6), [(3.9, 0, 4.1, 6)], [(3.9, 2.5, 4.1, 3.5)])), 0.3)
@@ -60,6 +60,15 @@ def test_nobody_is_placed_beyond_a_wall_or_too_near_to_one() -> None:
     found = spots({"a": pose(3.5, 0.5)}, 5)["a"]
     assert len(points(found)) == 4
     assert all(x < 3.6 and GRID.is_free(GRID.cell(x, y)) for x, y in points(found))
+
+
+def test_no_robot_stands_in_another_room_because_planners_would_like_it() -> None:
+    ground = ground_of(drawn((8, 6), [(0, 2.0, 8, 2.1)], [(3.5, 2.0, 4.5, 2.1)]))
+    places = {"a": pose(4.0, 1.0)}
+    likes = Standing(grid_of(ground, 0.3), grid_of(ground, 1.2))
+    found = proposed_spots(scenario(places, 2), grid_of(ground, 0.2), places, ROOM, {}, standing=likes)
+    ((x, y),) = points(found["a"])
+    assert y < 2.0 and math.dist((x, y), (4.0, 1.0)) < 1.1
 
 
 def test_a_spot_is_out_of_the_way_of_robots_that_pass() -> None:

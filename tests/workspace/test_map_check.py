@@ -117,13 +117,14 @@ def test_a_robot_needs_room_to_stop_within_its_tolerance_and_to_turn(tmp_path: P
             assert "there is room at 0.45, 2.55, " in hint and "--robot" in hint
 
 
-def test_a_spot_is_outside_what_is_inflated_where_there_is_such_a_point_near_it(tmp_path: Path) -> None:
+def test_no_part_of_a_robot_is_in_what_is_inflated_where_there_is_such_a_point_near_it(tmp_path: Path) -> None:
     floor = floor_of(tmp_path, ROOM_YAML, ROOM)
     pose = "[0.55, 2.55, 0, 0, 0, 0, 1]"
-    ((code, message, hint),) = found_in(floor, pose, RobotSize(0.2, 0.1, 0.7), 1)
-    assert code == "MAP003" and "0.50 m from an obstacle, within the robots' inflation radius of 0.7 m" in message
+    ((code, message, hint),) = found_in(floor, pose, RobotSize(0.2, 0.1, 0.4), 1)
+    assert code == "MAP003" and "0.50 m from an obstacle: a robot that stops there reaches into" in message
+    assert "more than 0.7 m, its radius of 0.2 m, its goal tolerance of 0.1 m and its inflation radius of" in message
     assert hint == "there is room at 0.85, 2.55, 0.30 m from there"
-    assert found_in(floor, pose, RobotSize(0.2, 0.1, 0.4), 1) == []
+    assert found_in(floor, pose, RobotSize(0.2, 0.1, 0.15), 1) == []
     assert found_in(floor, pose, RobotSize(0.2, 0.1, 3.0), 1) == [], "nowhere in the room is there such a point"
 
 

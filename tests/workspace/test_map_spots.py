@@ -71,7 +71,14 @@ def test_a_spot_outside_what_is_inflated_goes_before_one_that_is_nearer() -> Non
     made = scenario({"a": f"//[4, 3, 0, {EAST}]"}, 2)
     floor = ground([[0, 4.2, 8, 4.4]])
     assert beside(made, floor)["bot2"] == [4, 3.8]
-    assert beside(made, floor, RobotSize(0.2, 0.1, 0.6))["bot2"] == [4, 2.2]
+    assert beside(made, floor, RobotSize(0.2, 0.1, 0.3))["bot2"] == [4, 2.2]
+
+
+def test_no_spot_is_far_from_its_place_because_planners_would_like_it() -> None:
+    made = scenario({"a": f"//[4, 3, 0, {EAST}]"}, 2)
+    corridor = ground([[0, 4.2, 8, 4.4], [0, 1.6, 6, 1.8]])
+    near, liked = beside(made, corridor), beside(made, corridor, RobotSize(0.2, 0.1, 1.0))
+    assert liked["bot2"] == near["bot2"] == [4, 3.8]
 
 
 def test_a_spot_is_not_on_the_way_to_its_place_nor_on_that_of_others() -> None:

@@ -19,6 +19,9 @@ FILES = {
     "planner.yaml": "DWAPlannerROS:\n  xy_goal_tolerance: 0.15\n  yaw_goal_tolerance: 0.3\n",
     "footprint.yaml": "footprint: [[-0.205, -0.145], [-0.205, 0.145], [0.077, 0.145], [0.077, -0.145]]\n"
     "robot_radius: 0.9\ninflation_radius: 0.2\n",
+    "rollout.yaml": "TrajectoryPlannerROS: {xy_goal_tolerance: 0.15}\n",
+    "dwa_dump.yaml": "move_base:\n  base_local_planner: dwa_local_planner/DWAPlannerROS\n"
+    "  global_costmap: {robot_radius: 0.1, inflation_radius: 0.4}\n",
     "text.yaml": 'footprint: "[[0.3, 0.4], [-0.3, 0.4], [0, -0.4]]"\nfootprint_padding: 0.0\n',
     "empty.yaml": "footprint: []\nrobot_radius: 0.17\nfootprint_padding: 0\n",
     "dump.yaml": "bot1:\n  move_base:\n    global_costmap: {robot_radius: 0.1, inflation_radius: 0.4}\n"
@@ -39,7 +42,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         ("", {}),
         ("0.17", {"radius": 0.17}),
         ("costmap.yaml", {"radius": 0.21, "inflation": 0.5}),
-        ("costmap.yaml planner.yaml", {"radius": 0.21, "inflation": 0.5, "tolerance": 0.15}),
+        ("costmap.yaml rollout.yaml", {"radius": 0.21, "inflation": 0.5, "tolerance": 0.15}),
+        ("costmap.yaml planner.yaml", {"radius": 0.21, "tolerance": 0.15}),
+        ("dwa_dump.yaml", {"radius": 0.11}),
         ("footprint.yaml", {"radius": 0.266, "inflation": 0.2}),
         ("text.yaml", {"radius": 0.5}),
         ("empty.yaml", {"radius": 0.17}),
@@ -103,8 +108,8 @@ def test_a_size_of_what_is_no_robot_of_the_scenario_is_refused() -> None:
 
 def test_a_goal_needs_room_to_stop_and_to_turn_and_should_be_outside_what_is_inflated() -> None:
     size = RobotSize(0.2, 0.1, 0.25)
-    assert (size.needed, size.wanted, size.apart) == pytest.approx((0.3, 0.3, 0.6))
-    assert RobotSize(0.2, 0.1, 0.5).wanted == 0.5
+    assert (size.needed, size.wanted, size.apart) == pytest.approx((0.3, 0.55, 0.6))
+    assert RobotSize(0.2, 0.1).wanted == pytest.approx(0.3)
 
 
 @pytest.mark.parametrize(
