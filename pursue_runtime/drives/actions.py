@@ -1,12 +1,12 @@
 """Actions that robots do without a mission, so that their durations are measured: which, where, and in which order.
 
 An action is done only where the rules of the scenario let it be done after those before: nothing is dropped that was
-not fetched. What others take part in is left to missions. Without ROS.
+not fetched. What people and uncontrollable agents take part in is left to missions. Without ROS.
 """
 
 from __future__ import annotations
 
-from typing import Dict, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import Collection, Dict, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 from pursue_runtime.locations import action, action_of, is_action, position_variable
 from pursue_runtime.model import Automaton, Model, Position
@@ -19,22 +19,40 @@ MOST_FAILURES = 2
 
 
 class Act(NamedTuple):
-    """An event with a duration, and the place where a robot does it."""
+    """An event with a duration, and the place where a robot does it. `partner`: another robot that takes part, "": it
+    is done alone. `busy`: the partner is so until the end, and reports it, too."""
 
     event: str
     place: str
+    partner: str = ""
+    busy: bool = False
 
     def __str__(self) -> str:
-        return f"{self.event} at {self.place}"
+        return f"{self.event} at {self.place}" + (f" with {self.partner}" if self.partner else "")
+
+    def robots(self, doer: str) -> Tuple[str, ...]:
+        """Who is there."""
+        return (doer, self.partner) if self.partner else (doer,)
 
 
-def acts_of(robot: Automaton, model: Model) -> Tuple[Act, ...]:
-    """The actions with a duration that this robot does alone."""
-    others = (each for each in model.of_kind("robot", "human", "agent") if each is not robot)
+def acts_of(robot: Automaton, model: Model, partners: Collection[str] = ()) -> Tuple[Act, ...]:
+    """The actions with a duration that this robot does alone, or with the first of the `partners` that can take
+    part."""
+    others = [each for each in model.of_kind("robot", "human", "agent") if each is not robot]
     shared = {edge.word for other in others for edge in other.edges if edge.sync == "receive"}
-    begins = (edge for edge in robot.edges if is_action(edge.target) and not is_action(edge.source))
-    own = (edge for edge in begins if edge.sync != "receive" and edge.word not in shared)
-    return tuple(dict.fromkeys(Act(action_of(edge.target), edge.source) for edge in own))
+    found = []
+    for edge in robot.edges:
+        if edge.sync == "receive" or is_action(edge.source) or not is_action(edge.target):
+            continue
+        act = Act(action_of(edge.target), edge.source)
+        joins = [
+            act._replace(partner=other.name, busy=is_action(one.target))
+            for other in others
+            for one in other.edges
+            if other.name in partners and (one.sync, one.word, one.source) == ("receive", edge.word, edge.source)
+        ]
+        found += joins[:1] if edge.word in shared else [act]
+    return tuple(dict.fromkeys(found))
 
 
 class Rules:
@@ -52,7 +70,10 @@ class Rules:
         self._position = self._after(robot, act) or self._position
 
     def _after(self, robot: str, act: Act) -> Optional[Position]:
-        position: Optional[Position] = self._at(robot, act.place)
+        position: Optional[Position] = self._position
+        for name in act.robots(robot):
+            assert position is not None
+            position = self._at(position, name, act.place)
         for word in (act.event, act.event + DONE):
             assert position is not None
             moves = self._model.joint_move(position, word, robot, timed=False)
@@ -61,11 +82,11 @@ class Rules:
             position = self._model.after(moves, position)
         return position
 
-    def _at(self, robot: str, place: str) -> Position:
-        """The position in which this robot stands at the place."""
+    def _at(self, position: Position, robot: str, place: str) -> Position:
+        """The position with this robot at the place."""
         variable = position_variable(robot)
         arrivals = (edge for edge in self._model.automaton(robot).edges if edge.target == place)
-        locations, values, clocks = self._position
+        locations, values, clocks = position
         values = dict(values)
         for edge in arrivals:
             values.update({name: number for name, number in edge.assign.items() if name == variable})
@@ -85,14 +106,18 @@ class Acts:
         """The robot has come to a place."""
         self._here.clear()
 
-    def next(self, place: str, again: bool) -> Optional[Act]:
+    def next(self, place: str, again: bool, among: Collection[Act]) -> Optional[Act]:
         """What the robot does now at this place: each once in one stay, `again` where nothing else is left to do."""
-        here = [act for act in self._left() if act.place == place and (again or act not in self._here)]
-        return min(here, key=lambda act: len(self.measured[act]), default=None)
+        here = [act for act in self.left() if act.place == place and (again or act not in self._here)]
+        return min((act for act in here if act in among), key=self.count, default=None)
 
-    def places(self) -> Set[str]:
-        """Where something is left that may be done now."""
-        return {act.place for act in self._left()}
+    def places(self, among: Collection[Act]) -> Set[str]:
+        """Where one of these is left that may be done now."""
+        return {act.place for act in self.left() if act in among}
+
+    def count(self, act: Act) -> int:
+        """How often it was measured."""
+        return len(self.measured[act])
 
     def done(self, act: Act, seconds: float) -> None:
         """It has been done, and took so long."""
@@ -108,7 +133,7 @@ class Acts:
 
     def why_not_all(self) -> str:
         """Why not each was done so often as was wanted: one reason; "" if each was."""
-        missing = [act for act, times in self.measured.items() if len(times) < self._times]
+        missing = [act for act in self.measured if self.count(act) < self._times]
         given_up = [act for act in missing if self._failures.get(act, 0) >= MOST_FAILURES]
         if given_up:
             return f"{given_up[0]} was given up, as it did not come to its end"
@@ -126,7 +151,8 @@ class Acts:
             failed = f"; {self._failures[act]} failed" if act in self._failures else ""
             yield f"{self._robot} does {act}: {len(times)} of {self._times} times{took}{failed}"
 
-    def _left(self) -> List[Act]:
+    def left(self) -> List[Act]:
+        """What is to be done still, and may be done now."""
         return [
             act
             for act, times in self.measured.items()

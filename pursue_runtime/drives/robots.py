@@ -8,7 +8,7 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Seq
 
 from pursue_runtime.controller.whereabouts import Place
 from pursue_runtime.data import DataError, read_data
-from pursue_runtime.drives.actions import Rules, acts_of, location_of
+from pursue_runtime.drives.actions import Act, Acts, Rules, acts_of, location_of
 from pursue_runtime.drives.session import Plan
 from pursue_runtime.drives.tour import Way
 from pursue_runtime.locations import is_movement, movement
@@ -29,21 +29,38 @@ Folder = Callable[[str], Optional[str]]
 
 
 class Driven(NamedTuple):
-    """A robot, where it begins, where it is sent for each place, and what it drives and does; `rules` are shared by
-    all robots. `seconds`: how long all of that takes by the windows of the model, at least and at most, if a time unit
-    is a second."""
+    """A robot, where it begins, where it is sent for each place, and what it drives and does. `acts`: all its actions,
+    also those with partners, with what was measured of them; the rules in it are shared by all robots. `seconds`: how
+    long all of that takes by the windows of the model, at least and at most, if a time unit is a second."""
 
     name: str
     start: str
     poses: Table
     plan: Plan
-    rules: Rules
+    acts: Acts
     seconds: Tuple[float, float]
 
-    def to_start(self) -> Driven:
-        """The same robot, which only goes to where it begins."""
-        plan = Plan((), limit=self.plan.limit, pause=self.plan.pause, to_start=True)
-        return self._replace(plan=plan, seconds=(0.0, 0.0))
+    def to(self, place: str, why: str = "where it begins") -> Driven:
+        """The same robot, which only goes to a place."""
+        plan = Plan((), limit=self.plan.limit, pause=self.plan.pause, only_goes=why)
+        return self._replace(start=place, plan=plan)
+
+    def doing(self, act: Act) -> Driven:
+        """The same robot, which only does this where it stands, as often as the rules let it."""
+        plan = Plan((), limit=self.plan.limit, pause=self.plan.pause, acts=(act,), actions=self.plan.actions)
+        return self._replace(start=act.place, plan=plan)
+
+
+def next_action(robots: Sequence[Driven], standing: Mapping[str, Place]) -> List[Driven]:
+    """Who goes where, and does then what is left of all actions and may be done now, the one that was done least;
+    empty: nothing is left. `standing`: where robots are."""
+    left = [(robot.acts.count(act), robot, act) for robot in robots for act in robot.acts.left()]
+    if not left:
+        return []
+    _, doer, act = min(left, key=lambda one: one[0])
+    coming = [one for one in robots if one.name in act.robots(doer.name) and one.plan.ways]
+    away = [one for one in coming if one.name not in standing or standing[one.name].poi != act.place]
+    return [*(one.to(act.place, f"for {act.event}") for one in away), doer.doing(act)]
 
 
 def driven_robots(read: Read, given: Mapping[str, Any], folder: Folder) -> List[Driven]:
@@ -64,15 +81,17 @@ def driven_robots(read: Read, given: Mapping[str, Any], folder: Folder) -> List[
     found: List[Driven] = []
     for name in wanted:
         ways, poses = tuple(ways_of(robots[name])), {**places, **own.get(name, {})}
-        acts = acts_of(robots[name], model) if actions else ()
+        acts = acts_of(robots[name], model, wanted) if actions else ()
         if not ways and not acts:
             continue
         begins = start if start and ways and not any(each.plan.ways for each in found) else robots[name].initial
         if begins not in poses:
             raise DataError(f"~start is {begins!r}; expected one of {', '.join(poses)}")
         first = frozenset(way for way in ways if (name, movement(*way)) in commanded)
-        plan = Plan(ways, times, limit, pause, acts, actions, first)
-        found.append(Driven(name, begins, poses, plan, rules, _seconds(model, robots[name], plan)))
+        alone = tuple(act for act in acts if not act.partner)
+        plan, done = Plan(ways, times, limit, pause, alone, actions, first), Acts(name, acts, actions, rules)
+        seconds = _seconds(model, robots[name], plan._replace(acts=acts))
+        found.append(Driven(name, begins, poses, plan, done, seconds))
     if not found:
         raise DataError(f"no way for {', '.join(wanted) or 'anybody'}: no robot of this scenario is mobile")
     return found
@@ -92,7 +111,8 @@ def _is_begin(place: str, location: str) -> bool:
 def duration(robots: Sequence[Driven]) -> str:
     """How much is driven and done, and how long that takes, in words."""
     plans = [robot.plan for robot in robots]
-    drives, acts = sum(len(p.ways) * p.times for p in plans), sum(len(p.acts) * p.actions for p in plans)
+    drives = sum(len(p.ways) * p.times for p in plans)
+    acts = sum(len(robot.acts.measured) * robot.plan.actions for robot in robots)
     least, most = (sum(robot.seconds[k] for robot in robots) for k in (0, 1))
     unit, size = ("minutes", 60) if most >= 120 else ("seconds", 1)
     also = f" and {acts} action{'s' * (acts > 1)}" if acts else ""

@@ -7,15 +7,15 @@ monotonic clock. An action goes on from the moment in which it is sent to the wo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Callable, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from dataclasses import dataclass, field
+from typing import Callable, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
 from pursue_runtime.controller.goal import Answer, Goal, Movement
 from pursue_runtime.controller.navigation import Log, Navigation
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.view import View
 from pursue_runtime.controller.whereabouts import Place, Position
-from pursue_runtime.drives.actions import DONE, MOST_FAILURES, Act, Acts, Rules, location_of
+from pursue_runtime.drives.actions import DONE, MOST_FAILURES, Act, Acts, location_of
 from pursue_runtime.drives.report import ARRIVED, FAILED, INTERRUPTED, LATE, Drive
 from pursue_runtime.drives.tour import Way, next_way, towards
 from pursue_runtime.locations import movement
@@ -26,7 +26,7 @@ from pursue_runtime.words import HELD, parse_report, parse_word
 class Plan(NamedTuple):
     """What is to be driven: each of the `ways` `times` times, those in `first` before the others. `limit`: the seconds
     that one drive or action may take; `pause`: the seconds between two of them. `acts` are to be done too, each
-    `actions` times. `to_start`: nothing of that, the robot only goes to where it begins."""
+    `actions` times. `only_goes`: nothing of that, the robot only goes to its start, and why, in words."""
 
     ways: Tuple[Way, ...]
     times: int = 5
@@ -35,12 +35,14 @@ class Plan(NamedTuple):
     acts: Tuple[Act, ...] = ()
     actions: int = 0
     first: FrozenSet[Way] = frozenset()
-    to_start: bool = False
+    only_goes: str = ""
 
     def words(self, start: str) -> str:
         """What a robot does that begins at `start`, behind its name."""
-        if self.to_start:
-            return f"goes to {start}, where it begins"
+        if self.only_goes:
+            return f"goes to {start}, {self.only_goes}"
+        if not self.ways and len(self.acts) == 1:
+            return f"does {self.acts[0]}"
         some = 0 < len(self.first) < len(self.ways)
         first = f", the {len(self.first)} that the strategy uses first" if some else ""
         also = f", and does {len(self.acts)} actions {self.actions} times each" if self.acts else ""
@@ -67,6 +69,7 @@ class _Leg:
     counts: bool
     goals: int = 0
     act: Optional[Act] = None
+    ended: Set[str] = field(default_factory=set)  # who has reported the end of the action
 
     @property
     def location(self) -> str:
@@ -79,8 +82,8 @@ class Session:
 
     It begins with a drive to `start`, which does not count, unless it is there; so it goes on after a failed one, to
     where that began, or to another place. A robot whose goal another node cancels is left to that; a drive on which
-    another node sent it elsewhere is made once more. Where the tour passes a place at which an action is left that the
-    `rules` allow, it is done there.
+    another node sent it elsewhere is made once more. Where the tour passes a place at which an action of its plan is
+    left that the rules allow, it is done there.
     """
 
     def __init__(
@@ -91,24 +94,25 @@ class Session:
         plan: Plan,
         settings: Settings,
         log: Log,
-        rules: Optional[Rules] = None,
+        acts: Optional[Acts] = None,
         at_start: bool = False,
         who_is_near: Callable[[Place], str] = lambda place: "",
     ) -> None:
-        """`at_start`: the robot is at `start`; `who_is_near`: which other robot stands near a goal, in words."""
+        """`acts`: those of the robot, with what was measured of them; None: it has none. `at_start`: the robot is at
+        `start`; `who_is_near`: which other robot stands near a goal, in words."""
         self.robot, self.plan = robot, plan
         self.is_over = False
         self.problem = ""  # why it ended before all was driven
         self.measured: Dict[Way, List[float]] = {way: [] for way in plan.ways}
         self._nav = Navigation(robot, settings, log)
-        self._places, self._log = places, log
+        self._places, self._start, self._log = places, start, log
         self._failures: Dict[Way, int] = {}
         self._why_failed: Dict[Way, str] = {}
         self._who_is_near = who_is_near
         self._leg: Optional[_Leg] = None
-        self._acts = Acts(robot, plan.acts, plan.actions, rules)
-        self._place = start if at_start or not (plan.ways or plan.to_start) else ""  # where it is, "": not known
-        others = [place for place in places if place != start and not plan.to_start]
+        self._acts = acts or Acts(robot, (), 0, None)
+        self._place = start if at_start or not (plan.ways or plan.only_goes) else ""  # where it is, "": not known
+        others = [place for place in places if place != start and not plan.only_goes]
         self._tries = [start, *others]  # where it may begin
         self._next_at = float("-inf")
         self._seq = 0
@@ -150,11 +154,14 @@ class Session:
         if leg is None:
             return
         if leg.act is not None:
-            arrives = word is not None and word.agent in ("", self.robot) and word.event == leg.act.event + DONE
+            if word is not None and word.event == leg.act.event + DONE:
+                leg.ended.add(word.agent or self.robot)
+            arrives = leg.ended.issuperset(leg.act.robots(self.robot) if leg.act.busy else (self.robot,))
         else:
             ends = {f"{self.robot}_{movement(a, leg.b)}2{leg.b}" for a in (leg.a, *self._places)}
             arrives = word is not None and word.event in ends
-        if arrives or (report is not None and report.agent == self.robot):
+        who = (self.robot,) if leg.act is None else leg.act.robots(self.robot)
+        if arrives or (report is not None and report.agent in who):
             self._word = text
 
     # What is due ------------------------------------------------------------------------------------------------------
@@ -181,6 +188,8 @@ class Session:
         if now >= leg.start + self.plan.limit:
             cancel = self.goal or None
             what = "not there" if leg.act is None else "not done"
+            if leg.act is not None and leg.act.busy and leg.ended:
+                what = f"{self.robot if leg.act.partner in leg.ended else leg.act.partner} has not done it"
             text = f"{what} after {self.plan.limit:g} s{self._near(leg)}"
             return Due(cancel=cancel, drive=self._end(leg, LATE, text, now))
         return Due(goal=goal)
@@ -210,12 +219,11 @@ class Session:
             failed = self._failures.get(way, 0)
             text = f"{self.robot} from {way[0]} to {way[1]}: {len(times)} of {self.plan.times} drives{took}"
             yield text + (f"; {failed} failed" if failed else "")
-        yield from self._acts.summary()
 
     @property
     def is_complete(self) -> bool:
-        """True where each way was driven, and each action done, so often as was wanted."""
-        return self._acts.is_complete and all(len(times) >= self.plan.times for times in self.measured.values())
+        """True where each way was driven so often as was wanted."""
+        return all(len(times) >= self.plan.times for times in self.measured.values())
 
     # Drives -----------------------------------------------------------------------------------------------------------
 
@@ -225,11 +233,11 @@ class Session:
         self._seq += 1
         if self._place:
             way = next_way(self._place, self._left(), self._usable())
-            act = self._acts.next(self._place, again=way is None)
+            act = self._acts.next(self._place, way is None, self.plan.acts)
             if act is not None:
                 self._leg = _Leg(act.place, act.place, now, counts=True, act=act)
                 return True
-            way = way or towards(self._place, self._acts.places(), self._usable())
+            way = way or towards(self._place, self._acts.places(self.plan.acts), self._usable())
             if way is None:
                 self._stop(self._why_not_all())
                 return False
@@ -237,7 +245,7 @@ class Session:
         elif self._tries:
             self._leg = _Leg("", self._tries.pop(0), now, counts=False)
         else:
-            self._stop("it does not get to where it begins" if self.plan.to_start else "it gets to no place")
+            self._stop(f"it does not get to {self._start}" if self.plan.only_goes else "it gets to no place")
             return False
         leg = self._leg
         way_there = Movement(leg.location, self._places[leg.b])
@@ -309,14 +317,14 @@ class Session:
         return first if any(first.values()) else left
 
     def _why_not_all(self) -> str:
-        """Why not all was driven and done: one reason, the first that has others as its consequence; "" if all was."""
+        """Why not all was driven: one reason, the first that has others as its consequence; "" if all was."""
         missing = [way for way, times in self.measured.items() if len(times) < self.plan.times]
         for a, b in missing:
             if self._failures.get((a, b), 0) >= MOST_FAILURES:
                 return f"the way from {a} to {b} was given up: {self._why_failed[a, b]}"
         if missing:
             return f"from {self._place} it gets to no place from which a way is left, such as {missing[0][0]}"
-        return self._acts.why_not_all()
+        return ""
 
     def _usable(self) -> Tuple[Way, ...]:
         return tuple(way for way in self.plan.ways if self._failures.get(way, 0) < MOST_FAILURES)

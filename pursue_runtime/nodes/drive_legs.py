@@ -1,8 +1,9 @@
 """Drives the robots of a mission along all ways, without the mission, has them do their actions if that is wanted, and
-records how long all that takes: for `pursue-gen calibrate`. One robot after the other; the others stand.
+records how long all that takes: for `pursue-gen calibrate`. One robot after the other; the others stand. What two of
+them do together comes last: both are brought to its place.
 
 Parameters: ~robots (names; all by default), ~times (how often each way, 5), ~actions (how often each action
-that a robot does alone, 0), ~start (where the first robot begins; by
+of robots, 0), ~start (where the first robot begins; by
 default each where the scenario has it), ~limit (seconds that a drive may take, 300), ~pause (seconds between two of
 them, 1), and how robots are connected, as for controllers: ~goals (action), ~ends (result), ~on_stop (cancel), and the
 others. Arguments: --file (a path; by default pursue/<scenario>/drives.bag under ROS_HOME; no file is ever overwritten,
@@ -30,7 +31,7 @@ from pursue_runtime.controller.settings import Settings, read_settings
 from pursue_runtime.controller.whereabouts import Place, Position, place_of
 from pursue_runtime.data import DataError, Package
 from pursue_runtime.drives.report import DRIVES, Drive, format_drive
-from pursue_runtime.drives.robots import Driven, driven_robots, duration, who_is_near
+from pursue_runtime.drives.robots import Driven, driven_robots, duration, next_action, who_is_near
 from pursue_runtime.drives.session import Due, Session
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.missions import own_source
@@ -67,7 +68,9 @@ class DriveLegs:
         robots = driven_robots(source.read, self._given, _package_folder)
         self._duration = duration(robots)
         # Everybody goes to its own place first: who stands anywhere else may be on the goal of another one.
-        self._waiting = [*(robot.to_start() for robot in robots if robot.plan.ways), *robots]
+        self._robots = robots
+        self._waiting = [*(robot.to(robot.start) for robot in robots if robot.plan.ways)]
+        self._waiting += [robot for robot in robots if robot.plan.ways or robot.plan.acts]
         self._standing: Dict[str, Place] = {}  # where those are that do not drive now
         check_no_mission()
         folder = scenario_folder(os.environ, package.scenario)
@@ -80,7 +83,9 @@ class DriveLegs:
         self._lines = Later("log", self.ending)
         self._alarm = Alarm(self._act, self.ending)
         self._robot: Optional[Tuple[Driven, Settings, Session, RobotLink]] = None
+        self._partner: Optional[RobotLink] = None  # of the robot that takes part in what is done
         self._done: List[Session] = []
+        self._has_driven = self._is_over = False  # all ways; everything
         self._acts = 0  # so many actions were ordered
         self._next_look = self._patient_until = 0.0  # on the monotonic clock
         self._count = 0  # drives in the bag
@@ -105,7 +110,8 @@ class DriveLegs:
 
     @property
     def _is_complete(self) -> bool:
-        return not self._waiting and all(session.is_complete for session in self._done if not session.plan.to_start)
+        acts = all(robot.acts.is_complete for robot in self._robots)
+        return acts and not self._waiting and all(session.is_complete for session in self._done)
 
     def _keep(self) -> None:
         """Gives the bag its name, and logs what is in it; a bag without drives is removed."""
@@ -116,9 +122,13 @@ class DriveLegs:
         wanted, self.path = self.path, keep_file(self.path)
         if self.path != wanted:
             rospy.logwarn("%s has come meanwhile, and stays as it is", wanted)
-        for session in self._done:
-            for text in session.summary():
-                rospy.loginfo("%s", text)
+        drives = (text for session in self._done for text in session.summary())
+        actions = (text for robot in self._robots for text in robot.acts.summary())
+        for text in (*drives, *actions):
+            rospy.loginfo("%s", text)
+        for robot in self._robots if self._is_over else ():
+            if robot.acts.why_not_all():
+                rospy.logwarn("%s: %s", robot.name, robot.acts.why_not_all())
         text = "%d drives and actions are in %s: pursue-gen calibrate SCENARIO.pur %s"
         rospy.loginfo(text, self._count, self.path, self.path)
 
@@ -127,6 +137,9 @@ class DriveLegs:
     def _next_robot(self) -> None:
         with self._lock:
             if not self._waiting:
+                self._waiting, self._has_driven = next_action(self._robots, self._standing), True
+            self._is_over = not self._waiting
+            if self._is_over:
                 self.ending.end(0 if self._is_complete else 1)
                 return
             robot = self._waiting.pop(0)
@@ -135,11 +148,16 @@ class DriveLegs:
             at = self._standing.pop(robot.name, None)
             is_there = at is not None and at.poi == robot.start
             near = partial(who_is_near, standing=self._standing)
-            what = robot.plan, settings, self._log, robot.rules, is_there, near
+            what = robot.plan, settings, self._log, robot.acts, is_there, near
             session = Session(robot.name, places, robot.start, *what)
             take = self._on_result, self._on_statuses, self._on_position, lambda: None
             link = RobotLink(robot.name, settings, self.ending, self._log, *take)
             self._robot = robot, settings, session, link
+            partner = next((act.partner for act in robot.plan.acts if act.partner), "")
+            if partner:
+                its = read_settings(partner, self._given)._replace(orders="plain")
+                ignored = _ignore, _ignore, _ignore, lambda: None
+                self._partner = RobotLink(partner, its, self.ending, self._log, *ignored)
             self._patient_until = time.monotonic() + PATIENCE
             self._log("info", f"{robot.name} {robot.plan.words(robot.start)}")
         link.watch()
@@ -151,7 +169,8 @@ class DriveLegs:
             if self._robot is None:
                 return
             _, _, session, link = self._robot
-        if not link.can_cancel and time.monotonic() < self._patient_until:
+        hears = link.can_cancel and (self._partner is None or not self._partner.missing_subscriber(is_goal=False))
+        if not hears and time.monotonic() < self._patient_until:
             self._alarm.set(None, 0.1)
             return
         if time.monotonic() >= self._next_look:
@@ -177,9 +196,16 @@ class DriveLegs:
         self._done.append(session)
         if session.place:
             self._standing[robot.name] = place_of(session.place, robot.poses[session.place])
+        elif robot.plan.only_goes and self._has_driven and self._waiting:
+            doer = self._waiting[-1]  # it does not come: nothing can be done now
+            doer.acts.failed(doer.plan.acts[0])
+            self._waiting = []
         if session.problem:
             self._log("warn", f"{robot.name}: {session.problem}")
         link.close()
+        if self._partner is not None:
+            self._partner.close()
+        self._partner = None
 
     def _carry_out(self, due: Due) -> None:
         assert self._robot is not None, "a robot is driven"
@@ -191,7 +217,10 @@ class DriveLegs:
             link.go(due.goal, robot.poses[due.goal.movement.place.poi])
         if due.act is not None:
             self._acts += 1
-            link.do(Order(robot.name, due.act.event, self._acts, session.location))
+            order = Order(robot.name, due.act.event, self._acts, session.location)
+            link.do(order)
+            if self._partner is not None:
+                self._partner.do(order._replace(agent=due.act.partner))
         if due.drive is not None:
             self._publish(due.drive)
 
@@ -239,6 +268,10 @@ class DriveLegs:
 
     def _log(self, level: str, text: str) -> None:
         self._lines.do(partial(LOGS[level], "%s", text))
+
+
+def _ignore(_: Any) -> None:
+    """What a partner's navigation says does not matter: it stands."""
 
 
 def check_no_mission() -> None:

@@ -3,12 +3,12 @@
 
 Parameter ~robots; of each of them: namespace (of its topics and frames; its name where it is not given), start ([x, y]
 or [x, y, yaw]), travel (seconds to any goal), acts (seconds that an action takes; negative: the robot does not report
-its end), boot (seconds from the start of move_base until its action server is up), reboot (the same after a restart;
-boot where it is not given), recovery (seconds until a robot that is stuck gives up, and answers other goals and
-cancellations), status (seconds between two status messages), plays (what becomes of its first goal, of its second …;
-the last one of all that follow): succeed, abort (at once), reject (at once), never, stuck (it finds no plan, and gives
-up after the recovery), oscillating (gives up then, with that text), twice (the result comes twice), stale (a result of
-long ago comes first), turned (it arrives, but looks the wrong way).
+its end), named (that report names the robot), boot (seconds from the start of move_base until its action server is up),
+reboot (the same after a restart; boot where it is not given), recovery (seconds until a robot that is stuck gives up,
+and answers other goals and cancellations), status (seconds between two status messages), plays (what becomes of its
+first goal, of its second …; the last one of all that follow): succeed, abort (at once), reject (at once), never, stuck
+(it finds no plan, and gives up after the recovery), oscillating (gives up then, with that text), twice (the result
+comes twice), stale (a result of long ago comes first), turned (it arrives, but looks the wrong way).
 
 Orders of a test on <robot>/test: `put X Y YAW` (a person carries it there), `restart SECONDS` (move_base is killed
 and started again after so long), `play NAME` (what becomes of the goals from now on), `travel SECONDS`,
@@ -131,6 +131,7 @@ class FakeMoveBase:
         self.namespace = settings.get("namespace", name)
         self.body = body or Body(self.namespace, settings.get("start", [0.0, 0.0]))
         self.travel, self.acts = float(settings.get("travel", 1.0)), float(settings.get("acts", 1.0))
+        self.named = bool(settings.get("named", False))
         boot, self.recovery = float(settings.get("boot", 0.0)), float(settings.get("recovery", 2.0))
         self.reboot = float(settings.get("reboot", boot))
         self.plays: List[str] = list(settings.get("plays", ["succeed"]))
@@ -332,7 +333,7 @@ class FakeMoveBase:
             return  # the order was sent again
         self.begun |= {number} if number else set()
         self.say(f"action {event} {x:.2f} {y:.2f}")
-        done = String(f"{event}DONE")
+        done = String(f"{self.name}:{event}DONE" if self.named else f"{event}DONE")
         if self.acts >= 0.0:
             rospy.Timer(rospy.Duration(self.acts), lambda _: self.words.publish(done), oneshot=True)
 

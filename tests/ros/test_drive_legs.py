@@ -65,3 +65,46 @@ def test_one_robot_after_the_other_drives_all_ways_and_acts_and_ctrl_c_keeps_wha
     homes = [said.index(f"{robot} goes to c, where it begins") for robot in ("bot1", "bot2")]
     assert homes == sorted(homes) and homes[-1] < said.index("bot1 drives 4 ways"), "first all are out of the way"
     assert re.search(r"8 drives and 2 actions take \d+ to \d+ \w+ by the scenario's windows", said)
+
+
+PAIR = """
+poi "a"
+poi "b"
+poi "c"
+connect a and c distance 3
+connect c and b distance 3
+event "fetch" location b duration 1
+event "lift" collaborative together location a duration 2
+rule "load": fetch before lift
+agent "bot1" controllable mobile 1 location c can_do fetch, lift
+agent "bot2" controllable mobile 1 location c reacts_to lift
+reach_objective: do lift
+"""
+
+
+def test_what_two_do_together_is_measured_where_both_are_brought_to_its_place(ros: Ros, tmp_path: Path) -> None:
+    scenario = tmp_path / "pair.pur"
+    scenario.write_text(PAIR)
+    workspace = robots_workspace(ros, str(tmp_path / "pair"), ("bot1", "bot2"))
+    log, bag = tmp_path / "log", tmp_path / "drives.bag"
+    command = f"source devel/setup.bash; exec rosrun UI drive_legs _times:=1 _actions:=2 _pause:=0.05 --file {bag}"
+    own = {name: {"travel": 0.3, "acts": acts, "named": True} for name, acts in (("bot1", 0.3), ("bot2", 0.8))}
+    with ros.master() as there:
+        robots = Robots(ros, workspace, tmp_path, there, **own)
+        try:
+            drives = ros.start(command, workspace, log, **there)
+            try:
+                wait_for(lambda: drives.poll() is not None, log, "it does not end")
+            finally:
+                end(drives)
+            assert drives.returncode == 0, log.read_text()
+        finally:
+            robots.end()
+    actions = {robot: [line for line in robots.heard(robot) if "action" in line] for robot in ("bot1", "bot2")}
+    assert actions == {"bot1": ["action fetch", "action lift"] * 2, "bot2": ["action lift"] * 2}, "as the rule has it"
+    assert robots.heard("bot2")[-2:] == ["action lift"] * 2, "it stays there"
+    found, _ = samples_in([bag], load(str(scenario)))
+    lifts = [sample.seconds for sample in found.measured if str(sample.what) == "lift"]
+    assert len(lifts) == 2 and min(lifts) > 0.79, "until the slower one has reported it"
+    assert "8 drives and 4 actions take" in log.read_text()
+    assert "bot1 does lift at a with bot2: 2 of 2 times" in log.read_text()

@@ -14,7 +14,7 @@ from pursue_gen.workspace import Options, write_workspace
 from pursue_runtime.controller.whereabouts import Place
 from pursue_runtime.data import DataError, read_data
 from pursue_runtime.drives.actions import Act
-from pursue_runtime.drives.robots import Driven, driven_robots, duration, who_is_near
+from pursue_runtime.drives.robots import Driven, driven_robots, duration, next_action, who_is_near
 
 TEXT = """\
 poi "hall" //[0, 0, 0, 0, 0, 0, 1]
@@ -99,15 +99,40 @@ def test_who_stands_near_a_goal_is_named_with_the_distance() -> None:
 
 def test_robots_do_what_needs_nobody_else_in_the_order_of_the_rules(workspace: Path) -> None:
     bot1, bot2, arm = robots(workspace, actions=2)
-    drop, fetch = Act("drop", "exit"), Act("fetch", "lab")
+    drop, fetch, lift = Act("drop", "exit"), Act("fetch", "lab"), Act("lift", "lab", "bot2", busy=True)
+    assert tuple(bot1.acts.measured) == (drop, lift) and tuple(arm.acts.measured) == (fetch,)
+    assert not bot2.acts.measured, "the one who does it has it"
+    (alone,) = robots(workspace, actions=2, robots="bot1")
+    assert tuple(alone.acts.measured) == (drop,), "nobody is there who takes part"
     assert (bot1.plan.acts, bot2.plan.acts, arm.plan.acts) == ((drop,), (), (fetch,))
     assert arm.plan.ways == () and arm.start == "lab" and arm.plan.actions == 2
-    rules = bot1.rules
-    assert rules is arm.rules and not rules.allow("bot1", drop) and rules.allow("arm", fetch)
-    rules.done("arm", fetch)
-    assert rules.allow("bot1", drop) and not rules.allow("arm", fetch)
-    rules.done("bot1", drop)
-    assert rules.allow("arm", fetch) and not rules.allow("bot1", drop)
+    assert (bot1.acts.left(), arm.acts.left()) == ([lift], [fetch])
+    arm.acts.done(fetch, 2.0)
+    assert (bot1.acts.left(), arm.acts.left()) == ([drop, lift], [])
+    bot1.acts.done(drop, 2.0)
+    assert (bot1.acts.left(), arm.acts.left()) == ([lift], [fetch])
+
+
+def jobs(found: List[Driven], **standing: str) -> List[str]:
+    there = {name: Place(poi, 0.0, 0.0) for name, poi in standing.items()}
+    return [f"{job.name} {job.plan.words(job.start)}" for job in next_action(found, there)]
+
+
+def test_what_is_left_is_done_by_turns_and_all_who_take_part_are_brought_to_its_place(workspace: Path) -> None:
+    found = robots(workspace, actions=2)
+    bot1, _, arm = found
+    lift = next(act for act in bot1.acts.measured if act.partner)
+    meeting = ["bot1 goes to lab, for lift", "bot2 goes to lab, for lift", "bot1 does lift at lab with bot2"]
+    assert jobs(found) == meeting and jobs(found, bot1="hall", bot2="lab") == [meeting[0], meeting[2]]
+    bot1.acts.done(lift, 1.0)
+    assert jobs(found, bot1="lab", bot2="lab") == ["arm does fetch at lab"], "which does not drive"
+    arm.acts.done(Act("fetch", "lab"), 1.0)
+    assert jobs(found, bot1="lab", bot2="lab") == ["bot1 goes to exit, for drop", "bot1 does drop at exit"]
+    for _ in range(2):
+        bot1.acts.failed(Act("drop", "exit"))
+    bot1.acts.done(lift, 1.0)
+    assert jobs(found) == [] and not bot1.acts.is_complete
+    assert bot1.acts.why_not_all().startswith("drop at exit was given up")
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import pytest
 from pursue_runtime.controller.goal import Answer, Goal
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.whereabouts import Place, Position
-from pursue_runtime.drives.actions import Act
+from pursue_runtime.drives.actions import Act, Acts
 from pursue_runtime.drives.report import ARRIVED, FAILED, INTERRUPTED, LATE, Drive, format_drive, parse_drive
 from pursue_runtime.drives.session import Plan, Session
 from pursue_runtime.drives.tour import Way
@@ -27,8 +27,11 @@ SUCCEEDED, PREEMPTED, ABORTED = 3, 2, 4
 class Robot:
     """A robot with move_base: it takes its time for each way, and fails on those that are blocked."""
 
-    def __init__(self, session: Session, at: str = "a", blocked: Tuple[Way, ...] = ()) -> None:
+    def __init__(
+        self, session: Session, at: str = "a", blocked: Tuple[Way, ...] = (), acts: Optional[Acts] = None
+    ) -> None:
         self.session, self.at, self.blocked = session, at, blocked
+        self.acts = acts or Acts("bot", (), 0, None)
         self.now = 100.0
         self.drives: List[Drive] = []
         self.goals: List[str] = []
@@ -58,6 +61,8 @@ class Robot:
             assert self.session.location == f"doing_{due.act.event}_in_{self.at}"
             words = [] if due.act.event in self.silent else ["someone_elseDONE", f"bot:{due.act.event}DONE"]
             self._words = [(self.now + 2.5, word) for word in words]
+            partner = f"{due.act.partner}:{due.act.event}DONE"
+            self._words += [(self.now + 3.5, partner)] * (due.act.busy and due.act.partner not in self.silent)
         if self.session.is_over:
             return False
         if due.goal is None and due.drive is None:
@@ -166,11 +171,11 @@ def test_a_robot_that_is_where_it_begins_is_not_sent_there() -> None:
 
 @pytest.mark.parametrize("blocked", [(), (("c", "a"),)])
 def test_a_robot_that_only_goes_to_where_it_begins_measures_nothing(blocked: Tuple[Way, ...]) -> None:
-    found = robot(Plan((), to_start=True), at="c", blocked=blocked)
+    found = robot(Plan((), only_goes="where it begins"), at="c", blocked=blocked)
     found.run()
     assert set(found.goals) == {"a"} and found.drives == []
     assert found.session.place == ("" if blocked else "a")
-    assert found.session.problem == ("it does not get to where it begins" if blocked else "")
+    assert found.session.problem == ("it does not get to a" if blocked else "")
     assert found.session.plan.words("a") == "goes to a, where it begins"
 
 
@@ -272,8 +277,8 @@ class Turns:
 
 def acting(times: int, actions: int, ways: Tuple[Way, ...] = WAYS, *silent: str) -> Robot:
     plan = Plan(ways, times, 20.0, 1.0, (DROP, FETCH), actions)
-    session = Session("bot", PLACES, "a", plan, RESULT, lambda level, text: None, Turns())  # type: ignore[arg-type]
-    found = Robot(session)
+    acts = Acts("bot", plan.acts, actions, Turns())  # type: ignore[arg-type]
+    found = Robot(Session("bot", PLACES, "a", plan, RESULT, lambda level, text: None, acts), acts=acts)
     found.silent = silent
     return found
 
@@ -281,27 +286,27 @@ def acting(times: int, actions: int, ways: Tuple[Way, ...] = WAYS, *silent: str)
 def test_actions_are_done_where_the_tour_passes_and_in_the_order_of_the_rules() -> None:
     found = acting(3, 2)
     found.run()
-    assert found.session.is_complete and not found.session.problem
+    assert found.session.is_complete and found.acts.is_complete and not found.session.problem
     assert found.acted == ["fetch at c", "drop at a"] * 2
     acts = [drive for drive in found.drives if drive.action]
     assert [(drive.action, drive.a, drive.b, drive.outcome) for drive in acts[:2]] == [
         ("fetch", "c", "c", ARRIVED), ("drop", "a", "a", ARRIVED)
     ]  # fmt: skip
     assert all(drive.seconds == pytest.approx(2.5) for drive in acts)
-    assert "bot does fetch at c: 2 of 2 times, 2.5 to 2.5 s" in found.session.summary()
+    assert "bot does fetch at c: 2 of 2 times, 2.5 to 2.5 s" in found.acts.summary()
 
 
 def test_more_is_driven_where_actions_are_left_when_all_ways_are_done() -> None:
     found = acting(1, 3)
     found.run()
-    assert found.session.is_complete and len(found.acted) == 6
+    assert found.acts.is_complete and len(found.acted) == 6
 
 
 def test_an_action_that_nobody_reports_is_given_up_and_what_follows_it_is_not_done() -> None:
     found = acting(2, 2, WAYS, "fetch")
     found.run()
     assert found.acted == ["fetch at c"] * 2
-    assert found.session.problem == "fetch at c was given up, as it did not come to its end"
+    assert found.acts.why_not_all() == "fetch at c was given up, as it did not come to its end"
     late = [(drive.outcome, drive.text) for drive in found.drives if drive.action]
     assert late == [(LATE, "not done after 20 s")] * 2
     assert all(len(times) == 2 for times in found.session.measured.values())
@@ -309,9 +314,43 @@ def test_an_action_that_nobody_reports_is_given_up_and_what_follows_it_is_not_do
 
 def test_a_robot_that_does_not_drive_does_its_actions_where_it_stands() -> None:
     plan = Plan((), 1, 20.0, 1.0, (FETCH,), 3)
-    found = Robot(Session("bot", PLACES, "c", plan, RESULT, lambda level, text: None), at="c")
+    acts = Acts("bot", plan.acts, 3, None)
+    found = Robot(Session("bot", PLACES, "c", plan, RESULT, lambda level, text: None, acts), at="c", acts=acts)
     found.run()
-    assert found.acted == ["fetch at c"] * 3 and found.goals == [] and found.session.is_complete
+    assert found.acted == ["fetch at c"] * 3 and found.goals == [] and acts.is_complete
+
+
+def carrying(busy: bool, *silent: str) -> Robot:
+    carry = Act("carry", "c", "mate", busy)
+    acts = Acts("bot", (carry, FETCH), 2, None)
+    plan = Plan((), 1, 20.0, 1.0, (carry,))
+    found = Robot(Session("bot", PLACES, "c", plan, RESULT, lambda level, text: None, acts), at="c", acts=acts)
+    found.silent = silent
+    found.run()
+    return found
+
+
+def test_what_two_do_together_ends_when_all_who_are_busy_with_it_have_reported_it() -> None:
+    for busy, seconds in ((True, 3.5), (False, 2.5)):
+        found = carrying(busy)
+        assert found.acted == ["carry at c with mate"] * 2, "that alone, as often as is wanted"
+        assert [(one.action, one.outcome, one.seconds) for one in found.drives] == [
+            ("carry", ARRIVED, pytest.approx(seconds))
+        ] * 2
+    silent = carrying(True, "mate")
+    assert [one.text for one in silent.drives] == ["mate has not done it after 20 s"] * 2
+    assert silent.acts.why_not_all() == "carry at c with mate was given up, as it did not come to its end"
+
+
+def test_a_partner_that_fails_ends_it() -> None:
+    acts = Acts("bot", (Act("carry", "c", "mate", True),), 1, None)
+    plan = Plan((), 1, 20.0, 1.0, tuple(acts.measured))
+    session = Session("bot", PLACES, "c", plan, RESULT, lambda level, text: None, acts)
+    assert session.due(5.0, 5.0).act is not None
+    for who, outcome in (("stranger", None), ("mate", FAILED)):
+        session.on_word(f"{who}:_failed_ dropped it")
+        drive = session.due(6.0, 6.0).drive
+        assert (drive.outcome if drive else None) == outcome and (drive is None or drive.text == "dropped it")
 
 
 @pytest.mark.parametrize("outcome", [ARRIVED, FAILED])
