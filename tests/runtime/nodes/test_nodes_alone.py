@@ -240,15 +240,17 @@ def test_a_pose_of_amcl_counts_until_tf_has_shown_the_robot(link: Any) -> None:
 # The ends of nodes, and the test of a workspace -----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("status, waiting, complete, ended", [
-    (0, [], True, 0), (0, [], False, 1), (0, ["bot"], True, 1), (1, [], True, 1),
+@pytest.mark.parametrize("status, waiting, driven, done, ended", [
+    (0, [], True, True, 0), (0, [], False, True, 1), (0, [], True, False, 1), (0, ["bot"], True, True, 1),
+    (1, [], True, True, 1),
 ])  # fmt: skip
-def test_drives_end_well_where_all_is_measured(status: int, waiting: List[str], complete: bool, ended: int) -> None:
+def test_drives_end_well_where_all_is_measured(
+    status: int, waiting: List[str], driven: bool, done: bool, ended: int
+) -> None:
     made: Any = DriveLegs.__new__(DriveLegs)
     made.path, made._lock, made._bag, made._waiting = "drives.bag", threading.RLock(), None, waiting
-    goes_to_its_start = SimpleNamespace(is_complete=False, plan=SimpleNamespace(to_start=True))
-    drives = SimpleNamespace(is_complete=complete, plan=SimpleNamespace(to_start=False))
-    made._done, made._stop, made._next_robot = [goes_to_its_start, drives], lambda: None, lambda: None
+    made._robots = [SimpleNamespace(acts=SimpleNamespace(is_complete=done))]
+    made._done, made._stop, made._next_robot = [SimpleNamespace(is_complete=driven)], lambda: None, lambda: None
     made._duration = "10 drives take 2 to 3 minutes"
     made.ending = SimpleNamespace(wait=lambda linger: status)
     assert made.run() == ended
