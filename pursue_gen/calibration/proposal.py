@@ -112,7 +112,8 @@ class Proposal:
     `missing_events`: events with a duration of which nothing was.
 
     `slack`: what would be enough, in place of new windows, for each robot that was late; `lost_after`: time units, None
-    where not all ways of robots were measured. `shared`: those of `missing_events` that several do.
+    where not all ways of robots were measured. `of_others`: those of `missing_events` that robots
+    alone cannot do.
     """
 
     scenario: Scenario
@@ -123,7 +124,7 @@ class Proposal:
     unused: Tuple[Unused, ...]
     slack: Mapping[str, int]
     lost_after: Optional[int]
-    shared: Tuple[Work, ...] = ()
+    of_others: Tuple[Work, ...] = ()
 
     @property
     def ways(self) -> Tuple[int, int]:
@@ -194,9 +195,10 @@ def propose(scenario: Scenario, samples: Samples, options: Options) -> Proposal:
         what for what in present if isinstance(what, Way) and what.agent in robots and what not in measured
     )
     events = tuple(what for what in present if isinstance(what, Work) and what not in measured)
+    of_others = tuple(event for event in events if not _is_of_robots(scenario, event))
     return Proposal(
         scenario, options, tuple(findings), missing, events, samples.unused, _slack(findings, robots, options),
-        None if missing else _lost_after(findings), tuple(event for event in events if _is_shared(scenario, event)),
+        None if missing else _lost_after(findings), of_others,
     )  # fmt: skip
 
 
@@ -272,9 +274,13 @@ def _lost_after(findings: Sequence[Finding]) -> Optional[int]:
     return ceil(max(finding.spread.most for finding in findings)) if findings else None
 
 
-def _is_shared(scenario: Scenario, work: Work) -> bool:
-    """True for an event that needs several agents."""
-    return any(event.name == work.event and event.collaborative for event in scenario.events)
+def _is_of_robots(scenario: Scenario, work: Work) -> bool:
+    """True for an event that robots can do without people and agents that are not controlled."""
+    robots = [agent for agent in scenario.agents if agent.is_robot]
+    needs_two = any(event.name == work.event and event.collaborative for event in scenario.events)
+    doers = {robot.name for robot in robots if work.event in {ref.name for ref in robot.can_do}}
+    partners = {robot.name for robot in robots if work.event in {ref.name for ref in robot.reacts_to}}
+    return any(partners - {doer} for doer in doers) if needs_two else bool(doers)
 
 
 def window_text(window: Window) -> str:

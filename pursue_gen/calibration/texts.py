@@ -94,11 +94,11 @@ def sentences(proposal: Proposal) -> Iterator[str]:
     if proposal.missing_events:
         some = ", ".join(shown(proposal.scenario, event) for event in proposal.missing_events[:_MANY])
         more = " …" if len(proposal.missing_events) > _MANY else ""
-        how = "rosrun UI drive_legs _actions:=5 does what robots do alone; recorded missions measure the rest"
+        how = "rosrun UI drive_legs _actions:=5 does what needs robots alone; recorded missions measure the rest"
         yield f"Not measured, so durations stay: {some}{more}. ({how}.)"
-    if proposal.shared:
-        some = ", ".join(shown(proposal.scenario, event) for event in proposal.shared[:_MANY])
-        yield f"Several do this together, so only recorded missions measure it: {some}."
+    if proposal.of_others:
+        some = ", ".join(shown(proposal.scenario, event) for event in proposal.of_others[:_MANY])
+        yield f"Not robots alone do this, so only recorded missions measure it: {some}."
     widened = [shown(proposal.scenario, finding.what) for finding in proposal.findings if finding.widened]
     if widened:
         yield f"Not controlled, so windows are only widened: {', '.join(widened[:_MANY])}."

@@ -181,14 +181,17 @@ def test_how_long_a_robot_tried_in_vain_says_nothing_of_how_long_to_wait(folder:
     assert "Not used: bot: shelf to desk, 1 time (failed: it finds no way)." in done.out
 
 
-def test_what_several_do_is_for_recorded_missions() -> None:
+def test_what_robots_alone_cannot_do_is_for_recorded_missions() -> None:
     carry = """event "carry" collaborative together location desk duration 2
 agent "mate" controllable mobile 1 location desk can_do carry reacts_to carry
 """
     text = FLOOR.replace("reach_objective", f"{carry}reach_objective", 1)
-    found = proposal([Sample(OUT, 4.0)], text.replace("can_do fetch", "can_do fetch, carry"))
-    assert found.missing_events == (Work("fetch"), Work("carry")) and found.shared == (Work("carry"),)
-    assert "Several do this together, so only recorded missions measure it: carry." in list(texts.report(found))
+    text = text.replace("can_do fetch", "can_do fetch, carry")
+    for whose, of_others in (("", ()), ("human ", (Work("carry"),))):
+        found = proposal([Sample(OUT, 4.0)], text.replace('"mate" controllable', f'"mate" {whose}controllable'))
+        assert found.missing_events == (Work("fetch"), Work("carry")) and found.of_others == of_others
+        told = "Not robots alone do this, so only recorded missions measure it: carry."
+        assert (told in list(texts.report(found))) is bool(whose)
 
 
 def test_durations_of_actions_are_proposed_too() -> None:
