@@ -108,6 +108,10 @@ class Model:
         """The automaton of that name. Raises KeyError."""
         return self._by_name[name]
 
+    def has(self, name: str) -> bool:
+        """True if an automaton has that name."""
+        return name in self._by_name
+
     def shown(self, name: str) -> str:
         """What people read for a name: its label, or the name itself."""
         return self.labels.get(name, name)

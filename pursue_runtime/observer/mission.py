@@ -78,6 +78,12 @@ class Mission(MissionStatus):
         readable = len(text) <= MAX_WORD_LENGTH
         report = parse_report(text) if readable else None
         word = parse_word(text) if readable and report is None else None
+        said_by = word.agent if word is not None and word.event != PLANNED else ""
+        if said_by and not self.model.has(said_by) and self.status in LIVE:
+            agents = ", ".join(each.name for each in self.model.of_kind("robot", "agent"))
+            expected = f"expected the name of an agent of the scenario before the colon ({agents}), not a namespace"
+            self._reject("impossible", f"{text[:80]}: nobody is called {said_by}; {expected}")
+            return []
         if word is not None and word.event == ORDERED and word.seq is not None and self.status in LIVE:
             return self._on_order_receipt(word.agent, word.seq, word.at, now)
         if self._automata.is_won() and self.status in LIVE:

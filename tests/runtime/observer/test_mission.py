@@ -240,6 +240,14 @@ def test_a_word_that_is_far_too_long_is_none_and_is_not_logged(chase: Journey) -
     assert chase.mission.counts["unreadable"] == 1 and len(chase.logs[-1][1]) < 200
 
 
+@pytest.mark.parametrize("word", ["tb3_0:_order_@3", "tb3_0:catchDONE", "tb3_0:tb3_0_a2b"])
+def test_a_word_that_begins_with_a_namespace_is_told_what_it_should_begin_with(chase: Journey, word: str) -> None:
+    assert chase.hear(word, 102.0) is None and chase.mission.counts["impossible"] == 1
+    said = chase.logs[-1][1]
+    assert said.startswith(f"{word}: nobody is called tb3_0; expected the name of an agent of the scenario")
+    assert "(bot, dog, thief)" in said
+
+
 def test_the_goal_wins(chase: Journey) -> None:
     assert chase.hear("reachObj:reachObj_going_initial_location2unlocked@1", 105.0) is None
     assert chase.hear("reachObj:reachObj_going_initial_location2unlocked@1", 106.5).status == "running"
