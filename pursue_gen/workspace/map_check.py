@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from typing import Callable, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Tuple
+from dataclasses import dataclass, field, replace
+from typing import Callable, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, warning
 from pursue_gen.drawing.clearance import Clearance, Point, to_line
@@ -103,7 +103,7 @@ class _Point:
 
 @dataclass(frozen=True)
 class _Look:
-    """The points of a scenario on the ground."""
+    """The points of a scenario on the ground; `proposed`: where some of them should be instead."""
 
     ground: Ground
     clearance: Clearance
@@ -111,6 +111,7 @@ class _Look:
     points: Tuple[_Point, ...]
     may_be: Callable[[Point], bool]
     ways: Ways
+    proposed: Dict[_Point, Point] = field(default_factory=dict)
 
     def size(self, point: _Point) -> RobotSize:
         """That of the largest robot that is sent to a point."""
@@ -201,14 +202,17 @@ class _Look:
         return self._move(point, better)
 
     def _better(self, point: _Point, radius: float, reach: float, beyond_walls: bool = True) -> Optional[Point]:
-        """The nearest point that is farther from obstacles than a radius, far enough from all other points; if there
-        is such a one, not on the way of others and not beyond a wall, or else none where it must not be there."""
+        """The nearest point that is farther from obstacles than a radius, far enough from where all others should be;
+        if there is such a one, not on the way of others and not beyond a wall, or else none where it must not be there.
+        """
+        if point in self.proposed:
+            return self.proposed[point]
         x, y = point.pose.x, point.pose.y
         rooms = [(line, self._room_on(ends, line, point)) for ends, line in self.ways.items()]
 
         def is_apart(at: Point) -> bool:
-            others = (one for one in self.points if one is not point)
-            return self.may_be(at) and all(one.apart(*at) >= self._room(point, one) for one in others)
+            others = ((one, self.proposed.get(one, (one.pose.x, one.pose.y))) for one in self.points if one != point)
+            return self.may_be(at) and all(math.dist(at, there) >= self._room(point, one) for one, there in others)
 
         def is_here(at: Point) -> bool:
             aside = all(to_line(line, at)[0] >= room for line, room in rooms)
@@ -218,6 +222,7 @@ class _Look:
         return here or (self.clearance.nearest(x, y, radius, reach, is_apart) if beyond_walls else None)
 
     def _move(self, point: _Point, to: Point) -> str:
+        self.proposed[point] = to
         x, y = (round(number, 3) + 0.0 for number in to)
         where = f"there is room at {x:.10g}, {y:.10g}, {point.apart(x, y):.2f} m from there"
         if not point.unwritten:

@@ -141,6 +141,19 @@ def test_two_robots_do_not_stand_in_each_other(tmp_path: Path) -> None:
     assert found_in(floor, poses, RobotSize(0.17, 0.1), 1) == [], "one robot is at one of them at a time"
 
 
+def test_what_is_proposed_is_apart_from_what_is_proposed_for_others(tmp_path: Path) -> None:
+    floor, size = floor_of(tmp_path, ROOM_YAML, ROOM), RobotSize(0.2, 0.1)
+    poses = "[0.05, 2.55, 0, 0, 0, 0, 1]\n[0.05, 2.65, 0, 0, 0, 0, 1]\n[0.15, 2.6, 0, 0, 0, 0, 1]"
+    found = found_in(floor, poses, size)
+    there = [re.search(r"room at ([\d.]+), ([\d.]+), ", hint) for _, _, hint in found]
+    points = sorted({tuple(map(float, one.groups())) for one in there if one})
+    assert len(points) == 3
+    for k, point in enumerate(points):
+        assert all(math.dist(point, other) >= size.apart - 1e-6 for other in points[:k])
+    mended = "\n".join(f"[{x}, {y}, 0, 0, 0, 0, 1]" for x, y in points)
+    assert found_in(floor, mended, size, 1) == []
+
+
 def test_each_spot_is_measured_against_the_robots_that_are_sent_there(tmp_path: Path) -> None:
     floor = floor_of(tmp_path, ROOM_YAML, ROOM)
     text = 'poi "a" //[2, 2, 0, 0, 0, 0, 1] small [%s, 2, 0, 0, 0, 0, 1]\nevent "work"\n'
