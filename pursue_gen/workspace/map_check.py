@@ -196,18 +196,25 @@ class _Look:
     def remedy(self, point: _Point) -> str:
         """What to do about a point where there is too little room."""
         size = self.size(point)
-        better = self._better(point, size.wanted, NEAR) or self._better(point, size.needed, _FAR)
+        better = self._better(point, size.wanted, NEAR)
         if better is None:
-            return f"move it: near it there is no room for a robot that needs {size.needed:g} m"
+            better = self._better(point, size.needed, _FAR)
+            wanted = better and self._better(point, size.wanted, NEAR, beyond_walls=False, start=better)
+            better = wanted or better
+        if better is None:
+            return f"move it: near it, beside all others, there is no room for a robot that needs {size.needed:g} m"
         return self._move(point, better)
 
-    def _better(self, point: _Point, radius: float, reach: float, beyond_walls: bool = True) -> Optional[Point]:
+    def _better(
+        self, point: _Point, radius: float, reach: float, beyond_walls: bool = True, start: Optional[Point] = None
+    ) -> Optional[Point]:
         """The nearest point that is farther from obstacles than a radius, far enough from where all others should be;
         if there is such a one, not on the way of others and not beyond a wall, or else none where it must not be there.
+        `start`: from where, if not from the point itself.
         """
         if point in self.proposed:
             return self.proposed[point]
-        x, y = point.pose.x, point.pose.y
+        x, y = start or (point.pose.x, point.pose.y)
         rooms = [(line, self._room_on(ends, line, point)) for ends, line in self.ways.items()]
 
         def is_apart(at: Point) -> bool:

@@ -193,7 +193,7 @@ def test_check_reports_them_with_the_other_findings(tmp_path: Path, monkeypatch:
     done = pursue("check", "two.pur", "--map", "map.yaml")
     assert (done.status, re.findall("warning ([A-Z0-9]+)", done.out)) == (0, ["PML120", "WSP008"])
     assert "two.pur:1:5: warning WSP008: the spot of bot2 at a (11.5, 22.3)" in done.out
-    assert "move it: near it there is no room for a robot that needs 0.4 m" in done.out
+    assert "move it: near it, beside all others, there is no room for a robot that needs 0.4 m" in done.out
     assert "0 errors, 2 warnings" in done.err
     assert "WSP008" not in pursue("check", "two.pur", "--map", "map.yaml", "--spot-distance", "0.4").out
     both = pursue("check", "bad.pur", "two.pur", "--map", "map.yaml", "--json")
