@@ -126,8 +126,9 @@ class DriveLegs:
         actions = (text for robot in self._robots for text in robot.acts.summary())
         for text in (*drives, *actions):
             rospy.loginfo("%s", text)
+        told = {session.robot for session in self._done if session.problem}  # of which all else is a consequence
         for robot in self._robots if self._is_over else ():
-            if robot.acts.why_not_all():
+            if robot.acts.why_not_all() and robot.name not in told:
                 rospy.logwarn("%s: %s", robot.name, robot.acts.why_not_all())
         text = "%d drives and actions are in %s: pursue-gen calibrate SCENARIO.pur %s"
         rospy.loginfo(text, self._count, self.path, self.path)
