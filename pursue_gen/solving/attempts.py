@@ -14,6 +14,7 @@ from pursue_gen.solving.found import Found
 from pursue_gen.solving.lost_promises import lost_promises
 from pursue_gen.solving.one_robot import lost_for_one
 from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.pinned import lost_to_pins
 from pursue_gen.solving.policies import won_by_policy
 from pursue_gen.solving.shares import Known, can_be_shared, won_in_shares
 from pursue_gen.tga.network import Network, Objective
@@ -22,17 +23,19 @@ from pursue_gen.tga.network import Network, Objective
 @dataclass(frozen=True)
 class _Attempt:
     """How hard shares are looked for, and the work for policies, for promises that one robot cannot keep together (for
-    all games, and for one), and whether one or two promises are looked for that are lost. 0, (): that is not tried."""
+    all games, and for one), for those that robots cannot keep as they have to stay near others (the same), and whether
+    one or two promises are looked for that are lost. 0, (): that is not tried."""
 
     shares: Sequence[Effort] = ()
     policy: int = 0
     one_robot: Sequence[int] = ()
+    pinned: Sequence[int] = ()
     lost: bool = False
 
 
 _SHARED = (
     _Attempt(EFFORTS[:2], one_robot=(40_000_000, 2_500_000)),
-    _Attempt(EFFORTS[2:3], policy=100_000, one_robot=(200_000_000, 100_000_000)),
+    _Attempt(EFFORTS[2:3], policy=100_000, one_robot=(200_000_000, 100_000_000), pinned=(60_000_000, 40_000_000)),
     _Attempt(EFFORTS[3:4], lost=True),
     _Attempt(EFFORTS[4:], policy=500_000),
 )
@@ -56,6 +59,8 @@ def decided_by_attempts(
             found = won_by_policy(network, objective, reaction, each.policy, options.since(start))
         if found is None and each.one_robot:
             lost = lost_for_one(network, objective, reaction, options.since(start), each.one_robot)
+        if found is None and not lost and each.pinned:
+            lost = lost_to_pins(network, objective, reaction, options.since(start), each.pinned)
         if found is None and not lost and each.lost:
             lost = lost_promises(network, objective, reaction, options.since(start))
         if found is not None or lost:

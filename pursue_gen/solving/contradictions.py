@@ -43,18 +43,23 @@ def _arrivals(network: Network) -> Iterator[Edge]:
     """The edges by which agents whom nobody controls come to places where they may stay for ever, each by a way that
     they can take in any case."""
     for automaton in network.automata:
-        if not is_agent(automaton) or any(edge.controllable for edge in automaton.edges):
-            continue
-        lasting = {place.name for place in automaton.locations if not place.invariant}
-        met, waiting = {automaton.initial}, [automaton.initial]
-        while waiting:
-            here = waiting.pop()
-            for edge in automaton.edges:
-                if edge.source == here and edge.target not in met and _is_its_own(edge):
-                    met.add(edge.target)
-                    waiting.append(edge.target)
-                    if edge.target in lasting and edge.assign:
-                        yield edge
+        if is_agent(automaton) and not any(edge.controllable for edge in automaton.edges):
+            yield from arrivals(automaton)
+
+
+def arrivals(agent: Automaton) -> Iterator[Edge]:
+    """The edges by which an agent comes to places where it may stay for ever, each by a way that it can take in any
+    case."""
+    lasting = {place.name for place in agent.locations if not place.invariant}
+    met, waiting = {agent.initial}, [agent.initial]
+    while waiting:
+        here = waiting.pop()
+        for edge in agent.edges:
+            if edge.source == here and edge.target not in met and _is_its_own(edge):
+                met.add(edge.target)
+                waiting.append(edge.target)
+                if edge.target in lasting and edge.assign:
+                    yield edge
 
 
 def _is_its_own(edge: Edge) -> bool:

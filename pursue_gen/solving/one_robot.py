@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
-from typing import Iterator, Optional, Sequence, Tuple
+from typing import Callable, Iterable, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.freer import asking_only, punctual, standing, with_one_walk, without_others, without_turns
@@ -30,11 +30,19 @@ _STATE = 2_000
 """A discrete state of one of them costs as much as so much work."""
 
 
+def _as_it_is(game: Network, robot: str) -> Iterable[Network]:
+    return (game,)
+
+
 def lost_for_one(
-    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions, work: Sequence[int] = _WORK
-) -> Tuple[Objective, ...]:
+    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions, work: Sequence[int] = _WORK,
+    starts: Callable[[Network, str], Iterable[Network]] = _as_it_is,
+) -> Tuple[Objective, ...]:  # fmt: skip
     """Promises that only one robot can keep and that it cannot keep together, as few as are found; () where so much
-    work for all games, and for one of them, finds none."""
+    work for all games, and for one of them, finds none.
+
+    `starts`: the games in place of one of a robot; that one of them is lost is enough.
+    """
     in_all, most = work
     limits = replace(options.limits, work=in_all, states=in_all // _STATE)
     budget = Budget(limits, options.progress, options.engine)
@@ -43,7 +51,7 @@ def lost_for_one(
         for size in dict.fromkeys((2, len(owned))) if owned else ():
             for some in combinations(owned, size):
                 wanted = Objective(Kind.SAFETY, bad=some)
-                games = _games(alone, wanted, objective, robot)
+                games = (each for game in _games(alone, wanted, objective, robot) for each in starts(game, robot))
                 if any(_is_lost(game, wanted, reaction, budget, most) for game in games):
                     return (wanted,)
                 if budget.used_up:

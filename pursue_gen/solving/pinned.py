@@ -1,0 +1,145 @@
+"""Robots that others need where they are: what they cannot begin without leaving duties that nobody else covers.
+
+A person goes to a place and stays there, or all stay where they are. Where the duties of that (see `duties`) cannot all
+be covered while a robot does something, nobody who is to win begins that, and a game in which it is not begun is no
+harder. What is left for some robot alone is then lost as in `one_robot`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import AbstractSet, Dict, FrozenSet, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
+
+from pursue_gen.solving.contradictions import arrivals
+from pursue_gen.solving.duties import Duties, Duty, Standing, can_be_covered, places_of
+from pursue_gen.solving.freer import standing as without_walks
+from pursue_gen.solving.freer import without_turns
+from pursue_gen.solving.lost_promises import watched
+from pursue_gen.solving.one_robot import lost_for_one
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.subgoals import commanded_agents
+from pursue_gen.synthesis.strategy import Place
+from pursue_gen.tga.ends import is_agent
+from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective, is_end
+
+_Pins = Dict[Tuple[str, Edge], Tuple[Duty, ...]]
+"""What robots cannot begin, each with duties that nobody else can cover meanwhile."""
+
+
+def lost_to_pins(
+    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions, work: Sequence[int]
+) -> Tuple[Objective, ...]:
+    """Promises, places to be avoided, that are lost as robots have to stay near others; () where so much work for all
+    games of one robot, and for one of them, finds none."""
+    robots = commanded_agents(network)
+    ends = (edge for name in robots for edge in network.automaton(name).edges if is_end(edge))
+    if objective.kind is not Kind.SAFETY or any(edge.controllable for edge in ends):
+        return ()
+    everywhere = {robot: places_of(network.automaton(robot)) for robot in robots}
+    all_duties = Duties(network, objective.bad, robots)
+    tried: Set[FrozenSet[Tuple[str, Edge]]] = set()
+    for standing, stay in _standing(network):
+        duties = all_duties.at(standing)
+        if not can_be_covered(duties, everywhere):
+            return (_promises(objective, _fewest(duties, everywhere)),)
+        pins = _pins(network, duties, everywhere)
+        for duty in duties if pins else ():
+            doers = [(r, e) for r in robots for e in _begins(network.automaton(r), duty.ends)]
+            if doers and all(each in pins for each in doers):
+                return (_promises(objective, [duty, *(d for each in doers for d in pins[each])]),)
+        if pins and frozenset(pins) not in tried:
+            tried.add(frozenset(pins))
+            game = _game(network, standing, stay, frozenset(pins))
+            starts = () if stay is None else (_starts,)
+            wanted = objective if stay is None else _promises(objective, (duty for duty in duties if duty.ends))
+            lost = lost_for_one(game, wanted, reaction, options, work, *starts)
+            if lost:
+                heard = {e.sync.channel for n in watched(lost[0]) for e in network.automaton(n).edges if e.sync}
+                some = [d for (r, b), found in pins.items() if heard & _ended(network, r, b) for d in found]
+                return (_promises(objective, some, lost[0].bad),)
+    return ()
+
+
+def _game(network: Network, standing: Standing, stay: Optional[Edge], pins: AbstractSet[Tuple[str, Edge]]) -> Network:
+    """The network in which nobody whom nobody controls walks, and robots do not begin what they cannot; where somebody
+    has come to stay there are no turns of rules, either, as nobody knows whose turn it is then."""
+    automata = []
+    for each in network.automata:
+        edges = tuple(edge for edge in each.edges if (each.name, edge) not in pins)
+        begun = {edge.target for edge in edges}
+        edges = tuple(edge for edge in edges if edge.source in begun or edge.source == each.initial)
+        automata.append(replace(each, initial=standing.get(each.name, each.initial), edges=edges))
+    game = without_walks(replace(network, automata=tuple(automata), variables=_with(network, stay)))
+    return game if stay is None else without_turns(game, ())
+
+
+def _starts(game: Network, robot: str) -> Iterator[Network]:
+    """The games that begin when somebody has come to stay, somebody has called and the robot has just answered: nobody
+    waits for anything then. None where more could have changed."""
+    automaton = game.automaton(robot)
+    watching = [a for a in game.automata if a.name != robot and not is_agent(a)]
+    if any(len(places_of(a)) != 2 or a.initial not in places_of(a) for a in watching):
+        return
+    heard = {e.sync.channel for a in watching for e in a.edges if e.sync is not None}
+    for end in automaton.edges:
+        if is_end(end) and end.sync is not None and end.sync.channel in heard:
+            there = replace(automaton, initial=end.target)
+            automata = tuple(there if a is automaton else a for a in game.automata)
+            yield replace(game, automata=automata, variables=_with(game, end))
+
+
+def _with(network: Network, edge: Optional[Edge]) -> Tuple[Tuple[str, int], ...]:
+    """The variables with the values after an edge."""
+    return tuple({**dict(network.variables), **dict(edge.assign if edge is not None else ())}.items())
+
+
+def _ended(network: Network, robot: str, begin: Edge) -> AbstractSet[str]:
+    """The channels of the ends of what a robot begins."""
+    edges = network.automaton(robot).edges
+    return {edge.sync.channel for edge in edges if edge.source == begin.target and edge.sync is not None}
+
+
+def _standing(network: Network) -> Iterator[Tuple[Standing, Optional[Edge]]]:
+    """Where those whom nobody controls may be for ever: all where they begin, or one where an edge has led it."""
+    nobodys = [a for a in network.automata if is_agent(a) and not any(edge.controllable for edge in a.edges)]
+    home = {a.name: a.initial for a in nobodys if a.initial in places_of(a)}
+    yield home, None
+    for name in home:
+        for arrival in arrivals(network.automaton(name)):
+            yield {**home, name: arrival.target}, arrival
+
+
+def _pins(network: Network, duties: Sequence[Duty], everywhere: Dict[str, List[str]]) -> _Pins:
+    channels = frozenset(channel for duty in duties for channel in duty.ends)
+    found: _Pins = {}
+    for robot in everywhere:
+        automaton = network.automaton(robot)
+        others = {name: places for name, places in everywhere.items() if name != robot}
+        for begin in _begins(automaton, channels):
+            ends = {e.sync.channel for e in automaton.edges if e.source == begin.target and e.sync is not None}
+            left = [d for d in duties if d.ends.isdisjoint(ends) and not d.covered_from(robot, begin.target)]
+            if not can_be_covered(left, others):
+                found[robot, begin] = _fewest(left, others)
+    return found
+
+
+def _begins(automaton: Automaton, channels: AbstractSet[str]) -> List[Edge]:
+    """The commands by which a robot begins what ends with one of these."""
+    doing = {e.source for e in automaton.edges if e.sync is not None and e.sync.sends and e.sync.channel in channels}
+    return [edge for edge in automaton.edges if edge.target in doing and edge.source not in doing]
+
+
+def _fewest(duties: Sequence[Duty], robots: Dict[str, List[str]]) -> Tuple[Duty, ...]:
+    """Some of the duties that cannot all be covered either, none of which can be left out."""
+    left = tuple(duties)
+    for duty in duties:
+        fewer = tuple(each for each in left if each is not duty)
+        if not can_be_covered(fewer, robots):
+            left = fewer
+    return left
+
+
+def _promises(objective: Objective, duties: Iterable[Duty], more: Sequence[Place] = ()) -> Objective:
+    wanted = {*more, *(duty.promise for duty in duties)}
+    return Objective(Kind.SAFETY, bad=tuple(place for place in objective.bad if place in wanted))
