@@ -68,6 +68,12 @@ def test_who_has_its_own_turn_in_a_rule() -> None:
     assert "own turn" in told("for ea", each) and "controllable and not human" in told("each ro", each)
 
 
+def test_a_robot_says_how_large_it_is() -> None:
+    more = SMALL + 'agent "big" controllable radius 0.4 inflation 0.55 location a\n'
+    assert "radius 0.4 m, inflation radius 0.55 m on a map" in told('agent "bi', more)
+    assert "avoid" in told('agent "big" controllable radius 0.4 infl', more)
+
+
 def test_a_battery_says_how_many_levels_it_has() -> None:
     more = SMALL + "battery bot capacity 9 uses 1 per unit\n"
     assert "levels; the game has up to" in told("battery bot capacity 9", more)
