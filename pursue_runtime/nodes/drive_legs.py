@@ -36,7 +36,7 @@ from pursue_runtime.drives.session import Due, Session
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.missions import own_source
 from pursue_runtime.nodes.alarm import Alarm, Later
-from pursue_runtime.nodes.node import Ending, run_node, subscribe
+from pursue_runtime.nodes.node import REFUSED, Ending, run_node, subscribe
 from pursue_runtime.nodes.recorder import CHUNK, stamp
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.orders import Order
@@ -144,7 +144,7 @@ class DriveLegs:
                 self.ending.end(0 if self._is_complete else 1)
                 return
             robot = self._waiting.pop(0)
-            settings = read_settings(robot.name, self._given)._replace(orders="plain")  # no observer counts them
+            settings = read_settings(robot.name, self._given)
             places = {poi: place_of(poi, pose) for poi, pose in robot.poses.items()}
             at = self._standing.pop(robot.name, None)
             is_there = at is not None and at.poi == robot.start
@@ -156,7 +156,7 @@ class DriveLegs:
             self._robot = robot, settings, session, link
             partner = next((act.partner for act in robot.plan.acts if act.partner), "")
             if partner:
-                its = read_settings(partner, self._given)._replace(orders="plain")
+                its = read_settings(partner, self._given)
                 ignored = _ignore, _ignore, _ignore, lambda: None
                 self._partner = RobotLink(partner, its, self.ending, self._log, *ignored)
             self._patient_until = time.monotonic() + PATIENCE
@@ -170,9 +170,14 @@ class DriveLegs:
             if self._robot is None:
                 return
             _, _, session, link = self._robot
-        hears = link.can_cancel and (self._partner is None or not self._partner.missing_subscriber(is_goal=False))
-        if not hears and time.monotonic() < self._patient_until:
-            self._alarm.set(None, 0.1)
+            why = self._deaf() if self._patient_until else ""
+            if (why or not link.can_cancel) and time.monotonic() < self._patient_until:
+                self._alarm.set(None, 0.1)
+                return
+            self._patient_until = 0.0  # it was connected once: what comes later is as in a mission
+        if why:
+            rospy.logfatal("%s", why)
+            self.ending.end(REFUSED)
             return
         if time.monotonic() >= self._next_look:
             self._next_look = time.monotonic() + LOOKS
@@ -189,6 +194,18 @@ class DriveLegs:
                 self._alarm.set(session.next_moment(), patience)
         if is_over:
             self._next_robot()
+
+    def _deaf(self) -> str:
+        """Why the robot that is to be driven, or its partner, cannot be told what to do, and what helps; "": it can."""
+        assert self._robot is not None, "a robot is driven"
+        robot, _, _, link = self._robot
+        partner = next((act.partner for act in robot.plan.acts if act.partner), "")
+        drives, acts = bool(robot.plan.ways) or bool(robot.plan.only_goes), bool(robot.plan.acts)
+        whys = [(robot.name, link.missing_subscriber(is_goal=True) if drives else "")]
+        whys += [(robot.name, link.missing_subscriber(is_goal=False))] if acts else []
+        whys += [(partner, self._partner.missing_subscriber(is_goal=False))] if self._partner is not None else []
+        helps = "start its nodes; if their namespace is not its name, say so: rosparam load robots.yaml drive_legs"
+        return next((f"{name} {why}: {helps}, with {name}: {{namespace: NAME}} in it" for name, why in whys if why), "")
 
     def _finish(self) -> None:
         assert self._robot is not None, "a robot is driven"
@@ -218,7 +235,7 @@ class DriveLegs:
             link.go(due.goal, robot.poses[due.goal.movement.place.poi])
         if due.act is not None:
             self._acts += 1
-            order = Order(robot.name, due.act.event, self._acts, session.location)
+            order = Order(robot.name, due.act.event, self._acts, session.location, given=rospy.get_time())
             link.do(order)
             if self._partner is not None:
                 self._partner.do(order._replace(agent=due.act.partner))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import signal
+import textwrap
 from pathlib import Path
 
 import pytest
@@ -65,6 +66,53 @@ def test_one_robot_after_the_other_drives_all_ways_and_acts_and_ctrl_c_keeps_wha
     homes = [said.index(f"{robot} goes to c, where it begins") for robot in ("bot1", "bot2")]
     assert homes == sorted(homes) and homes[-1] < said.index("bot1 drives 4 ways"), "first all are out of the way"
     assert re.search(r"8 drives and 2 actions take \d+ to \d+ \w+ by the scenario's windows", said)
+
+
+def test_a_robot_that_is_not_there_or_has_another_namespace_ends_it_at_once(ros: Ros, tmp_path: Path) -> None:
+    workspace = robots_workspace(ros, "thesis/scenario_1", ("bot1", "bot2"))
+    command = f"source devel/setup.bash; exec rosrun UI drive_legs --file {tmp_path}/drives.bag"
+    with ros.master() as there:
+        refused = ros.run(command, workspace, **there)
+    assert refused.returncode == 3, refused.stdout
+    assert "bot1 cannot get an order: no node is subscribed to /bot1/move_base/goal: start its nodes" in refused.stdout
+    assert "rosparam load robots.yaml drive_legs, with bot1: {namespace: NAME} in it" in refused.stdout
+    assert not list(tmp_path.glob("drives.bag*"))
+
+
+ALONE = """
+poi "a"
+poi "b"
+poi "c"
+connect a and c distance 3
+connect c and b distance 3
+event "fetch" location b duration 1
+agent "bot1" controllable mobile 1 location c can_do fetch
+reach_objective: do fetch
+"""
+
+
+def test_the_node_for_actions_of_the_page_does_each_one_as_often_as_it_is_ordered(ros: Ros, tmp_path: Path) -> None:
+    (tmp_path / "alone.pur").write_text(ALONE)
+    workspace = robots_workspace(ros, str(tmp_path / "alone"), ("bot1",))
+    page = (SCENARIO.parents[2] / "docs" / "robots.md").read_text(encoding="utf-8")
+    (script,) = re.findall(r"(?s)( +#!/usr/bin/env python3\n.*?rospy\.spin\(\)\n)", page)
+    (tmp_path / "actions.py").write_text(textwrap.dedent(script))
+    log = tmp_path / "log"
+    log.touch()
+    arguments = f"_times:=1 _actions:=3 _pause:=0.05 _limit:=5 --file {tmp_path}/drives.bag"
+    with ros.master() as there:
+        robots = Robots(ros, workspace, tmp_path, there, bot1={"travel": 0.3, "acts": -1.0})
+        command = f"ROS_NAMESPACE=bot1 exec python3 {tmp_path}/actions.py"
+        node = ros.start(command, workspace, tmp_path / "actions", **there)
+        try:
+            command = f"source devel/setup.bash; exec rosrun UI drive_legs {arguments}"
+            drives = ros.start(command, workspace, log, **there)
+            wait_for(lambda: drives.poll() is not None, log, "it does not end")
+            end(drives)
+        finally:
+            end(node)
+            robots.end()
+    assert drives.returncode == 0 and "3 of 3 times" in log.read_text(), log.read_text()
 
 
 PAIR = """
