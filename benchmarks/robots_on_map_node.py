@@ -59,7 +59,8 @@ class RobotOnMap(FakeMoveBase):
         super().__init__(name, settings, BodyOnMap(name, settings["start"], floor, self._robot, self._random))
 
     def on_action(self, message: String) -> None:
-        self.acts = varied(self._robot.acts[message.data], self._random)
+        event, _, _ = message.data.partition("@")  # the number of the order
+        self.acts = varied(self._robot.acts[event], self._random)
         super().on_action(message)
 
 
