@@ -99,5 +99,5 @@ def _on_map(
             sizes = sizes_of(scenario, told)
             more, ways = on_map(scenario, ground, spot_distance, sizes)
             found += more
-            fits[file] = fit_on(ground, sizes.largest, ways)
+            fits[file] = fit_on(ground, sizes, ways)
     return found, fits

@@ -97,7 +97,7 @@ def report(
         findings, paths = on_map(read, ground, DEFAULT_DISTANCE, sizes)
         show(findings)
         options = replace(options, floor=replace(read_floor(floor), paths=paths))
-        read = with_spots(read, ground, DEFAULT_DISTANCE, sizes.largest, paths)
+        read = with_spots(read, ground, DEFAULT_DISTANCE, sizes, paths)
     made = _made(read, options, solving)
     if pictures is not None:
         _write_pictures(made, pictures)

@@ -65,7 +65,7 @@ def ws(
         ground, sizes = read_ground(floor), sizes_of(read, told)
         findings, ways = on_map(read, ground, spot_distance, sizes)
         show(findings)
-        read = with_spots(read, ground, spot_distance, sizes.largest, ways)
+        read = with_spots(read, ground, spot_distance, sizes, ways)
         spare = spare_spots(read, ground, spot_distance, sizes, ways) if ways else {}
         extras = replace(extras, floor=replace(under, paths=ways), spare=spare)
     if request.decides_ends:

@@ -114,7 +114,7 @@ def _solve(given: Work, pipe: Connection) -> None:
     scenario = settled(scenario_of(given), request, progress)
     request = request.since(start)
     if given.floor is not None:
-        scenario = with_spots(scenario, read_ground(given.floor), SPOT_DISTANCE, sizes_of(scenario, given.told).largest)
+        scenario = with_spots(scenario, read_ground(given.floor), SPOT_DISTANCE, sizes_of(scenario, given.told))
     try:
         found = promised_of(scenario, request, progress)
     except (Lost, LimitHit) as problem:

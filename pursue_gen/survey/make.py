@@ -105,9 +105,11 @@ def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options
     missing = plan.own_ways([(way.a, way.b) for way in scenario.connections])
     new = missing if options.ways or not scenario.connections else []
     with_new = _with_ways(scenario, new, plan, map_name, options)
-    standing = Standing(grid_of(ground, size.needed), grid_of(ground, size.wanted))
+    kinds = {one: Standing(grid_of(ground, one.needed), grid_of(ground, one.wanted)) for one in options.robots.kinds}
     lines, body = _lines(with_new, plan), 2 * size.radius
-    spots = proposed_spots(with_new, grid, plan.places, options.room, lines, body, standing)
+    spots = proposed_spots(
+        with_new, grid, plan.places, options.room, lines, body, lambda robot: kinds[options.robots.of([robot])]
+    )
     poses = {place: {robot: pose for robot, pose in found if pose is not None} for place, found in spots.items()}
     placed = with_poses(replace(scenario, connections=with_new.connections), poses)
     work = _Work(with_new, placed, plan, options, map_name)
@@ -137,7 +139,7 @@ def found_on_map(
     except Invalid:  # too few places, or too many
         return check_spots(scenario, ground, distance, sizes), {}
     here = _OnMap(grid, plan, _lines(scenario, plan))
-    placed = with_spots(scenario, ground, distance, sizes.largest, here.lines)
+    placed = with_spots(scenario, ground, distance, sizes, here.lines)
     return in_order(_found_on_map(placed, scenario, ground, here, options, distance)), here.lines
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from itertools import islice
-from typing import Dict, Iterable, List, Optional, Sequence, Tuple
+from typing import Callable, Dict, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 from scipy import ndimage
@@ -53,16 +53,16 @@ def proposed_spots(
     room: float,
     ways: Ways,
     body: float = 0.0,
-    standing: Optional[Standing] = None,
+    standing: Optional[Callable[[str], Standing]] = None,
 ) -> Spots:
     """Spots for all robots that share a place with others and have no pose of their own there.
 
     The first of them has the pose of the place. `places`: those whose pose is on free ground; `room`: metres that the
     centres of two robots keep between them; `ways`: the paths that robots take; `body`: metres by which the centres of
-    two robots are apart that touch each other; `standing`: where a robot may stand. A spot is first of all out of the
-    way of other robots, then where planners like it, then as near to the pose of its place as possible, more or less,
-    beside it rather than before or behind it, and seen from it. Where that is possible, each robot can leave while the
-    others stand there.
+    two robots are apart that touch each other; `standing`: where a robot may stand, by its name. A spot is first of all
+    out of the way of other robots, then where planners like it, then as near to the pose of its place as possible, more
+    or less, beside it rather than before or behind it, and seen from it. Where that is possible, each robot can leave
+    while the others stand there.
     """
     present, wanted = robots_at(scenario), set(places)
     taken = [point for poi in scenario.pois for point in _given(poi, present[poi.name])]
@@ -74,12 +74,15 @@ def proposed_spots(
         if poi.name not in wanted or poi.pose is None or not robots:
             continue
         passing = ((_passing(poi, passed, room), room), (_ending(poi, passed), body))
-        candidates = _Candidates(grid, poi.pose, room, passing, standing)
+        candidates: Dict[int, _Candidates] = {}  # by where they may stand
         found[poi.name] = []
         others = [one for one in _given(poi, present[poi.name]) if grid.is_free(grid.cell(*one))]
         exits = exits_of(poi.name, (poi.pose.x, poi.pose.y), ways, room)
         for robot in robots:
-            point = candidates.best(taken, others, exits, body)
+            where = standing(robot) if standing is not None else None
+            if id(where) not in candidates:
+                candidates[id(where)] = _Candidates(grid, poi.pose, room, passing, where)
+            point = candidates[id(where)].best(taken, others, exits, body)
             found[poi.name].append((robot, None if point is None else replace(poi.pose, x=point[0], y=point[1])))
             taken += [] if point is None else [point]
             others += [] if point is None else [point]

@@ -65,7 +65,7 @@ def check_spots(
     `may_be`: whether a point (metres) may be proposed. `ways`: their paths, where they are known; spots on the way of
     others are warned about then.
     """
-    points = tuple(_points(scenario, distance, fit_on(ground, sizes.largest, ways)))
+    points = tuple(_points(scenario, distance, fit_on(ground, sizes, ways)))
     look = _Look(ground, Clearance(ground), sizes, points, may_be, ways)
     present = robots_at(scenario)
     found = []

@@ -28,12 +28,12 @@ Ways = Mapping[Tuple[str, str], Sequence[Point]]
 NO_WAYS: Ways = MappingProxyType({})
 
 
-def with_spots(scenario: Scenario, ground: Ground, distance: float, robot: RobotSize, ways: Ways = NO_WAYS) -> Scenario:
+def with_spots(scenario: Scenario, ground: Ground, distance: float, sizes: Sizes, ways: Ways = NO_WAYS) -> Scenario:
     """The scenario with a pose for each robot that is sent beside the pose of a place: where there is room for it.
 
     Its text stays as it is. `distance`: as for `spots.placing`; `ways`: as far as they are known.
     """
-    where, present = placing(scenario, distance, fit_on(ground, robot, ways)), robots_at(scenario)
+    where, present = placing(scenario, distance, fit_on(ground, sizes, ways)), robots_at(scenario)
     beside: Dict[str, Dict[str, Pose]] = {}
     for poi in scenario.pois:
         own = {spot.robot.name for spot in poi.spots}
@@ -89,20 +89,20 @@ def spare_spots(
     return found
 
 
-def fit_on(ground: Ground, robot: RobotSize, ways: Ways = NO_WAYS) -> Fit:
-    """How well robots of a size stand at spots on a map.
+def fit_on(ground: Ground, sizes: Sizes, ways: Ways = NO_WAYS) -> Fit:
+    """How well robots stand at spots on a map.
 
     They need the room to stop and turn, and a straight line on free ground from the place. Better they are not on the
     way of others, and best outside what is inflated, too.
     """
     clearance, more = Clearance(ground), ground.settings.resolution
 
-    def fit(pose: Pose, spot: Pose) -> int:
-        place, here = (pose.x, pose.y), (spot.x, spot.y)
+    def fit(pose: Pose, robots: Sequence[str], spot: Pose) -> int:
+        place, here, robot = (pose.x, pose.y), (spot.x, spot.y), sizes.of(robots)
         metres = clearance.metres(*here, robot.wanted + more)
         if metres <= robot.needed or not is_seen(ground, place, here):
             return 0
-        is_aside = all(to_line(line, here)[0] >= room_on(line, place, robot) for line in ways.values())
+        is_aside = all(to_line(line, here)[0] >= room_on(line, place, sizes.largest) for line in ways.values())
         is_liked = metres > robot.wanted and math.dist(place, here) <= NEAR
         return 1 + 2 * is_aside + is_liked
 

@@ -7,7 +7,7 @@ import re
 from dataclasses import astuple, dataclass, field, replace
 from functools import reduce
 from pathlib import Path
-from typing import Any, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence
+from typing import Any, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set
 
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.files import read_text
@@ -68,6 +68,11 @@ class Sizes:
 
     largest: RobotSize = USUAL
     own: Mapping[str, RobotSize] = field(default_factory=dict)
+
+    @property
+    def kinds(self) -> Set[RobotSize]:
+        """The sizes that there are."""
+        return {self.largest, *self.own.values()}
 
     def of(self, robots: Iterable[str]) -> RobotSize:
         """What all of these robots need; without any the largest one."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import compress, count, islice
 from typing import Callable, DefaultDict, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
@@ -25,8 +26,8 @@ _ROOM = 4  # spots that are tried for each robot until it may be near another pl
 Point = Tuple[float, float]
 Table = Mapping[str, Pose]
 """place → pose."""
-Fit = Callable[[Pose, Pose], int]
-"""How well a robot stands at a spot beside the pose of a place: from 0 (not at all) to `BEST`."""
+Fit = Callable[[Pose, Sequence[str], Pose], int]
+"""How well, beside the pose of a place, robots stand at a spot: from 0 (not at all) to `BEST`."""
 BEST = 4
 
 
@@ -59,7 +60,7 @@ def spots(
     and right in turn, `distance` metres from each other and, where there is room, from the poses of other places. All
     look in the same direction. Positions are rounded to millimetres. With distance 0 all have the place's pose.
 
-    `fit`: how well a robot stands at a spot beside a pose that a person has given. Those that fit best come first, then
+    `fit`: how well robots stand at a spot beside a pose that a person has given. Those that fit best come first, then
     those nearer to the place, and beside it before any other direction; where nothing fits all is as without.
     """
     own = {poi.name: {spot.robot.name: spot.pose for spot in poi.spots} for poi in scenario.pois}
@@ -77,9 +78,12 @@ def spots(
         groups = _groups(scenario, poi, present[poi.name])[1:]
         here = _Taken(distance, given[poi.name])
         free = _beside(places[poi.name], distance, here, everywhere, _ROOM * len(groups))
-        if fit is not None and poi.pose is not None:
-            free = _fitting(poi.pose, distance, fit, everywhere, free)
-        for robots, spot in zip(groups, free):
+        used: List[Point] = []
+        for robots in groups:
+            some = free
+            if fit is not None and poi.pose is not None:
+                some = _fitting(poi.pose, distance, partial(fit, poi.pose, robots), everywhere, free, used)
+            spot = next(some)
             found.update({robot: {**found[robot], poi.name: spot} for robot in robots})
             everywhere.add(spot)
     return found
@@ -176,10 +180,17 @@ def _beside(pose: Pose, distance: float, here: _Taken, everywhere: _Taken, most:
     yield from (spot for spot in line if not here.near(spot))
 
 
-def _fitting(pose: Pose, distance: float, fit: Fit, everywhere: _Taken, others: Iterator[Pose]) -> Iterator[Pose]:
-    """The spots around a pose that fit, the best ones first, as far as they are free; then the others."""
-    around = [(fit(pose, spot), spot) for spot in _rings(pose, distance)]
-    used: List[Point] = []
+def _fitting(
+    pose: Pose,
+    distance: float,
+    fit: Callable[[Pose], int],
+    everywhere: _Taken,
+    others: Iterator[Pose],
+    used: List[Point],
+) -> Iterator[Pose]:
+    """The spots around a pose that fit, the best ones first, as far as they are free; then the others. `used`: those
+    that fitted and were taken."""
+    around = [(fit(spot), spot) for spot in _rings(pose, distance)]
     for wanted in range(BEST, 0, -1):
         for level, spot in around:
             if level == wanted and not everywhere.near(spot):

@@ -66,7 +66,7 @@ def test_no_robot_stands_in_another_room_because_planners_would_like_it() -> Non
     ground = ground_of(drawn((8, 6), [(0, 2.0, 8, 2.1)], [(3.5, 2.0, 4.5, 2.1)]))
     places = {"a": pose(4.0, 1.0)}
     likes = Standing(grid_of(ground, 0.3), grid_of(ground, 1.2))
-    found = proposed_spots(scenario(places, 2), grid_of(ground, 0.2), places, ROOM, {}, standing=likes)
+    found = proposed_spots(scenario(places, 2), grid_of(ground, 0.2), places, ROOM, {}, standing=lambda robot: likes)
     ((x, y),) = points(found["a"])
     assert y < 2.0 and math.dist((x, y), (4.0, 1.0)) < 1.1
 
