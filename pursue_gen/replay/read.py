@@ -115,8 +115,10 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
     simple = {(_name(each), each.data[4:]) for each in messages if _name(each).endswith(_SIMPLE)}
     for message in messages:
         topic = _name(message)
-        if message.at < latest <= message.at + BEHIND:  # /clock may reach the recorder later than a state
-            message = replace(message, at=latest)
+        sent = _sent(message.data) if topic.endswith((_SIMPLE, _ACTION)) else latest
+        for moment in (latest, sent):  # /clock may reach the recorder later than a state, and that later than a goal
+            if message.at < moment <= message.at + BEHIND:
+                message = replace(message, at=moment)
         if topic.endswith(_ORDERS):
             orders += [] if _is_published_again(message, topic, simple) else [_order(message, topic, robot_at)]
         elif topic.endswith(DRIVES):
@@ -195,6 +197,12 @@ def _order(message: Message, topic: str, robot_at: Mapping[str, str]) -> RobotOr
 def _text(data: bytes) -> str:
     """The text of a std_msgs/String, as far as it is there."""
     return data[4:].decode("utf-8", "replace")
+
+
+def _sent(data: bytes) -> float:
+    """When a message with a header was sent (seconds, by its sender's clock); 0 where it is cut."""
+    seconds, nanoseconds = struct.unpack_from("<LL", data, 4) if len(data) >= 12 else (0, 0)
+    return float(seconds + nanoseconds / 1e9)
 
 
 def _position(data: bytes) -> Optional[Tuple[float, float, float]]:

@@ -231,6 +231,15 @@ def test_json_of_another_shape_on_our_topics_is_passed_over(tmp_path: Path) -> N
     assert record.problems == ("3 messages on our topics could not be read",)
 
 
+@pytest.mark.parametrize("recorded, order", [(99.3, 100.0), (100.2, 100.2), (90.0, 90.0)])
+def test_a_goal_is_not_given_before_it_is_sent_unless_the_clocks_are_others(recorded: float, order: float) -> None:
+    """The recorder's clock may be late, and a goal may reach it before the state that it follows from."""
+    goal = struct.pack("<LLL", 0, 100, 0) + struct.pack("<L", 3) + b"map" + struct.pack("<7d", *[0.0] * 6, 1.0)
+    for topic, data in (("move_base_simple/goal", goal), ("move_base/goal", goal[:12] + bytes(12) + goal)):
+        record = from_messages([Message(f"/bot1/{topic}", "", "controller_bot1", recorded, data)])
+        assert [each.at for each in record.orders] == [order]
+
+
 def test_a_simple_goal_that_move_base_publishes_again_as_an_action_goal_is_one_order() -> None:
     def pose(x: float, seq: int = 0) -> bytes:
         return struct.pack("<LLL", seq, 100, 0) + struct.pack("<L", 3) + b"map" + struct.pack("<7d", x, *[0.0] * 5, 1.0)
