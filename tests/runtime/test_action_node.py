@@ -25,6 +25,7 @@ def receive(monkeypatch: pytest.MonkeyPatch) -> Callable[[Order], List[str]]:
     for name in ("init_node", "spin"):
         setattr(rospy, name, lambda *_: None)
     rospy.get_namespace = lambda: "/bot1/"  # type: ignore[attr-defined]
+    rospy.get_param = lambda _, default: default  # type: ignore[attr-defined]
     rospy.Publisher = lambda *_, **__: SimpleNamespace(publish=published.append)  # type: ignore[attr-defined]
     rospy.Subscriber = lambda _, __, callback: callbacks.append(callback)  # type: ignore[attr-defined]
     messages.String = str  # type: ignore[attr-defined]
