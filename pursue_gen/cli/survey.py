@@ -102,7 +102,9 @@ def survey(
         info("The copy has errors. Mend the scenario, first what the map says above, and survey it again:")
         info("with --ways, if ways are missing that the table has.")
         raise ended(Invalid(found.errors))
-    if not dry_run:
+    if any(way.kept and way.metres is None for way in found.ways):
+        info("Ways that could not be measured are as you wrote them: mend what the map says above, and survey again.")
+    elif not dry_run:
         suggest(f"pursue-gen solve {shell_quoted(target)}")
 
 

@@ -109,6 +109,7 @@ def test_places_in_walls_and_too_near_to_them_keep_their_distances() -> None:
     assert "rooms.pur:4:5: warning MAP003: the pose of shelf (11.75, 5) is nearer than 0.3 m" in done.err
     assert "there is room at 11.45, 5.05, 0.30 m from there" in done.err
     assert "6 stays: hall is not on free ground" in done.out
+    assert "Ways that could not be measured are as you wrote them" in done.err and "next:" not in done.err
     assert not Path("rooms_surveyed.pur").exists()
 
 
