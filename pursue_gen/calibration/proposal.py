@@ -113,7 +113,7 @@ class Proposal:
 
     `slack`: what would be enough, in place of new windows, for each robot that was late; `lost_after`: time units, None
     where not all ways of robots were measured. `of_others`: those of `missing_events` that robots
-    alone cannot do.
+    cannot do without others.
     """
 
     scenario: Scenario

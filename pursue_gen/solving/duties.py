@@ -2,8 +2,8 @@
 
 A duty of a promise is what some robot must do within a time from a moment that the environment chooses: an answer to
 somebody who may call, or to be at a place before a person who walks there. A robot covers the duty from where it can be
-in time at worst: whatever it does takes as long as it may. All is said in favour of the robots, but for that: they know
-at once what is wanted of them, have rested, and turn back wherever they are. So where the duties cannot all be covered
+in time at worst: whatever it does takes as long as it may. Otherwise robots are better off here than they are: they
+know at once what is wanted of them, and need no rest before they set off. So where the duties cannot all be covered,
 something is lost.
 """
 

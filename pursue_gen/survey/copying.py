@@ -10,6 +10,7 @@ from pursue_gen.language.edits import Edit, edited
 from pursue_gen.language.numbers import Number, exact, is_fine
 from pursue_gen.language.rewriting import Rewriting
 from pursue_gen.language.scenario import Connection, Pose, Scenario
+from pursue_gen.language.wording import listed
 from pursue_gen.workspace.robot_size import Sizes, sizes_of
 
 _SIZE = ("radius", "tolerance", "inflation")
@@ -49,12 +50,8 @@ def with_sizes(scenario: Scenario, sizes: Sizes) -> str:
         size, said = (astuple(each.of([agent.name])) for each in (sizes, known))
         numbers = {word: exact(Fraction(f"{new:.3f}")) for word, new, old in zip(_SIZE, size, said) if new != old}
         if agent.is_robot and numbers:
-            edits += rewriting.size(agent, numbers, f"{SURVEY}: its {_listed(list(numbers))} by --robot")
+            edits += rewriting.size(agent, numbers, f"{SURVEY}: its {listed(list(numbers))} by --robot")
     return edited(scenario.text, edits)
-
-
-def _listed(words: Sequence[str]) -> str:
-    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
 def written(

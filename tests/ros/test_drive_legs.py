@@ -79,13 +79,16 @@ def test_a_robot_that_is_not_there_or_has_another_namespace_ends_it_at_once(ros:
     assert not list(tmp_path.glob("drives.bag*"))
 
 
-ALONE = """
+FLOOR = """
 poi "a"
 poi "b"
 poi "c"
 connect a and c distance 3
 connect c and b distance 3
 event "fetch" location b duration 1
+"""
+
+ALONE = FLOOR + """\
 agent "bot1" controllable mobile 1 location c can_do fetch
 reach_objective: do fetch
 """
@@ -115,13 +118,7 @@ def test_the_node_for_actions_of_the_page_does_each_one_as_often_as_it_is_ordere
     assert drives.returncode == 0 and "3 of 3 times" in log.read_text(), log.read_text()
 
 
-PAIR = """
-poi "a"
-poi "b"
-poi "c"
-connect a and c distance 3
-connect c and b distance 3
-event "fetch" location b duration 1
+PAIR = FLOOR + """\
 event "lift" collaborative together location a duration 2
 rule "load": fetch before lift
 agent "bot1" controllable mobile 1 location c can_do fetch, lift
