@@ -37,6 +37,11 @@ class Plan(NamedTuple):
     first: FrozenSet[Way] = frozenset()
     only_goes: str = ""
 
+    @property
+    def partner(self) -> str:
+        """Who takes part in one of the actions; "": all are done alone."""
+        return next((act.partner for act in self.acts if act.partner), "")
+
     def words(self, start: str) -> str:
         """What a robot does that begins at `start`, behind its name."""
         if self.only_goes:

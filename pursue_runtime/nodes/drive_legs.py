@@ -154,11 +154,10 @@ class DriveLegs:
             take = self._on_result, self._on_statuses, self._on_position, lambda: None
             link = RobotLink(robot.name, settings, self.ending, self._log, *take)
             self._robot = robot, settings, session, link
-            partner = next((act.partner for act in robot.plan.acts if act.partner), "")
-            if partner:
-                its = read_settings(partner, self._given)
+            if robot.plan.partner:
+                its = read_settings(robot.plan.partner, self._given)
                 ignored = _ignore, _ignore, _ignore, lambda: None
-                self._partner = RobotLink(partner, its, self.ending, self._log, *ignored)
+                self._partner = RobotLink(robot.plan.partner, its, self.ending, self._log, *ignored)
             self._patient_until = time.monotonic() + PATIENCE
             self._log("info", f"{robot.name} {robot.plan.words(robot.start)}")
         link.watch()
@@ -199,11 +198,11 @@ class DriveLegs:
         """Why the robot that is to be driven, or its partner, cannot be told what to do, and what helps; "": it can."""
         assert self._robot is not None, "a robot is driven"
         robot, _, _, link = self._robot
-        partner = next((act.partner for act in robot.plan.acts if act.partner), "")
+        other, partner = self._partner, robot.plan.partner
         drives, acts = bool(robot.plan.ways) or bool(robot.plan.only_goes), bool(robot.plan.acts)
         whys = [(robot.name, link.missing_subscriber(is_goal=True) if drives else "")]
         whys += [(robot.name, link.missing_subscriber(is_goal=False))] if acts else []
-        whys += [(partner, self._partner.missing_subscriber(is_goal=False))] if self._partner is not None else []
+        whys += [(partner, other.missing_subscriber(is_goal=False))] if other is not None else []
         helps = "start its nodes; if their namespace is not its name, say so: rosparam load robots.yaml drive_legs"
         return next((f"{name} {why}: {helps}, with {name}: {{namespace: NAME}} in it" for name, why in whys if why), "")
 
