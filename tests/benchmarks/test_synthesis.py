@@ -11,7 +11,7 @@ import pytest
 
 from benchmarks import command, random_page, synthesis, tables
 from benchmarks.families import FAMILIES
-from benchmarks.measure import Bounds, Case, measured
+from benchmarks.measure import RUNS, Bounds, Case, measured
 from benchmarks.plots import pictures
 from tests.conftest import thesis_scenario
 
@@ -27,8 +27,9 @@ def family_case(name: str, size: int, game: str) -> Case:
 def test_a_case_is_decided_and_proven_in_another_process() -> None:
     row = measured(Case("thesis", "1", "default", file=str(thesis_scenario("1"))), ENOUGH)
     assert (row["verdict"], row["outcome"], row["game"]) == ("won", "", "default")
-    assert row["states"] > 0 and row["seconds"] > 0 and row["memory"] > 1
-    assert row["blocks"] >= row["commands"] > 0
+    assert row["states"] > 0 and row["memory"] > 1 and row["blocks"] >= row["commands"] > 0
+    # A small game may take less than one tick of the processor's clock: it is solved several times.
+    assert row["seconds"] >= 0 and row["runs"] == RUNS
 
 
 @pytest.mark.parametrize("group", ["story", "family"])

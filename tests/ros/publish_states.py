@@ -26,10 +26,13 @@ def strange(state: SystemState) -> "list[SystemState]":
     return found
 
 
+LISTENERS = {"/controller_bot1", "/controller_bot2", "/controllerObj", "/simulator", "/UI"}
+"""Nodes that count what they refuse. Others are connected as well (a recorder, at first this node itself)."""
+
 rospy.init_node("strange")
-publisher = rospy.Publisher("pursue/state", SystemState, queue_size=100)
 state = rospy.wait_for_message("pursue/state", SystemState)
-while publisher.get_num_connections() < 6:
+publisher = rospy.Publisher("pursue/state", SystemState, queue_size=100)
+while not LISTENERS <= {connection.endpoint_id for connection in publisher.impl.connections}:
     time.sleep(0.05)
 for message in strange(state):
     publisher.publish(message)
