@@ -92,6 +92,6 @@ def _elsewhere(agent: Agent, place: str, positions: Positions) -> Clause:
     """The agent is neither idle nor at work at the place."""
     codes: Sequence[int] = [
         *(code for poi in positions.pois if poi != place for code in (positions.at(poi), positions.doing(poi))),
-        *positions.ways.values(),
+        *(code for way, code in positions.ways.items() if way != (place, place)),
     ]
     return tuple(Test(names.agent_position(agent.name), code) for code in dict.fromkeys(codes))

@@ -215,3 +215,16 @@ def test_the_deadline_runs_exactly_while_nobody_of_them_is_there(seed: int, who:
         here = model.after(moves, here)
         was, there = there, any(here.locations[name] == place for name in names)
         left = now if was and not there else left
+
+
+def test_who_is_at_work_at_the_place_is_there() -> None:
+    text = WATCH.replace('event "rest"', 'event "rest"\nevent "look" location gate duration 2')
+    text = text.replace("location vault can_do rest", "location gate").replace("can_do rest", "can_do look")
+    story = parse(text.format("patrol gate every 1000 by any robot"), "watch.pur", "watch")
+    model = Model(model_data(played(translate(story), Rules()), scenario_objective(story), story, Rules().reaction))
+    here = model.initial()
+    for word in ("look", "bot2_gate2hall"):
+        moves = model.joint_move(here, word, timed=False)
+        assert moves is not None
+        here = model.after(moves, here)
+    assert here.locations == {"bot1": "doing_look_in_gate", "bot2": "going_gate_to_hall", "obj": "idle"}
