@@ -12,7 +12,8 @@ class Effort:
     some hidden are played with all of them as well; `free`: they are played without the pauses of the environment;
     `joins`: groups that cannot be played beside each other are joined; `nobody`: what never happens while all stand
     still may be nobody's task, until what others are commanded shows that somebody has to see to it. `few`: only half
-    as many robots as promises keep them all, by a policy, where all robots can.
+    as many robots as promises keep them all, by a policy, where all robots can; `pairs`: what has no deadline may be
+    two robots' task also where one can see to it, as that one may be needed elsewhere once the other is there.
     """
 
     work: int
@@ -24,12 +25,14 @@ class Effort:
     joins: bool = True
     nobody: bool = False
     few: bool = False
+    pairs: bool = False
 
 
 EFFORTS = (
     Effort(1_000_000, few=True),
     Effort(10_000_000, game=150_000, joins=False, nobody=True),
     Effort(30_000_000, game=1_000_000),
+    Effort(40_000_000, game=4_000_000, pairs=True),
     Effort(80_000_000, game=4_000_000),
     Effort(60_000_000, thorough=True),
     Effort(60_000_000, thorough=True, free=False),

@@ -172,7 +172,7 @@ class _Search:
         self, promise: Place, able: Sequence[str], groups: Sequence[Group]
     ) -> Iterator[FrozenSet[str]]:
         """Who may keep the promise: nobody, if that is an effort's way; one robot, those with least to do first, of
-        these the nearest; two where no one can alone."""
+        these the nearest; two where no one can alone, or where an effort lets two."""
         timed = any(place.invariant for place in self._network.automaton(promise[0]).locations)
         if self._effort.nobody and not timed and self._is_won(Group(NOBODY, (promise,))):
             yield NOBODY
@@ -183,7 +183,7 @@ class _Search:
         )
         alone = [frozenset([name]) for name in nearest]
         yield from alone or [NOBODY]
-        if not any(self._is_won(Group(team, (promise,))) for team in alone):
+        if (self._effort.pairs and not timed) or not any(self._is_won(Group(team, (promise,))) for team in alone):
             yield from (frozenset(two) for two in combinations(able, 2))
 
     def _grown(self, groups: Sequence[Group], team: FrozenSet[str], promise: Place) -> Tuple[Group, ...]:

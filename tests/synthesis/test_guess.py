@@ -167,6 +167,42 @@ objective: avoid bot1 at room1 and guest at room1
 """
 
 
+POST = """
+poi "dock"
+poi "post"
+poi "room"
+poi "far"
+poi "gate"
+connect dock and post distance 2
+connect dock and room distance 3
+connect far and post distance 12
+connect gate and post distance 6
+event "call"
+event "serve" location room duration 1
+agent "bot1" controllable mobile 1 location dock can_do serve
+agent "bot2" controllable mobile 1 location far
+agent "guest" mobile 2 location gate
+agent "people" location room can_do call
+objective: always not guest at post or any robot at post
+objective: if call then serve within 40
+"""
+
+
+def test_who_is_near_sees_to_a_post_until_who_is_to_stay_there_has_come() -> None:
+    network, objective, strategy = guessed(POST)
+    assert strategy is not None
+    assert verify(network, objective, strategy, DEFAULT.reaction, closed=True).ok
+    left = [
+        dict(block.state.locations)["bot2"]
+        for block in strategy.blocks
+        for command in block.commands
+        if (command.moves[0].automaton, command.moves[0].edge.source) == ("bot1", "post")
+    ]
+    assert set(left) == {"post"}
+    assert guessed(POST.replace("within 40", "within 20"))[2] is None  # it is too late then
+    assert guessed(POST.replace("distance 6", "distance 1"))[2] is None  # the guest comes first
+
+
 @pytest.mark.parametrize("stays", [False, True])
 def test_a_robot_goes_around_where_it_must_not_meet_somebody(stays: bool) -> None:
     """The shorter way leads past the guest's room."""

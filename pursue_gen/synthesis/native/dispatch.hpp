@@ -24,6 +24,7 @@ class Dispatch {
 
     std::size_t robots() const { return duties_.robots().size(); }
     bool is_patrol(int a) const { return patrols_[a]; }
+    bool has_guards() const { return tasks_.has_guards(); }
 
     // Which duty each robot is at, -1: none, after a move from d; before, it was at those of `memory`. More than the numbers
     // of automata once: it is a patrol that is put off, and the robot goes to a call first; several times: to that patrol next.
@@ -42,12 +43,13 @@ class Dispatch {
         for (std::size_t r = 0; r < memory.size(); ++r) {
             int& duty = memory[r];
             if (duty >= 0 && (guess_.next == Next::soonest_due || !duties_.is_open(d, duty % count_))) duty = -1;
+            if (tasks_.guarded(r, d) >= 0) duty = -1;
             if (is_waiting(duty) && is_called(d, r, memory)) duty = -1;
         }
         for (;;) {
             std::tuple<std::int64_t, std::size_t, int> best{Duties::NEVER, 0, -1};
             for (std::size_t r = 0; r < memory.size(); ++r)
-                if (memory[r] < 0) best = std::min(best, next_duty(d, r, memory, last[r]));
+                if (memory[r] < 0 && tasks_.guarded(r, d) < 0) best = std::min(best, next_duty(d, r, memory, last[r]));
             const auto [place, robot, duty] = best;
             if (duty < 0) return;
             memory[robot] = duty;
@@ -88,7 +90,8 @@ class Dispatch {
             }
         std::vector<Order> orders;
         for (std::size_t r = 0; r < robots.size(); ++r) {
-            if (commands[r] < 0 || leads_to_loss(joints_[commands[r]].target(d))) continue;
+            // On the way to a post others may always be there first.
+            if (commands[r] < 0 || (!tasks_.is_bound(r, d) && leads_to_loss(joints_[commands[r]].target(d)))) continue;
             const std::size_t q = for_whom[r];
             if (!is_waiting(memory[q]) || (q == r && commands[r] != wanted[r])) orders.push_back({commands[r]});
             else for (const Bound& since : due(d, q, memory[q] - count_)) orders.push_back({commands[r], since});
@@ -232,7 +235,8 @@ class Dispatch {
 
     // What robot r does next for a duty, -1: nothing; `way`: the locations that it passes then.
     int wants(const Discrete& d, const std::vector<int>& enabled, std::size_t r, int duty, std::set<int>& way) {
-        const int fact = duty >= 0 ? duties_.done(duty % count_) : tasks_.home(r), robot = duties_.robots()[r];
+        const int post = tasks_.guarded(r, d), robot = duties_.robots()[r];
+        const int fact = post >= 0 ? post : duty >= 0 ? duties_.done(duty % count_) : tasks_.home(r);
         if (fact < 0) return -1;
         duties_.look(d, robot);
         if (duties_.cost(fact) == Duties::NEVER || duties_.cost(fact) == 0) return -1;

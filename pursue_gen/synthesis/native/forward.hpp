@@ -80,6 +80,7 @@ class Forward {
     }
 
     std::size_t robots() const { return dispatch_.robots(); }
+    bool has_guards() const { return dispatch_.has_guards(); }
     const Joint& joint(int k) const { return joints_[k]; }
     std::size_t followed() const { return followed_; }
 
@@ -377,6 +378,7 @@ std::unique_ptr<Forward<Z>> winning_guess(const Game& game, LimitMonitor& monito
     for (const Guess& each : late.empty() ? GUESSES : late_guesses(late)) {
         auto forward = std::make_unique<Forward<Z>>(game, monitor, each);
         if (!each.shared_out && forward->robots() < 2) continue;  // the same as one that was tried
+        if (each.relieved && !forward->has_guards()) continue;    // likewise
         if (forward->wins()) return forward;
     }
     return nullptr;

@@ -21,12 +21,14 @@ struct Guess {
     std::vector<int> patrols{};  // duties that wait until they are due
     int reserve = 0;         // the part of their period, in hundredths, that is left then beside the way
     bool sets_off = false;   // but the first one is begun at once
+    bool relieved = false;   // a post is for a robot without duties; until it is there, another one sees to the post first
 };
 
 // One after the other.
 inline const std::vector<Guess> GUESSES = {
     {Next::in_turn, true, Idle::stays, 1, false}, {Next::in_turn, true, Idle::stays, 1, true, true}, {Next::in_turn, true},
     {Next::in_turn, true, Idle::goes_home},       {Next::in_turn, true, Idle::goes_to_post},
+    {Next::nearest, true, Idle::stays, 4, true, false, {}, 0, false, true},
     {Next::in_turn, false},                       {Next::in_turn, false, Idle::goes_home},
     {Next::soonest_due, true},                    {Next::soonest_due, true, Idle::goes_home},
     {Next::soonest_due, true, Idle::goes_to_post},
@@ -63,6 +65,7 @@ class Tasks {
         for (const int robot : duties.robots()) duties.keep_out(robot, dangers(robot));
         if (guess.shared_out && duties.robots().size() > 1) share_out();
         if (guess.idle == Idle::goes_to_post) find_posts();
+        if (guess.relieved) find_guards();
     }
 
     // Per robot how long its duties take it, none: they are not shared out.
@@ -74,7 +77,53 @@ class Tasks {
     // The fact that a robot is where it goes when it owes nothing; -1: it stays.
     int home(std::size_t r) const { return homes_[r]; }
 
+    // Whether some robot is relieved by another.
+    bool has_guards() const { return !guards_.empty(); }
+
+    // The fact that robot r is at the post to which it sees before its duties, as who is to stay there has not come yet; -1:
+    // there is none.
+    int guarded(std::size_t r, const Discrete& d) const {
+        for (const Guard& guard : guards_)
+            if (guard.robot == r && d[guard.other] != guard.post) return duties_.at_location(duties_.robots()[r], guard.own);
+        return -1;
+    }
+
+    // Whether robot r sees to a post, or is on its way to relieve who does.
+    bool is_bound(std::size_t r, const Discrete& d) const {
+        return std::any_of(guards_.begin(), guards_.end(), [&](const Guard& guard) {
+            return (guard.robot == r || guard.other == duties_.robots()[r]) && d[guard.other] != guard.post;
+        });
+    }
+
   private:
+    // A robot that is at its own location until another one is at its post.
+    struct Guard {
+        std::size_t robot;
+        int own, other, post;  // `other`: an automaton
+    };
+
+    // Who is needed at a post and has no duties goes there; who is there sooner, and has some, is there until then.
+    void find_guards() {
+        const Discrete start = initial(game_);
+        const auto has_duties = [&](std::size_t r) { return std::find(for_[r].begin(), for_[r].end(), true) != for_[r].end(); };
+        for (const int a : duties_.watching()) {
+            std::vector<std::tuple<std::int64_t, std::size_t, int>> who;
+            for (const auto& [r, location] : required(start, a)) {
+                duties_.look(start, duties_.robots()[r]);
+                who.emplace_back(duties_.cost(duties_.at_location(duties_.robots()[r], location)), r, location);
+            }
+            std::sort(who.begin(), who.end());
+            const auto stays = std::find_if(who.begin(), who.end(), [&](const auto& each) {
+                return homes_[std::get<1>(each)] < 0 && !has_duties(std::get<1>(each));
+            });
+            if (stays == who.end() || std::get<0>(*stays) == Duties::NEVER) continue;
+            const auto [far, robot, post] = *stays;
+            homes_[robot] = duties_.at_location(duties_.robots()[robot], post);
+            if (stays != who.begin() && has_duties(std::get<1>(who.front())))
+                guards_.push_back({std::get<1>(who.front()), std::get<2>(who.front()), duties_.robots()[robot], post});
+        }
+    }
+
     // Gives each duty to one of the robots that can do it: those that few can do first, then perhaps what takes longest.
     void share_out() {
         const std::size_t robots = duties_.robots().size();
@@ -227,6 +276,7 @@ class Tasks {
     std::vector<std::int64_t> load_;
     std::vector<std::vector<bool>> for_;  // by robot and automaton
     std::vector<int> homes_;
+    std::vector<Guard> guards_;
 };
 
 }  // namespace pursue
