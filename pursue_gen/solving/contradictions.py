@@ -1,10 +1,10 @@
 """Two promises that exclude each other where somebody stays: "no robot at room1 while the guest is there", and "a robot
 at room1 within 60 of the guest's coming".
 
-An agent whom nobody controls goes to a place and stays there for ever. What all the others do, wherever they are, is
-the controller's choice at any moment. That is more than it has, so where the promises cannot be kept even so they are
-lost. No times are looked at but that what has a deadline has to end, so this is decided at once, with any number of
-robots.
+An agent whom nobody controls goes to a place and stays there for ever; then those who can ask for something wherever
+they stay ask for it. What all the others do, wherever they are, is the controller's choice at any moment. That is more
+than it has, so where the promises cannot be kept even so they are lost. No times are looked at but that what has a
+deadline has to end, so this is decided at once, with any number of robots.
 """
 
 from __future__ import annotations
@@ -33,8 +33,11 @@ def excluded_by_a_stay(network: Network, objective: Objective) -> Tuple[Objectiv
         return ()
     for arrival in _arrivals(network):
         asking = [place for place in objective.bad if _asks(network.automaton(place[0]), arrival)]
-        for pair in combinations(asking, 2):
-            if not _can_be_kept(network, pair, arrival):
+        requests = _requests(network, arrival)
+        waiting = [place for place in objective.bad if _hears(network.automaton(place[0]), requests)]
+        for pair in combinations(objective.bad, 2):
+            concerned = any(place in asking for place in pair) and all(place in asking + waiting for place in pair)
+            if concerned and not _can_be_kept(network, pair, arrival, requests):
                 return (Objective(Kind.SAFETY, bad=pair),)
     return ()
 
@@ -62,6 +65,23 @@ def arrivals(agent: Automaton) -> Iterator[Edge]:
                     yield edge
 
 
+def _requests(network: Network, arrival: Edge) -> Set[str]:
+    """The channels on which somebody whom nobody controls can send wherever he stays, after the arrival as well."""
+    found: Set[str] = set()
+    for agent in network.automata:
+        if not is_agent(agent) or any(edge.controllable for edge in agent.edges):
+            continue
+        places = [place.name for place in agent.locations if not place.invariant]
+        stays = [arrival.target] if arrival in agent.edges else places
+        sent = [{e.sync.channel for e in agent.edges if e.sync and e.source == at and _is_its_own(e)} for at in stays]
+        found |= set.intersection(*sent) if sent else set()
+    return found
+
+
+def _hears(automaton: Automaton, channels: AbstractSet[str]) -> bool:
+    return any(e.sync is not None and not e.sync.sends and e.sync.channel in channels for e in automaton.edges)
+
+
 def _is_its_own(edge: Edge) -> bool:
     """True if nobody can keep the agent from the edge, and it need not be in time for it."""
     late = all(bound.op in (">", ">=") for bound in edge.guard.clocks)
@@ -76,9 +96,9 @@ def _asks(automaton: Automaton, arrival: Edge) -> bool:
     return any(stay.get(t.variable) == t.value for edge in automaton.edges for c in edge.guard.integers for t in c)
 
 
-def _can_be_kept(network: Network, bad: Sequence[Place], arrival: Edge) -> bool:
-    """False where those who watch these promises come to what is to be avoided after the arrival whatever the others
-    do."""
+def _can_be_kept(network: Network, bad: Sequence[Place], arrival: Edge, requests: AbstractSet[str]) -> bool:
+    """False where those who watch these promises come to what is to be avoided after the arrival, and after all these
+    requests, whatever the others do."""
     watching = [network.automaton(name) for name, _ in bad]
     others = _Others(network, watching, arrival)
     if others.too_many:
@@ -95,8 +115,18 @@ def _can_be_kept(network: Network, bad: Sequence[Place], arrival: Edge) -> bool:
         there in kept and not _is_led_out(watching, there, values, kept)
         for here in before
         for values in others.valuations
-        for there in _after(watching, here, values, arrival)
+        for there in (_asked(watching, then, requests) for then in _after(watching, here, values, arrival))
     )
+
+
+def _asked(watching: Sequence[Automaton], here: _Places, requests: AbstractSet[str]) -> _Places:
+    """Where the automata are when those that begin to wait with a request, whatever else holds, have heard it."""
+    found = []
+    for automaton, place in zip(watching, here):
+        hearing = (_hearing([e for e in automaton.edges if e.source == place], channel) for channel in requests)
+        led = {some[0].target for some in hearing if len(some) == 1 and some[0].guard == Guard()}
+        found.append(led.pop() if len(led) == 1 else place)
+    return tuple(found)
 
 
 def _after(watching: Sequence[Automaton], here: _Places, values: _Valuation, arrival: Edge) -> Iterator[_Places]:

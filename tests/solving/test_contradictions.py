@@ -84,3 +84,42 @@ def test_the_two_statements_are_named() -> None:
         solve_scenario(parse(text, "floor.pur", "floor"), DEFAULT)
     assert isinstance(problem.value, Lost)
     assert problem.value.parts == (("obj", "obj3"),)
+
+
+EVENTS = """event "call"
+event "serve" location room1 duration 1
+event "look" location room2 duration 1
+"""
+CALLED = FLOOR.replace("location room2\n", "location room2 can_do serve, look\n").replace("agent", f"{EVENTS}agent", 1)
+SERVE = "if call then serve within 60"
+
+
+def called(who: str) -> str:
+    """The floor on which this agent may call."""
+    if who == "guest":
+        return CALLED.replace("2 location hall\n", "2 location hall can_do call\n")
+    return CALLED + f'agent "{who}" location hall can_do call\n'
+
+
+@pytest.mark.parametrize("who", ["people", "guest"])
+def test_what_is_to_be_done_where_no_robot_may_be_is_excluded(who: str) -> None:
+    network, objective = game(AVOID, SERVE, floor=called(who))
+    assert excluded_by_a_stay(network, objective) == (objective,)
+    assert excluded_by_a_stay(*game(AVOID, SERVE.replace("serve", "look"), floor=called(who))) == ()
+    assert excluded_by_a_stay(*game(AVOID, SERVE, floor=CALLED + 'agent "people" location hall\n')) == ()
+
+
+@pytest.mark.parametrize("assumed", ["people does call at_most 1 times", "guest leaves room1 within 20"])
+def test_who_may_not_call_then_or_has_to_leave_excludes_nothing(assumed: str) -> None:
+    floor = f"{called('people')}assume: {assumed}\n"
+    assert excluded_by_a_stay(*game(AVOID, SERVE, floor=floor)) == ()
+
+
+@pytest.mark.parametrize("who", ["people", "guest"])
+@pytest.mark.parametrize("serve", ["serve", "look"])
+@pytest.mark.parametrize("other", [AVOID, NEAR, ALWAYS, PATROL])
+def test_what_is_excluded_by_a_call_is_lost_in_the_exact_game(who: str, serve: str, other: str) -> None:
+    alone = called(who).replace('agent "bot2" controllable mobile 1 location hall\n', "")
+    network, objective = game(SERVE.replace("serve", serve), other, floor=alone)
+    if excluded_by_a_stay(network, objective):
+        assert not solve(network, objective, DEFAULT.reaction).won
