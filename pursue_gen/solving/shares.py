@@ -13,7 +13,7 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from itertools import combinations
+from itertools import chain, combinations
 from typing import Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.outcomes import LimitHit, NotProven
@@ -128,7 +128,7 @@ class _Search:
         if self._effort.few:
             return self._by_few(able)
         order = sorted(self._objective.bad, key=lambda place: len(able[place]))
-        ways = self._ways(order, able, ())
+        ways = chain.from_iterable(self._ways(order, able, (), turns) for turns in range(len(order) + 1))
         for _, groups in zip(range(_WAYS), ways):
             strategy = self._together(groups)
             if strategy is not None:
@@ -154,19 +154,26 @@ class _Search:
         return tuple(name for name in self._robots if name in names)
 
     def _ways(
-        self, promises: Sequence[Place], able: Dict[Place, Tuple[str, ...]], groups: Tuple[Group, ...]
+        self, promises: Sequence[Place], able: Dict[Place, Tuple[str, ...]], groups: Tuple[Group, ...], turns: int
     ) -> Iterator[Tuple[Group, ...]]:
-        """The ways to share out these promises among groups that have some already; each group wins its game alone."""
+        """The ways to share out these promises among groups that have some already; each group wins its game alone.
+
+        `turns`: so many promises do not go to the first who may keep them (limited discrepancy search, Harvey and
+        Ginsberg 1995).
+        """
+        if len(promises) < turns:
+            return
         if not promises:
             yield groups
             return
-        first, rest = promises[0], promises[1:]
+        (first, *rest), other = promises, 0
         for team in self._teams(first, able[first], groups):
-            if self._are_known_to_clash(groups):
+            if self._are_known_to_clash(groups) or other > turns:
                 return
             grown = self._grown(groups, team, first)
             if not self._are_known_to_clash(grown) and self._is_won(grown[-1]):
-                yield from self._ways(rest, able, grown)
+                yield from self._ways(rest, able, grown, turns - other)
+                other = 1
 
     def _teams(
         self, promise: Place, able: Sequence[str], groups: Sequence[Group]

@@ -32,7 +32,7 @@ LISTENERS = {"/controller_bot1", "/controller_bot2", "/controllerObj", "/simulat
 rospy.init_node("strange")
 state = rospy.wait_for_message("pursue/state", SystemState)
 publisher = rospy.Publisher("pursue/state", SystemState, queue_size=100)
-while not LISTENERS <= {connection.endpoint_id for connection in publisher.impl.connections}:
+while LISTENERS - {connection.endpoint_id for connection in publisher.impl.connections}:
     time.sleep(0.05)
 for message in strange(state):
     publisher.publish(message)

@@ -80,6 +80,16 @@ def test_groups_that_stand_in_each_others_way_are_joined_with_more_effort() -> N
     assert found is not None and len(found.strategy.shares) == 1
 
 
+def test_a_post_is_two_robots_task_until_the_one_that_stays_is_there() -> None:
+    """bot1, which alone can drop what is ordered, sees to hall3 until bot3 is there; bot2 is on patrol."""
+    found = won_in_shares(
+        *game(lab_scenario(68)), REACTION, SolveOptions(), [each for each in EFFORTS if each.pairs]
+    )
+    assert found is not None and len(found.strategy.shares) == 2
+    commands = (command.moves[0] for block in found.strategy.blocks for command in block.commands)
+    assert {"bot1", "bot3"} <= {move.automaton for move in commands}
+
+
 def test_fewer_robots_than_promises_keep_what_all_can() -> None:
     network, objective = game(warehouse(3))
     found = won_in_shares(network, objective, REACTION, SolveOptions(), EFFORTS[:1])
