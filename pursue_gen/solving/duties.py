@@ -74,6 +74,12 @@ def places_of(automaton: Automaton) -> List[str]:
     return [place.name for place in automaton.locations if not place.invariant]
 
 
+def begins(automaton: Automaton, channels: AbstractSet[str]) -> List[Edge]:
+    """The commands by which a robot begins what ends with one of these."""
+    doing = {e.source for e in automaton.edges if e.sync is not None and e.sync.sends and e.sync.channel in channels}
+    return [edge for edge in automaton.edges if edge.target in doing and edge.source not in doing]
+
+
 def _largest(sets: Set[FrozenSet[int]]) -> List[FrozenSet[int]]:
     return [some for some in sets if not any(some < other for other in sets)]
 

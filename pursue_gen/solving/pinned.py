@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import AbstractSet, Dict, FrozenSet, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
 from pursue_gen.solving.contradictions import arrivals
-from pursue_gen.solving.duties import Duties, Duty, Standing, can_be_covered, places_of
+from pursue_gen.solving.duties import Duties, Duty, Standing, begins, can_be_covered, places_of
 from pursue_gen.solving.freer import standing as without_walks
 from pursue_gen.solving.freer import without_turns
 from pursue_gen.solving.lost_promises import watched
@@ -21,7 +21,7 @@ from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective, is_end
+from pursue_gen.tga.network import Edge, Kind, Network, Objective, is_end
 
 _Pins = Dict[Tuple[str, Edge], Tuple[Duty, ...]]
 """What robots cannot begin, each with duties that nobody else can cover meanwhile."""
@@ -45,7 +45,7 @@ def lost_to_pins(
             return (_promises(objective, _fewest(duties, everywhere)),)
         pins = _pins(network, duties, everywhere)
         for duty in duties if pins else ():
-            doers = [(r, e) for r in robots for e in _begins(network.automaton(r), duty.ends)]
+            doers = [(r, e) for r in robots for e in begins(network.automaton(r), duty.ends)]
             if doers and all(each in pins for each in doers):
                 return (_promises(objective, [duty, *(d for each in doers for d in pins[each])]),)
         if pins and frozenset(pins) not in tried:
@@ -116,18 +116,12 @@ def _pins(network: Network, duties: Sequence[Duty], everywhere: Dict[str, List[s
     for robot in everywhere:
         automaton = network.automaton(robot)
         others = {name: places for name, places in everywhere.items() if name != robot}
-        for begin in _begins(automaton, channels):
+        for begin in begins(automaton, channels):
             ends = {e.sync.channel for e in automaton.edges if e.source == begin.target and e.sync is not None}
             left = [d for d in duties if d.ends.isdisjoint(ends) and not d.covered_from(robot, begin.target)]
             if not can_be_covered(left, others):
                 found[robot, begin] = _fewest(left, others)
     return found
-
-
-def _begins(automaton: Automaton, channels: AbstractSet[str]) -> List[Edge]:
-    """The commands by which a robot begins what ends with one of these."""
-    doing = {e.source for e in automaton.edges if e.sync is not None and e.sync.sends and e.sync.channel in channels}
-    return [edge for edge in automaton.edges if edge.target in doing and edge.source not in doing]
 
 
 def _fewest(duties: Sequence[Duty], robots: Dict[str, List[str]]) -> Tuple[Duty, ...]:

@@ -14,6 +14,7 @@ from pursue_gen.proof.worst_case import LIMIT, with_counter, worst_case
 from pursue_gen.solving.attempts import decided_by_attempts
 from pursue_gen.solving.contradictions import excluded_by_a_stay
 from pursue_gen.solving.crowds import has_parts, little_work, won_by_some, works_in_parallel
+from pursue_gen.solving.errands import excluded_by_an_errand
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.least_time import Guarantee, bounds, fastest, unscaled
 from pursue_gen.solving.lost_promises import (
@@ -208,7 +209,8 @@ def _with_little_work(
         if passed is not None:
             return Solution(passed[0], objective, passed[1], reaction)
     if verdict is None and (several or shared):
-        lost = lost_alone(game, objective, reaction, options.since(start)) or excluded_by_a_stay(game, objective)
+        lost = lost_alone(game, objective, reaction, options.since(start))
+        lost = lost or excluded_by_a_stay(game, objective) or excluded_by_an_errand(game, objective)
         known = lost or decided_by_attempts(game, objective, reaction, options.since(start))
         if known:
             return known
