@@ -13,7 +13,9 @@ class Effort:
     `joins`: groups that cannot be played beside each other are joined; `nobody`: what never happens while all stand
     still may be nobody's task, until what others are commanded shows that somebody has to see to it. `few`: only half
     as many robots as promises keep them all, by a policy, where all robots can; `pairs`: what has no deadline may be
-    two robots' task also where one can see to it, as that one may be needed elsewhere once the other is there.
+    two robots' task also where one can see to it, as that one may be needed elsewhere once the other is there;
+    `varied`: ways in which few promises go to another than the first choice come first (limited discrepancy search,
+    Harvey and Ginsberg 1995).
     """
 
     work: int
@@ -26,14 +28,15 @@ class Effort:
     nobody: bool = False
     few: bool = False
     pairs: bool = False
+    varied: bool = False
 
 
 EFFORTS = (
     Effort(1_000_000, few=True),
     Effort(10_000_000, game=150_000, joins=False, nobody=True),
     Effort(30_000_000, game=1_000_000),
-    Effort(40_000_000, game=4_000_000, pairs=True, joins=False),
-    Effort(60_000_000, joins=False),
+    Effort(40_000_000, game=4_000_000, joins=False, pairs=True, varied=True),
+    Effort(80_000_000, game=10_000_000, joins=False, varied=True),
     Effort(80_000_000, game=4_000_000),
     Effort(60_000_000, thorough=True),
     Effort(60_000_000, thorough=True, free=False),

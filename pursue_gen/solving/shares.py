@@ -13,7 +13,7 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from itertools import chain, combinations
+from itertools import chain, combinations, islice
 from typing import Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.outcomes import LimitHit, NotProven
@@ -128,8 +128,9 @@ class _Search:
         if self._effort.few:
             return self._by_few(able)
         order = sorted(self._objective.bad, key=lambda place: len(able[place]))
-        ways = chain.from_iterable(self._ways(order, able, (), turns) for turns in range(len(order) + 1))
-        for _, groups in zip(range(_WAYS), ways):
+        turns = range(len(order) + 1) if self._effort.varied else (len(order),)
+        ways = chain.from_iterable(self._ways(order, able, (), most) for most in turns)
+        for groups in islice(_each_once(ways), _WAYS):
             strategy = self._together(groups)
             if strategy is not None:
                 return strategy
@@ -158,11 +159,8 @@ class _Search:
     ) -> Iterator[Tuple[Group, ...]]:
         """The ways to share out these promises among groups that have some already; each group wins its game alone.
 
-        `turns`: so many promises do not go to the first who may keep them (limited discrepancy search, Harvey and
-        Ginsberg 1995).
+        `turns`: so many promises at most do not go to the first who may keep them.
         """
-        if len(promises) < turns:
-            return
         if not promises:
             yield groups
             return
@@ -347,6 +345,15 @@ class _Search:
             proven = prove(game, wanted, strategy, self._reaction, options=self._options, closed=True)
             return without_hidden(proven)
         return None
+
+
+def _each_once(ways: Iterable[Tuple[Group, ...]]) -> Iterator[Tuple[Group, ...]]:
+    known: Set[Tuple[Group, ...]] = set()
+    for groups in ways:
+        if groups not in known:
+            known.add(groups)
+            yield groups
+
 
 def _have(groups: Iterable[Group], some: Iterable[Group]) -> bool:
     """True if these groups have the same teams, with the same promises and perhaps more."""
