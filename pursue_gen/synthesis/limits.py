@@ -173,7 +173,8 @@ def limit_reached(which: str, limits: Limits, reached: Progress) -> LimitHit:
 def memory_in_use() -> int:
     """MiB of this process in memory; where the system does not report it, the most that it was so far."""
     try:
-        with open("/proc/self/statm", encoding="ascii") as file:
+        # As bytes: a signal may ask while Python is loading the codec.
+        with open("/proc/self/statm", "rb") as file:
             return int(file.read().split()[1]) * resource.getpagesize() >> 20
     except (OSError, ValueError, IndexError):
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> (20 if sys.platform == "darwin" else 10)

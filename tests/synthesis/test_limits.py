@@ -153,6 +153,13 @@ def test_a_limit_on_memory_ends_a_large_game(engine: str) -> None:
     assert f"the limit of {most} MiB of memory" in told(failure.value)
 
 
+def test_memory_is_looked_at_while_python_loads_a_codec() -> None:
+    """A signal asks for it at any moment, also within that import: the name of the codec is not known then."""
+    loading = "import sys; from pursue_gen.synthesis.limits import memory_in_use; sys.modules['encodings.ascii'] = None"
+    asked = subprocess.run([sys.executable, "-c", f"{loading}; print(memory_in_use())"], stdout=subprocess.PIPE)
+    assert int(asked.stdout) > 0
+
+
 @needs_native
 def test_other_threads_go_on_while_the_native_engine_solves() -> None:
     scenario = parse(many_walkers(), "crowd.pur")
