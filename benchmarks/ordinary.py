@@ -1,4 +1,4 @@
-"""Are ordinary stories decided? `python -m benchmarks.ordinary --labs 40 --large 10 --out docs`
+"""Are ordinary stories decided? `python -m benchmarks.ordinary --labs 200 --large 20 --out docs`
 
 Measures the whole command `solve` on random lab scenarios (lab_scenarios.py) and on families of ordinary work
 (ordinary_families.py), in the default game and with at most 1 GiB. Each command is a process of its own, and what
