@@ -73,7 +73,8 @@ def _requests(network: Network, arrival: Edge) -> Set[str]:
             continue
         places = [place.name for place in agent.locations if not place.invariant]
         stays = [arrival.target] if arrival in agent.edges else places
-        sent = [{e.sync.channel for e in agent.edges if e.sync and e.source == at and _is_its_own(e)} for at in stays]
+        calls = [edge for edge in agent.edges if edge.source == edge.target and _is_its_own(edge)]
+        sent = [{edge.sync.channel for edge in calls if edge.sync is not None and edge.source == at} for at in stays]
         found |= set.intersection(*sent) if sent else set()
     return found
 

@@ -74,6 +74,12 @@ def places_of(automaton: Automaton) -> List[str]:
     return [place.name for place in automaton.locations if not place.invariant]
 
 
+def at_home(network: Network) -> Dict[str, str]:
+    """The agents whom nobody controls that may be for ever where they begin, and these places."""
+    nobodys = [a for a in network.automata if is_agent(a) and not any(edge.controllable for edge in a.edges)]
+    return {a.name: a.initial for a in nobodys if a.initial in places_of(a)}
+
+
 def begins(automaton: Automaton, channels: AbstractSet[str]) -> List[Edge]:
     """The commands by which a robot begins what ends with one of these."""
     doing = {e.source for e in automaton.edges if e.sync is not None and e.sync.sends and e.sync.channel in channels}

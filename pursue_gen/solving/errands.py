@@ -12,9 +12,8 @@ from typing import Optional, Sequence, Tuple
 from pursue_gen.language.numbers import Number
 from pursue_gen.solving.distances import times_to
 from pursue_gen.solving.due_moves import Duty, duties, patrols
-from pursue_gen.solving.duties import Duties, begins, places_of
+from pursue_gen.solving.duties import Duties, at_home, begins
 from pursue_gen.solving.subgoals import commanded_agents
-from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective, is_end
 
 _Patrols = Sequence[Tuple[str, Duty]]
@@ -33,9 +32,7 @@ def excluded_by_an_errand(network: Network, objective: Objective) -> Tuple[Objec
         for duty in duties(network, objective, patrols(network))
         if len(duty.visits) == 1 and all(len(places) == 1 for places in duty.visits.values())
     ]
-    nobodys = [a for a in network.automata if is_agent(a) and not any(edge.controllable for edge in a.edges)]
-    home = {a.name: a.initial for a in nobodys if a.initial in places_of(a)}
-    for asked in Duties(network, objective.bad, robots).at(home) if visits else ():
+    for asked in Duties(network, objective.bad, robots).at(at_home(network)) if visits else ():
         doers = [(network.automaton(r), e) for r in robots for e in begins(network.automaton(r), asked.ends)]
         missed = [_missed(robot, begin, visits) for robot, begin in doers]
         if missed and None not in missed:

@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import AbstractSet, Dict, FrozenSet, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
 from pursue_gen.solving.contradictions import arrivals
-from pursue_gen.solving.duties import Duties, Duty, Standing, begins, can_be_covered, places_of
+from pursue_gen.solving.duties import Duties, Duty, Standing, at_home, begins, can_be_covered, places_of
 from pursue_gen.solving.freer import standing as without_walks
 from pursue_gen.solving.freer import without_turns
 from pursue_gen.solving.lost_promises import watched
@@ -102,8 +102,7 @@ def _ended(network: Network, robot: str, begin: Edge) -> AbstractSet[str]:
 
 def _standing(network: Network) -> Iterator[Tuple[Standing, Optional[Edge]]]:
     """Where those whom nobody controls may be for ever: all where they begin, or one where an edge has led it."""
-    nobodys = [a for a in network.automata if is_agent(a) and not any(edge.controllable for edge in a.edges)]
-    home = {a.name: a.initial for a in nobodys if a.initial in places_of(a)}
+    home = at_home(network)
     yield home, None
     for name in home:
         for arrival in arrivals(network.automaton(name)):

@@ -32,7 +32,6 @@ def test_solvers_agree_on_games_of_the_size_that_is_wanted(kind: Kind, rules: Ru
     for game in drawn(4, kind, rules):
         assert game.won is not None and game.plainly_won is not None and game.agreed
         assert LEAST <= game.states <= random_page.MOST
-        assert game.seconds >= 0 and game.plain_seconds >= 0  # ticks of the processor's clock
 
 
 def test_the_kinds_are_those_of_objectives() -> None:

@@ -28,8 +28,8 @@ def test_a_case_is_decided_and_proven_in_another_process() -> None:
     row = measured(Case("thesis", "1", "default", file=str(thesis_scenario("1"))), ENOUGH)
     assert (row["verdict"], row["outcome"], row["game"]) == ("won", "", "default")
     assert row["states"] > 0 and row["memory"] > 1 and row["blocks"] >= row["commands"] > 0
-    # A small game may take less than one tick of the processor's clock: it is solved several times.
-    assert row["seconds"] >= 0 and row["runs"] == RUNS
+    # How long it takes is no matter here: it may be less than one tick of the processor's clock.
+    assert isinstance(row["seconds"], float) and row["runs"] == RUNS
 
 
 @pytest.mark.parametrize("group", ["story", "family"])

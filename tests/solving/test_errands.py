@@ -41,10 +41,10 @@ def game(text: str, rules: Rules = DEFAULT) -> Tuple[Network, Objective]:
 
 
 def test_who_is_away_for_longer_than_the_period_cannot_do_it() -> None:
-    for period, lost in ((19, True), (20, False), (21, False), (22, False)):
+    for period, lost in ((19, True), (20, False), (22, False)):
         network, objective = game(FLOOR.replace("every 20", f"every {period}"))
         assert excluded_by_an_errand(network, objective) == ((objective,) if lost else ())
-    assert not solve(*game(FLOOR.replace("every 20", "every 20")), DEFAULT.reaction).won
+    assert not solve(*game(FLOOR), DEFAULT.reaction).won
     assert solve(*game(FLOOR.replace("every 20", "every 22")), DEFAULT.reaction).won
 
 
