@@ -13,7 +13,6 @@ from pursue_gen.synthesis.game import JointMove, State, joint_moves
 from pursue_gen.synthesis.lookup import Blocks
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Strategy, Zone
 from pursue_gen.tga.network import Edge
-from pursue_gen.tga.part import clocks_of
 
 
 @dataclass(frozen=True)
@@ -59,7 +58,7 @@ class Advisor:
         aged = later(before.entry, play.since - before.since)
         reset = {c for c, was, now in zip(game.clocks, aged.clocks, play.entry.clocks) if was != now}
         reset -= self._left_out_clocks
-        touched = {automaton.name for automaton in network.automata if reset & clocks_of(automaton)}
+        touched = {automaton.name for automaton in network.automata if reset & automaton.clocks}
         held = dict(self._holding(play))
         return tuple(
             StandingDecision(decision.number, decision.command, decision.at)

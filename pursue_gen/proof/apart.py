@@ -19,7 +19,7 @@ from pursue_gen.proof.left_out import why_it_matters
 from pursue_gen.proof.stages import Part
 from pursue_gen.synthesis.strategy import Block, Command, Move, Place, Strategy, Zone
 from pursue_gen.tga.network import Automaton, Edge, Network
-from pursue_gen.tga.part import clocks_of, part_of
+from pursue_gen.tga.part import part_of
 
 
 def kept_apart(strategy: Strategy, share: int) -> Sequence[str]:
@@ -49,7 +49,7 @@ def games_apart(share: Part, names: Sequence[str]) -> Iterator[Part]:
 
 def _why_not_apart(blocks: Sequence[Block], automata: Sequence[Automaton]) -> str:
     """Why commands of these blocks may not outlast what one of the automata does; "" if they do."""
-    own = {clock for automaton in automata for clock in clocks_of(automaton)}
+    own = {clock for automaton in automata for clock in automaton.clocks}
     for block in blocks:
         due = [zone for command in block.commands for zone in command.zones]
         if any(bound.left in own or bound.right in own for zone in (*block.wait, *due) for bound in zone):

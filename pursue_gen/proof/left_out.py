@@ -21,7 +21,7 @@ from pursue_gen.proof.zones import without
 from pursue_gen.synthesis.strategy import Strategy, Zone
 from pursue_gen.tga.hidden import is_loosened, why_not_hidden
 from pursue_gen.tga.network import Automaton, Edge, Network, Objective
-from pursue_gen.tga.part import clocks_of, part_of, start_of
+from pursue_gen.tga.part import part_of, start_of
 from pursue_gen.tga.pauses import without_clocks
 from pursue_gen.tga.scale import common_denominator
 from pursue_gen.zones.dbm import Dbm, raw
@@ -105,7 +105,7 @@ def with_clocks_of(part: Network, network: Network, strategy: Strategy) -> Netwo
     compared = _compared(strategy)
     if network.start:
         names = {automaton.name for automaton in part.automata}
-        compared.update(clock for a in network.automata if a.name in names for clock in clocks_of(a))
+        compared.update(clock for a in network.automata if a.name in names for clock in a.clocks)
     clocks = tuple(clock for clock in network.clocks if clock in part.clocks or clock in compared)
     return part if clocks == part.clocks else replace(part, clocks=clocks, start=start_of(network, clocks))
 
@@ -158,9 +158,9 @@ def why_it_matters(
 def _why_an_edge_matters(automaton: Automaton, kept: Automaton, part: Network, hiding: bool) -> str:
     """Why an edge of the automaton that the part does not have may change something there, other than by a move of the
     environment."""
-    variables = {name for name, _ in part.variables}
+    variables, known = {name for name, _ in part.variables}, set(kept.edges)
     for edge in automaton.edges if kept is not automaton else ():
-        if edge in kept.edges or (hiding and is_loosened(edge, automaton, kept)):
+        if edge in known or (hiding and is_loosened(edge, automaton, kept)):
             continue
         what = f"may go from {edge.source} to {edge.target}"
         if edge.source != edge.target or edge.resets or any(name in variables for name, _ in edge.assign):
@@ -224,7 +224,7 @@ def _why_it_may_stop_time(
     stays = {location.name: location for location in automaton.locations if location.invariant}
     if places.isdisjoint(stays):
         return ""
-    own = tuple(sorted(clocks_of(automaton)))
+    own = tuple(sorted(automaton.clocks))
     start = start_of(network, own)
     alone = Network(own, network.variables, network.channels, (automaton,), start)
     arena = Arena(alone, common_denominator(alone.times))

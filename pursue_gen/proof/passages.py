@@ -20,7 +20,7 @@ from pursue_gen.proof.live import commanded, is_controllers, live, taken_over
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.strategy import Block, Command, Strategy
 from pursue_gen.tga.network import Edge, Kind, Network, Objective
-from pursue_gen.tga.part import part_of, variables_of
+from pursue_gen.tga.part import part_of
 
 _MOST = 20_000
 """So many events a course may have."""
@@ -81,7 +81,7 @@ def _part(alive: Network, wanted: Objective, strategy: Strategy) -> Network:
         raise Fault(f"there is no {min(unknown)}")
     variables = {name for block in strategy.blocks for name, _ in block.state.values}
     edges = (edge for automaton in alive.automata if automaton.name in automata for edge in automaton.edges)
-    variables.update(name for edge in edges for name in variables_of(edge))
+    variables.update(name for edge in edges for name in edge.variables)
     if not variables.issubset(dict(alive.variables)):
         raise Fault("a block names a variable that there is not")
     return part_of(alive, automata, variables)
@@ -117,7 +117,7 @@ class _Search:
         for (name, _), edges in self._free.items():
             for edge in edges:
                 self._interested.setdefault(name, {})[name] = None
-                for variable in variables_of(edge):
+                for variable in edge.variables:
                     self._interested.setdefault(variable, {})[name] = None
         start: Dict[str, Value] = {automaton.name: automaton.initial for automaton in part.automata}
         start.update(part.variables)
@@ -134,7 +134,7 @@ class _Search:
                 if not any(named.get(test.variable) == test.value for test in clause):
                     raise Fault(f"a block that commands {sender} does not name what that needs")
             self._said.setdefault((sender, str(named[sender])), []).append((number, command))
-            for name in (*named, *variables_of(command.moves[0].edge)):
+            for name in (*named, *command.moves[0].edge.variables):
                 self._interested.setdefault(name, {})[sender] = None
 
     # One play ------------------------------------------------------------------------------------------------------

@@ -7,7 +7,6 @@ from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence
 
 from pursue_gen.language.network_names import assumption, assumption_clock, is_assumption, is_doing, is_going
 from pursue_gen.tga.network import ClockBound, Edge, Network, Objective
-from pursue_gen.tga.part import clocks_of
 from pursue_gen.tga.words import event_word
 from pursue_runtime.state import SystemState
 
@@ -48,7 +47,7 @@ class Moves:
         self.initial = DiscreteState(
             {automaton.name: automaton.initial for automaton in network.automata}, dict(network.variables)
         )
-        self.clocks = {automaton.name: clocks_of(automaton) for automaton in network.automata}
+        self.clocks = {automaton.name: automaton.clocks for automaton in network.automata}
         self._edges: Dict[Tuple[str, str], List[Edge]] = {}
         self._invariants: Dict[Tuple[str, str], Tuple[ClockBound, ...]] = {}
         for automaton in network.automata:

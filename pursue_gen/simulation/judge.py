@@ -15,7 +15,6 @@ from pursue_gen.proof.moves import Arena, JointMove, State
 from pursue_gen.simulation.commands import EPSILON, Commands, Entry, commands_in
 from pursue_gen.simulation.meaning import Broken
 from pursue_gen.tga.network import ClockBound
-from pursue_gen.tga.part import clocks_of
 from pursue_gen.tga.words import event_word
 from pursue_gen.zones.dbm import INF, Dbm, constant
 from pursue_runtime.orders import Order
@@ -161,7 +160,7 @@ class Judge:
             return {}
         network = self._arena.network
         reset = {network.clocks[index - 1] for index in move.resets} - plan.left_out_clocks
-        touched = {automaton.name for automaton in network.automata if reset & clocks_of(automaton)}
+        touched = {automaton.name for automaton in network.automata if reset & automaton.clocks}
         goes_on = (before.status, state.status, before.plan) == ("running", "running", state.plan)
         held = plan.holding(before.discrete()) if goes_on else []
         return {

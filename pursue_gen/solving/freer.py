@@ -27,7 +27,13 @@ def without_turns(game: Network, watching: Collection[str]) -> Network:
     controller may begin something; the network itself where there are none."""
     heard = {channel for name in watching for channel in _channels(game.automaton(name))}
     rules = [each for each in game.automata if each.name not in watching and _is_rule(each)]
-    gone = [rule for rule in rules if heard.isdisjoint(_channels(rule)) and _binds_commands_alone(game, rule)]
+    testing: Dict[str, List[Tuple[Automaton, Edge]]] = {}
+    for automaton in game.automata:
+        for edge in automaton.edges:
+            for variable in dict.fromkeys(_tested(edge)):
+                testing.setdefault(variable, []).append((automaton, edge))
+    unheard = (rule for rule in rules if heard.isdisjoint(_channels(rule)))
+    gone = [rule for rule in unheard if _binds_commands_alone(rule, testing.get(_assigned(rule)[0], ()))]
     if not gone:
         return game
     variables = {name for rule in gone for name in _assigned(rule)}
@@ -194,19 +200,17 @@ def _is_rule(automaton: Automaton) -> bool:
     return not is_agent(automaton) and listens and not tests and not bounded and len(_assigned(automaton)) == 1
 
 
-def _binds_commands_alone(game: Network, rule: Automaton) -> bool:
-    """True if its variable is tested where the controller begins something, and at the ends of that: then it is always
-    the turn of such an end, which has no more freedom without the rule."""
-    (variable,) = _assigned(rule)
-    for automaton in game.automata:
-        for edge in automaton.edges:
-            if variable not in _tested(edge) or _is_command(edge):
-                continue
-            if not is_end(edge) or edge.sync is None or not edge.sync.sends:
-                return False
-            begins = [begin for begin in automaton.edges if begin.target == edge.source]
-            if not all(_is_command(begin) and _is_followed(rule, begin, edge.sync.channel, edge) for begin in begins):
-                return False
+def _binds_commands_alone(rule: Automaton, testing: Sequence[Tuple[Automaton, Edge]]) -> bool:
+    """True if its variable is tested, by these edges, where the controller begins something, and at the ends of that:
+    then it is always the turn of such an end, which has no more freedom without the rule."""
+    for automaton, edge in testing:
+        if _is_command(edge):
+            continue
+        if not is_end(edge) or edge.sync is None or not edge.sync.sends:
+            return False
+        begins = [begin for begin in automaton.edges if begin.target == edge.source]
+        if not all(_is_command(begin) and _is_followed(rule, begin, edge.sync.channel, edge) for begin in begins):
+            return False
     return True
 
 

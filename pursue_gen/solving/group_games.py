@@ -14,7 +14,7 @@ from pursue_gen.synthesis.strategy import Place, Strategy
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.hidden import HIDDEN, is_loosened, why_not_hidden, with_hidden
 from pursue_gen.tga.network import Kind, Network, Objective
-from pursue_gen.tga.part import part_of, variables_of, without_unnamed_clocks
+from pursue_gen.tga.part import part_of, without_unnamed_clocks
 from pursue_gen.tga.watchers import Watcher, with_watchers
 
 NEEDED, PEOPLE, PLACES, ALL = range(4)
@@ -60,7 +60,7 @@ class GroupGames:
         names.update(name for name, _ in bad)
         alive = part_of(alive, names, self._setters.keys())
         hidden = {a.name for a in alive.automata if is_agent(a) and a.name not in group.team and shown != ALL}
-        tested = {name for _, edge in mine for name in variables_of(edge)}
+        tested = {name for _, edge in mine for name in edge.variables}
         while True:
             ignored = {NEEDED: hidden, PEOPLE: hidden.intersection(self._robots)}.get(shown, NOBODY)
             away = {name for name, who in self._setters.items() if who and who <= ignored} - tested
@@ -89,10 +89,10 @@ def _decisive(network: Network, game: Network) -> Iterator[str]:
     """The variables that the game does not have, and whose tests cannot be left out."""
     for automaton in game.automata:
         if automaton.name != HIDDEN:
-            whole = network.automaton(automaton.name)
+            whole, known = network.automaton(automaton.name), set(automaton.edges)
             for edge in whole.edges:
-                if edge not in automaton.edges and not is_loosened(edge, whole, automaton):
-                    yield from variables_of(edge)
+                if edge not in known and not is_loosened(edge, whole, automaton):
+                    yield from edge.variables
 
 
 def without_hidden(strategy: Strategy) -> Strategy:

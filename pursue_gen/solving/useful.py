@@ -7,7 +7,6 @@ from typing import AbstractSet, Iterable, List, Set, Tuple
 from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Automaton, Edge, Network
-from pursue_gen.tga.part import variables_of
 from pursue_runtime.locations import is_action, is_movement
 
 
@@ -39,7 +38,7 @@ class _Search:
     def need(self, edges: Iterable[Edge]) -> None:
         """Take in what these edges receive, and which variables they test or set."""
         for edge in edges:
-            self._variables.update(variables_of(edge))
+            self._variables.update(edge.variables)
             if edge.sync is not None:
                 self._channels.add(edge.sync.channel)
 

@@ -18,7 +18,7 @@ from typing import Dict, Set, Tuple
 from pursue_gen.language.numbers import Number
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Location, Network, Objective
-from pursue_gen.tga.part import clocks_of, part_of, variables_of
+from pursue_gen.tga.part import part_of
 
 
 def cone_of_influence(network: Network, objective: Objective) -> Network:
@@ -56,10 +56,10 @@ class _Cone:
         for automaton in self._network.automata:
             if automaton.name not in self.automata:
                 continue
-            self._clocks |= clocks_of(automaton)
+            self._clocks |= automaton.clocks
             for edge in automaton.edges:
                 if not self._may_go(automaton, edge):
-                    self.variables.update(variables_of(edge))
+                    self.variables.update(edge.variables)
                     if edge.sync is not None:
                         (sent if edge.sync.sends else received).add(edge.sync.channel)
         for automaton in self._network.automata:
@@ -71,7 +71,7 @@ class _Cone:
 
     def _may_go(self, automaton: Automaton, edge: Edge) -> bool:
         """True for an edge that needs a variable which does not matter, and does nothing that does."""
-        if self.variables.issuperset(variables_of(edge)) or edge.source != edge.target or edge.resets:
+        if self.variables.issuperset(edge.variables) or edge.source != edge.target or edge.resets:
             return False
         if any(name in self.variables for name, _ in edge.assign):
             return False
@@ -90,7 +90,7 @@ class _Cone:
             and not edge.sync.sends
             and edge.sync.channel == sender.sync.channel
             and source in ("", edge.source)
-            and self.variables.issuperset(variables_of(edge))
+            and self.variables.issuperset(edge.variables)
             for edge in automaton.edges
         )
 

@@ -16,7 +16,6 @@ from dataclasses import replace
 from typing import AbstractSet, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Network, Sync, Test
-from pursue_gen.tga.part import variables_of
 
 HIDDEN = "_hidden"
 """The automaton that stands for the hidden ones, and its only location."""
@@ -99,8 +98,9 @@ def _loosened(
     """The edges of an automaton that the part does not have, as moves of the environment: tests of hidden variables may
     hold. Each comes with the hidden edge that makes the automaton take it; None: it takes it by itself."""
     variables, there = {name for name, _ in part.variables}, {a.name for a in part.automata}
+    known = set(kept.edges)
     for edge in automaton.edges:
-        if edge in kept.edges or variables.issuperset(variables_of(edge)) or not is_loosened(edge, automaton, kept):
+        if edge in known or variables.issuperset(edge.variables) or not is_loosened(edge, automaton, kept):
             continue
         guard = _tests(edge, variables, tuple(bound for bound in edge.guard.clocks if bound.clock in part.clocks))
         resets = tuple(clock for clock in edge.resets if clock in part.clocks)

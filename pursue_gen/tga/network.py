@@ -8,10 +8,10 @@ receiving edge on that channel.
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import FrozenSet, Optional, Tuple
+from typing import Dict, FrozenSet, Optional, Tuple
 
 from pursue_gen.language.network_names import is_under_way
 from pursue_gen.language.numbers import Number
@@ -85,6 +85,22 @@ class Edge:
     resets: Tuple[str, ...] = ()
     controllable: bool = True
 
+    def __hash__(self) -> int:
+        return self._hash  # sets of edges are looked up very often
+
+    def __getstate__(self) -> Dict[str, object]:
+        return {field.name: getattr(self, field.name) for field in fields(self)}  # texts hash otherwise in each process
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash((self.source, self.target, self.guard, self.sync, self.assign, self.resets, self.controllable))
+
+    @cached_property
+    def variables(self) -> Tuple[str, ...]:
+        """The variables that it tests or sets, each once."""
+        tested = (test.variable for clause in self.guard.integers for test in clause)
+        return tuple(dict.fromkeys((*tested, *(name for name, _ in self.assign))))
+
 
 @dataclass(frozen=True)
 class Location:
@@ -108,6 +124,13 @@ class Automaton:
     initial: str
     edges: Tuple[Edge, ...]
     home: str = ""
+
+    @cached_property
+    def clocks(self) -> FrozenSet[str]:
+        """The clocks that it tests or resets."""
+        tested = {bound.clock for location in self.locations for bound in location.invariant}
+        tested.update(bound.clock for edge in self.edges for bound in edge.guard.clocks)
+        return frozenset(tested.union(*(edge.resets for edge in self.edges)))
 
 
 @dataclass(frozen=True)

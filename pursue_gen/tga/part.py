@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import AbstractSet, Iterator, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Optional, Sequence, Tuple
 
-from pursue_gen.tga.network import Automaton, Constraint, Edge, Network
+from pursue_gen.tga.network import Automaton, Constraint, Network
 
 
 def part_of(network: Network, automata: AbstractSet[str], variables: AbstractSet[str]) -> Network:
@@ -19,8 +19,8 @@ def part_of(network: Network, automata: AbstractSet[str], variables: AbstractSet
     if len(automata) == len(network.automata) and len(variables) == len(network.variables):
         return network
     kept = tuple(_with_edges_on(a, variables) for a in network.automata if a.name in automata)
-    gone = {clock for a in network.automata if a.name not in automata for clock in clocks_of(a)}
-    gone -= {clock for a in kept for clock in clocks_of(a)}
+    gone = {clock for a in network.automata if a.name not in automata for clock in a.clocks}
+    gone -= {clock for a in kept for clock in a.clocks}
     clocks = tuple(clock for clock in network.clocks if clock not in gone)
     used = {edge.sync.channel for a in kept for edge in a.edges if edge.sync is not None}
     return Network(
@@ -39,7 +39,7 @@ def beside(network: Network, automaton: Optional[Automaton]) -> Network:
 
 def without_unnamed_clocks(network: Network) -> Network:
     """The network without the clocks that none of its automata names."""
-    named = {clock for automaton in network.automata for clock in clocks_of(automaton)}
+    named = {clock for automaton in network.automata for clock in automaton.clocks}
     clocks = tuple(clock for clock in network.clocks if clock in named)
     return network if clocks == network.clocks else replace(network, clocks=clocks, start=start_of(network, clocks))
 
@@ -53,21 +53,6 @@ def start_of(network: Network, clocks: Sequence[str]) -> Tuple[Constraint, ...]:
     return start
 
 
-def clocks_of(automaton: Automaton) -> Set[str]:
-    """The clocks that an automaton tests or resets."""
-    found = {bound.clock for location in automaton.locations for bound in location.invariant}
-    for edge in automaton.edges:
-        found.update(bound.clock for bound in edge.guard.clocks)
-        found.update(edge.resets)
-    return found
-
-
-def variables_of(edge: Edge) -> Iterator[str]:
-    """The variables that an edge tests or sets."""
-    yield from (test.variable for clause in edge.guard.integers for test in clause)
-    yield from (name for name, _ in edge.assign)
-
-
 def _with_edges_on(automaton: Automaton, variables: AbstractSet[str]) -> Automaton:
-    edges = tuple(edge for edge in automaton.edges if variables >= set(variables_of(edge)))
+    edges = tuple(edge for edge in automaton.edges if variables >= set(edge.variables))
     return automaton if len(edges) == len(automaton.edges) else replace(automaton, edges=edges)

@@ -13,7 +13,6 @@ from typing import AbstractSet, Iterable, Iterator, Optional, Set, Tuple
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Automaton, Clause, Edge, Guard, Location, Network
-from pursue_gen.tga.part import clocks_of
 
 FOR = "_for_"
 """Stands between the objective and the robots in the name of a watcher."""
@@ -57,7 +56,7 @@ def watched_by(network: Network, watcher: Watcher) -> Optional[Automaton]:
     watched = next((each for each in network.automata if each.name == watcher.objective), None)
     if network.start or watched is None or {watcher.name, watcher.clock} & taken or not _has_deadline(watched):
         return None
-    (clock,) = clocks_of(watched)
+    (clock,) = watched.clocks
     channels, variables = _only_of_others(network, watcher.team)
     edges = tuple(_narrowed(watched.edges, channels, variables))
     if edges == watched.edges:
@@ -72,7 +71,7 @@ def watched_by(network: Network, watcher: Watcher) -> Optional[Automaton]:
 
 def _has_deadline(automaton: Automaton) -> bool:
     """True for an automaton with a deadline, its only clock, that sends, tests no clock, and sets nothing."""
-    if {location.name for location in automaton.locations} != {IDLE, AT_RISK, LOSE} or len(clocks_of(automaton)) != 1:
+    if {location.name for location in automaton.locations} != {IDLE, AT_RISK, LOSE} or len(automaton.clocks) != 1:
         return False
     return not any(e.assign or e.guard.clocks or (e.sync is not None and e.sync.sends) for e in automaton.edges)
 

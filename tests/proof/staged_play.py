@@ -12,7 +12,6 @@ from typing import Dict, List, Optional, Set, Tuple
 
 from pursue_gen.synthesis.strategy import Block, Command, Strategy
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tga.part import clocks_of
 from tests.synthesis.play_by_play import HALFWAY, STEP, UNIT, Entry, Move, PlayByPlay, inside
 
 Decided = Dict[Tuple[int, int], int]
@@ -30,7 +29,7 @@ class StagedPlay:
         self._network, self._objective, self._blocks = network, objective, strategy.blocks
         self._latest = int(reaction * UNIT / STEP)
         self._named = [{name for name, _ in block.state.locations} for block in self._blocks]
-        self._clocks = {automaton.name: clocks_of(automaton) for automaton in network.automata}
+        self._clocks = {automaton.name: automaton.clocks for automaton in network.automata}
 
     def broken(self, seed: int) -> Optional[str]:
         """Why this play fails; None where it comes to the goal."""

@@ -12,7 +12,6 @@ from typing import Callable, Dict, Iterator, List, Mapping, Optional, Tuple, Uni
 
 from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Kind, Location, Network, Objective
-from pursue_gen.tga.part import clocks_of
 
 UNIT, STEP, HALFWAY = 8, 2, 1
 """A time unit, a step and half of one, in eighths of a unit, in which all times are counted.
@@ -59,7 +58,7 @@ class PlayByPlay:
         first = strategy.blocks[0].state if strategy.blocks else None
         self.named = {name for name, _ in first.locations} if first else {a.name for a in network.automata}
         values = {name for name, _ in first.values} if first else {name for name, _ in network.variables}
-        self._clocks_named = {c for a in network.automata if a.name in self.named for c in clocks_of(a)}
+        self._clocks_named = {c for a in network.automata if a.name in self.named for c in a.clocks}
         self._left_out = frozenset(strategy.left_out_clocks)
         self._clocks_named -= self._left_out
         self._places = [k for k, automaton in enumerate(network.automata) if automaton.name in self.named]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import islice
-from typing import Optional, Tuple
+from typing import Optional, Sequence, Tuple
 
 import pytest
 from hypothesis import HealthCheck, event, given, settings
@@ -37,7 +37,7 @@ def callers(count: int, deadline: int) -> str:
     """Rooms along a corridor, a caller in each, and one robot."""
     rooms = range(1, count + 1)
     lines = ['poi "base"', *(f'poi "p{k}"' for k in rooms)]
-    lines += [f'connect {"base" if k == 1 else f"p{k - 1}"} and p{k} distance 3' for k in rooms]
+    lines += [f"connect {'base' if k == 1 else f'p{k - 1}'} and p{k} distance 3" for k in rooms]
     lines += [f'event "call{k}"\nevent "serve{k}" location p{k} duration 2' for k in rooms]
     lines += [f'rule "c{k}": call{k} before serve{k}' for k in rooms]
     lines.append(f'agent "r1" controllable mobile 1 location base can_do {", ".join(f"serve{k}" for k in rooms)}')
@@ -129,14 +129,20 @@ agent "bot1" controllable mobile 1 location room1 can_do drop
 agent "bot2" controllable mobile 1 location room2
 agent "people" location room1 can_do order
 """
-MAKES_WAY = FLOOR + """poi "bay"
+MAKES_WAY = (
+    FLOOR
+    + """poi "bay"
 connect hall2 and bay distance 1
 objective: if order then drop within 60
 objective: bot1 never_with bot2
 """
-RELIEVES = FLOOR + """objective: if order then drop within 60
+)
+RELIEVES = (
+    FLOOR
+    + """objective: if order then drop within 60
 objective: always any robot at room1
 """
+)
 """bot1 may leave room1 only when bot2 is there."""
 
 
@@ -275,6 +281,56 @@ def test_what_a_policy_wins_is_not_lost_exactly(seed: int, robots: int, free: bo
     except LimitHit:
         return
     assert verdict.won
+
+
+def ward(rooms: int, residents: Sequence[int], period: int, within: int, battery: str = "") -> str:
+    """Rooms around a hall that a robot visits; from some a resident calls it. `battery`: what the robot's is."""
+    names = [f"room{k}" for k in range(1, rooms + 1)]
+    lines = [f'poi "{name}"' for name in ("hall", "dock", *names)]
+    lines += [f"connect hall and {name} distance 4" for name in ("dock", *names)]
+    lines += [f'event "ring{k}"\nevent "visit{k}" location room{k} duration 4' for k in residents]
+    can = [f"visit{k}" for k in residents]
+    if battery:
+        lines.append('event "charge" location dock duration 10')
+        can.append("charge")
+    lines.append(f'agent "bot" controllable mobile 1 location dock can_do {", ".join(can)}')
+    lines += [f'agent "resident{k}" location room{k} can_do ring{k}' for k in residents]
+    if battery:
+        lines.append(f'battery "bot" {battery}')
+    lines.append(f"objective: patrol {', '.join(names)} every {period} by bot")
+    lines += [f"objective: if ring{k} then visit{k} within {within}" for k in residents]
+    return "\n".join(lines) + "\n"
+
+
+def guessed_freely(text: str) -> Optional[Strategy]:
+    """The strategy of a policy against residents who may call again at once, seen to win."""
+    network, objective = game_of(text)
+    strategy, _ = guess(network, objective, DEFAULT.reaction, without_pauses=True)
+    assert strategy is None or verify(network, objective, strategy, DEFAULT.reaction, closed=True).ok
+    return strategy
+
+
+BATTERY = "capacity 60 uses 1 per unit recharges 5 per unit at dock"
+
+
+@pytest.mark.parametrize(("rooms", "residents", "period", "within"), [(2, (1, 2), 120, 80), (3, (1,), 150, 90)])
+def test_a_robot_with_a_battery_charges_before_it_cannot_come_back(
+    rooms: int, residents: Sequence[int], period: int, within: int
+) -> None:
+    strategy = guessed_freely(ward(rooms, residents, period, within, BATTERY))
+    assert strategy is not None
+    charging = [b for b in strategy.blocks if any("doing_charge" in place for _, place in b.state.locations)]
+    levels = {value for b in charging for name, value in b.state.values if name == "Lbot"}
+    assert levels and max(levels) < 60
+
+
+def test_a_battery_that_does_not_last_for_a_duty_is_not_won() -> None:
+    small = "capacity 15 uses 1 per unit recharges 5 per unit at dock"
+    assert guessed_freely(ward(2, (1,), 120, 80, small)) is None
+
+
+def test_calls_take_turns_with_a_patrol_that_is_longer_than_they_can_wait() -> None:
+    assert guessed_freely(ward(6, (1, 6), 300, 90)) is not None
 
 
 def test_it_ends_at_a_limit_on_work() -> None:

@@ -21,7 +21,6 @@ from pursue_gen.tga.network import (
     Objective,
     Sync,
 )
-from pursue_gen.tga.part import clocks_of
 from pursue_gen.tga.pauses import acting_at_most, pauses, without_clocks
 
 STORY = """
@@ -86,7 +85,7 @@ def test_without_them_no_edge_names_them_and_all_others_stay() -> None:
     late = ClockBound("x", ">", 1)
     going = Edge("here", "there", Guard((late, ClockBound("y", ">=", 2))), resets=("x", "y"), controllable=False)
     less = without_clocks(network(going), ("y",))
-    assert less.clocks == ("x",) and clocks_of(less.automata[0]) == {"x"}
+    assert less.clocks == ("x",) and less.automata[0].clocks == {"x"}
     assert less.automata[0].edges[1] == replace(going, guard=Guard((late,)), resets=("x",))
     assert less.automata[0].edges[0].sync == CALL.sync
 

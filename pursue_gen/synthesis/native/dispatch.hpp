@@ -15,9 +15,9 @@ struct Order {
 
 class Dispatch {
   public:
-    // `joints`: of the game; what is decided are their numbers.
-    Dispatch(const Game& game, Joints& joints, const Guess& guess)
-        : game_(game), joints_(joints), guess_(guess), duties_(game), tasks_(game, duties_, guess),
+    // `joints` and `duties`: of the game; what is decided are numbers of joints.
+    Dispatch(const Game& game, Joints& joints, Duties& duties, const Guess& guess)
+        : game_(game), joints_(joints), guess_(guess), duties_(duties), tasks_(game, duties_, guess),
           count_(static_cast<int>(game.automata.size())), patrols_(game.automata.size()) {
         for (const int a : guess.patrols) patrols_[a] = true;
     }
@@ -27,7 +27,8 @@ class Dispatch {
     bool has_guards() const { return tasks_.has_guards(); }
 
     // Which duty each robot is at, -1: none, after a move from d; before, it was at those of `memory`. More than the numbers
-    // of automata once: it is a patrol that is put off, and the robot goes to a call first; several times: to that patrol next.
+    // of automata once: it is a patrol that is put off, and the robot goes to a call first; several times: to that patrol next,
+    // or, for one that alternates, that was its last visit.
     void remember(const Discrete& d, const Joint& joint, std::vector<int>& memory) {
         const std::vector<int> last = memory;
         for (std::size_t r = 0; r < memory.size(); ++r) {
@@ -55,6 +56,8 @@ class Dispatch {
             memory[robot] = duty;
             if (is_put_off(d, robot, duty, memory, last[robot])) memory[robot] += count_;
             else if (is_waiting(last[robot]) && !is_patrol(duty)) memory[robot] += count_ * (2 + last[robot] % count_);
+            else if (const int visit = last_visit(last[robot]); guess_.alternates && visit >= 0 && !duties_.is_visit(duty))
+                memory[robot] += count_ * (2 + visit);
         }
     }
 
@@ -63,8 +66,12 @@ class Dispatch {
         const std::vector<int>& robots = duties_.robots();
         std::vector<int> wanted;
         std::vector<std::set<int>> ways;
-        for (std::size_t r = 0; r < robots.size(); ++r)
-            wanted.push_back(wants(d, enabled, r, memory[r], ways.emplace_back()));
+        std::vector<bool> waits;
+        for (std::size_t r = 0; r < robots.size(); ++r) {
+            waits.push_back(is_waiting(memory[r]) && !duties_.has_less(d, robots[r], 100));
+            const int duty = is_waiting(memory[r]) && !waits[r] ? -1 : memory[r];  // it charges while it waits
+            wanted.push_back(wants(d, enabled, r, duty, ways.emplace_back()));
+        }
         std::vector<int> commands = wanted;
         std::vector<std::size_t> for_whom(robots.size());
         std::iota(for_whom.begin(), for_whom.end(), std::size_t{0});
@@ -93,7 +100,7 @@ class Dispatch {
             // On the way to a post others may always be there first.
             if (commands[r] < 0 || (!tasks_.is_bound(r, d) && leads_to_loss(joints_[commands[r]].target(d)))) continue;
             const std::size_t q = for_whom[r];
-            if (!is_waiting(memory[q]) || (q == r && commands[r] != wanted[r])) orders.push_back({commands[r]});
+            if (!waits[q] || (q == r && commands[r] != wanted[r])) orders.push_back({commands[r]});
             else for (const Bound& since : due(d, q, memory[q] - count_)) orders.push_back({commands[r], since});
         }
         return orders;
@@ -113,14 +120,34 @@ class Dispatch {
             looked = true;
             const std::int64_t cost = duties_.cost(duties_.done(a));
             if (cost == Duties::NEVER || !tasks_.is_for(robot, a)) continue;
-            std::int64_t place = a > last % count_ ? a : a + count_;
+            std::int64_t place = guess_.alternates ? alternating(a, last) : in_turn(a, last);
             if (is_waiting(last) && is_patrol(a)) place += 2 * count_;
-            if (last >= 2 * count_ && a == last / count_ - 2) place = -1;
+            if (last >= 2 * count_ && a == last / count_ - 2 && !guess_.alternates) place = -1;
             if (guess_.next == Next::soonest_due) place = duties_.deadline(d, a);
             if (guess_.next == Next::nearest) place = cost;
             best = std::min(best, {place, robot, a});
         }
         return best;
+    }
+
+    // The place of a duty among all, after the last one.
+    int in_turn(int a, int last) const {
+        const int turn = duties_.turn(a);
+        return last < 0 || turn > duties_.turn(last % count_) ? turn : turn + count_;
+    }
+
+    // The same where visits take turns with what else is asked for, of which each time another one comes first.
+    int alternating(int a, int last) const {
+        const int visit = last_visit(last);
+        if (last < 0) return duties_.turn(a);
+        const bool again = duties_.is_visit(last % count_) == duties_.is_visit(a);
+        return (again ? 2 * count_ : 0) + (duties_.is_visit(a) || visit < 0 ? in_turn(a, visit) : duties_.rotated(a, visit));
+    }
+
+    // The last visit of a robot that alternates and was at a duty, -1: not known.
+    int last_visit(int duty) const {
+        if (duty >= 0 && duties_.is_visit(duty % count_)) return duty % count_;
+        return std::max(duty / count_ - 2, -1);
     }
 
     // Whether a robot waits with a patrol that it has put off.
@@ -236,12 +263,67 @@ class Dispatch {
     // What robot r does next for a duty, -1: nothing; `way`: the locations that it passes then.
     int wants(const Discrete& d, const std::vector<int>& enabled, std::size_t r, int duty, std::set<int>& way) {
         const int post = tasks_.guarded(r, d), robot = duties_.robots()[r];
+        if (post < 0 && charges_first(d, r, duty)) return charges(d, enabled, robot, way);
         const int fact = post >= 0 ? post : duty >= 0 ? duties_.done(duty % count_) : tasks_.home(r);
         if (fact < 0) return -1;
+        const int next = begins(d, enabled, robot, fact, way);
+        return next < 0 || can_charge(ended(joints_[next].target(d), robot), robot) ? next : charges(d, enabled, robot, way);
+    }
+
+    // The first command of a robot's plan to a fact, -1: none; `way`: the locations that it passes then.
+    int begins(const Discrete& d, const std::vector<int>& enabled, int robot, int fact, std::set<int>& way) {
         duties_.look(d, robot);
         if (duties_.cost(fact) == Duties::NEVER || duties_.cost(fact) == 0) return -1;
         way = duties_.way(fact, robot);
         return command(d, enabled, robot, duties_.first(fact));
+    }
+
+    // The same to where it charges next.
+    int charges(const Discrete& d, const std::vector<int>& enabled, int robot, std::set<int>& way) {
+        duties_.look(d, robot);
+        std::pair<std::int64_t, int> nearest{Duties::NEVER, -1};
+        for (const int location : duties_.charging(robot)) {
+            const int fact = duties_.at_location(robot, location);
+            nearest = std::min(nearest, {duties_.cost(fact), fact});
+        }
+        return nearest.first == Duties::NEVER ? -1 : begins(d, enabled, robot, nearest.second, way);
+    }
+
+    // Whether a robot that has a battery comes to where it charges, if it goes there at once.
+    bool can_charge(Discrete d, int robot) {
+        const std::set<int> charging = duties_.charging(robot);
+        std::vector<int> enabled;
+        std::set<int> way;
+        for (int step = 0; step < STEPS_AHEAD && !charging.empty() && !charging.count(d[robot]); ++step) {
+            joints_.enabled(d, enabled);
+            const int next = charges(d, enabled, robot, way);
+            if (next < 0) return false;
+            d = joints_[next].target(d);
+            if (!charging.count(d[robot])) d = ended(d, robot);
+        }
+        return charging.empty() || charging.count(d[robot]);
+    }
+
+    // Whether robot r charges before it sees to a duty: it has none, the battery does not last for it, or the robot is there.
+    bool charges_first(const Discrete& d, std::size_t r, int duty) {
+        const int robot = duties_.robots()[r];
+        if (!duties_.has_less(d, robot, 100)) return false;
+        if (duties_.is_at_charger(d, robot) && duties_.has_less(d, robot, guess_.charge)) return true;
+        return duty < 0 || !is_affordable(d, r, duty % count_);
+    }
+
+    // Whether a robot that has a battery can do the duty of automaton a and come to where it charges then.
+    bool is_affordable(Discrete d, std::size_t r, int a) {
+        const int robot = duties_.robots()[r];
+        std::vector<int> enabled;
+        std::set<int> way;
+        for (int step = 0; step < STEPS_AHEAD && duties_.is_open(d, a); ++step) {
+            joints_.enabled(d, enabled);
+            const int next = begins(d, enabled, robot, duties_.done(a), way);
+            if (next < 0) return false;
+            d = ended(joints_[next].target(d), robot);
+        }
+        return can_charge(d, robot);
     }
 
     // A command for a robot that stands in the way of another: to the nearest place out of it that it comes to without
@@ -301,7 +383,7 @@ class Dispatch {
     const Game& game_;
     Joints& joints_;
     const Guess guess_;
-    Duties duties_;
+    Duties& duties_;
     Tasks tasks_;
     const int count_;  // of automata
     std::vector<bool> patrols_;

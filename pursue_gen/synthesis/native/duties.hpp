@@ -6,6 +6,7 @@
 #include <map>
 #include <queue>
 #include <set>
+#include <utility>
 
 #include "moves.hpp"
 
@@ -16,7 +17,7 @@ class Duties {
     static constexpr std::int64_t NEVER = std::numeric_limits<std::int64_t>::max();
     static constexpr std::int64_t DETOUR = std::int64_t{1} << 40;  // longer than any way
 
-    explicit Duties(const Game& game) : game_(game) {
+    explicit Duties(const Game& game) : game_(game), looked_from_(game.automata.size() + game.variables.size() + 2) {
         const int count = static_cast<int>(game.automata.size());
         for (int a = 0; a < count; ++a) {
             const auto& edges = game.automata[a].edges;
@@ -37,10 +38,29 @@ class Duties {
                             add_operator(a, edge, b, &other);
             }
         }
+        detours_.resize(facts_);
+        for (const int robot : robots_) find_battery(robot);
+        set_turns();
     }
 
     const std::vector<int>& robots() const { return robots_; }      // automata that commands move
     const std::vector<int>& watching() const { return watching_; }  // automata that watch what is to be avoided
+
+    // The turn of the duty of automaton a among all. What is done at one place comes one after the other, what is done by
+    // coming there last: that is done by then.
+    int turn(int a) const { return turns_[a]; }
+
+    // The place of a duty among those that are no visits, each time another one first, after a visit.
+    int rotated(int a, int visit) const {
+        const auto before = [&](int b, bool visits) {
+            return std::count_if(watching_.begin(), watching_.end(), [&](int c) { return visits_[c] == visits && turns_[c] < turns_[b]; });
+        };
+        const auto others = std::count_if(watching_.begin(), watching_.end(), [&](int c) { return !visits_[c]; });
+        return static_cast<int>((before(a, false) + before(visit, true)) % others);
+    }
+
+    // Whether the duty of automaton a is done by coming somewhere, as that of a patrol is.
+    bool is_visit(int a) const { return visits_[a]; }
 
     // Whether a deadline of automaton a is running in d.
     bool is_open(const Discrete& d, int a) const { return !game_.automata[a].invariants[d[a]].empty(); }
@@ -59,6 +79,27 @@ class Duties {
     int done(int a) const { return known(-1 - a, 0); }
     int at_location(int a, int location) const { return known(a, location); }
 
+    bool has_batteries() const { return !batteries_.empty(); }
+
+    // Whether a robot has a battery with less than so many hundredths of what it holds.
+    bool has_less(const Discrete& d, int robot, int hundredths) const {
+        const auto found = batteries_.find(robot);
+        return found != batteries_.end() && 100 * d[found->second.level] < hundredths * found->second.full;
+    }
+
+    // Whether a robot is where it can begin to charge.
+    bool is_at_charger(const Discrete& d, int robot) const {
+        const auto& edges = game_.automata[robot].edges;
+        const std::set<int> there = charging(robot);
+        return std::any_of(edges.begin(), edges.end(), [&](const Edge& e) { return e.source == d[robot] && there.count(e.target); });
+    }
+
+    // The locations of a robot that charges, none: it has no battery.
+    std::set<int> charging(int robot) const {
+        const auto found = batteries_.find(robot);
+        return found == batteries_.end() ? std::set<int>{} : found->second.charging;
+    }
+
     // Whether something that a robot does, or its end, does the duty of automaton a.
     bool can(int robot, int a) const {
         const int fact = done(a);
@@ -68,55 +109,36 @@ class Duties {
     }
 
     // What every fact costs in time from d on, where of the robots only this one acts, and not by way of the location
-    // `closed`. For `cost`, `first` and `way`.
+    // `closed`. For `cost`, `first` and `way`, until the next look. Policies look from the same states again and again.
     void look(const Discrete& d, int robot, int closed = -1) {
-        costs_.assign(facts_, NEVER);
-        achiever_.assign(facts_, -1);
-        support_.assign(preconditions_.size(), -1);
-        met_.assign(operators_.size(), 0);
-        sums_.assign(operators_.size(), 0);
-        std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-        for (std::size_t k = 0; k < d.size(); ++k)
-            if (const int fact = known(static_cast<int>(k), d[k]); fact >= 0) queue.emplace(0, -1, fact);
-        while (!queue.empty()) {
-            const auto [cost, by, fact] = queue.top();
-            queue.pop();
-            if (costs_[fact] != NEVER || (about_[fact] == robot && values_[fact] == closed)) continue;
-            costs_[fact] = cost;
-            achiever_[fact] = by;
-            for (const int need : met_by_[fact]) {
-                if (support_[need] >= 0) continue;
-                support_[need] = fact;
-                const int number = preconditions_[need];
-                const Operator& op = operators_[number];
-                sums_[number] += cost;
-                if (++met_[number] < static_cast<int>(op.needs.size())) continue;
-                if (op.controllable && op.owner != robot && is_robot(op.owner)) continue;
-                for (const int effect : op.effects) queue.emplace(sums_[number] + op.time + detours_[effect], number, effect);
-            }
-        }
+        Discrete key = d;
+        key.push_back(robot);
+        key.push_back(closed);
+        if (looks_.size() * static_cast<std::size_t>(facts_) > MOST_KEPT) forget();
+        const auto number = static_cast<std::size_t>(looked_from_.number(key));
+        if (number == looks_.size()) looks_.push_back(costs_from(d, robot, closed));
+        now_ = &looks_[number];
     }
 
     // From now on a robot takes a way past these locations only where there is no other.
     void keep_out(int robot, const std::set<int>& locations) {
-        detours_.resize(facts_, 0);
         for (const int location : locations)
-            if (const int fact = known(robot, location); fact >= 0) detours_[fact] = DETOUR;
+            if (const int fact = known(robot, location); fact >= 0 && std::exchange(detours_[fact], DETOUR) != DETOUR) forget();
     }
 
-    std::int64_t cost(int fact) const { return fact < 0 ? NEVER : costs_[fact]; }
+    std::int64_t cost(int fact) const { return fact < 0 ? NEVER : now_->costs[fact]; }
 
     // The sender edge that begins the plan to a fact which costs something, -1: it begins with the end of something. Of what
     // an action needs, a robot sees first to what is not its own place: else it would go to and fro.
     int first(int fact) const {
         for (;;) {
-            const Operator& op = operators_[achiever_[fact]];
+            const Operator& op = operators_[now_->achiever[fact]];
             int worst = -1, own = -1;
             for (const int need : op.needs) {
-                const int given = support_[need];
-                if (costs_[given] == 0) continue;
+                const int given = now_->support[need];
+                if (now_->costs[given] == 0) continue;
                 if (about_[given] == op.owner) own = given;
-                else if (worst < 0 || costs_[given] > costs_[worst]) worst = given;
+                else if (worst < 0 || now_->costs[given] > now_->costs[worst]) worst = given;
             }
             if (worst < 0) worst = own;
             if (worst < 0) return op.controllable ? op.edge : -1;
@@ -133,8 +155,8 @@ class Duties {
             open.pop_back();
             if (!met.insert(next).second) continue;
             if (about_[next] == robot) locations.insert(values_[next]);
-            if (achiever_[next] < 0) continue;
-            for (const int need : operators_[achiever_[next]].needs) open.push_back(support_[need]);
+            if (now_->achiever[next] < 0) continue;
+            for (const int need : operators_[now_->achiever[next]].needs) open.push_back(now_->support[need]);
         }
         return locations;
     }
@@ -178,6 +200,106 @@ class Duties {
         std::vector<int> needs;  // its preconditions
         std::vector<int> effects;
     };
+
+    struct Look {
+        std::vector<std::int64_t> costs;  // per fact
+        std::vector<int> achiever;        // per fact the operator that achieves it first, -1: none
+        std::vector<int> support;         // per precondition the fact that meets it first, -1: none
+    };
+
+    static constexpr std::size_t MOST_KEPT = 1 << 20;  // costs of facts, some 20 bytes each
+
+    Look costs_from(const Discrete& d, int robot, int closed) const {
+        Look out{std::vector<std::int64_t>(facts_, NEVER), std::vector<int>(facts_, -1), std::vector<int>(preconditions_.size(), -1)};
+        std::vector<std::size_t> met(operators_.size());
+        std::vector<std::int64_t> sums(operators_.size());
+        std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+        for (std::size_t k = 0; k < d.size(); ++k)
+            if (const int fact = known(static_cast<int>(k), d[k]); fact >= 0) queue.emplace(0, -1, fact);
+        while (!queue.empty()) {
+            const auto [cost, by, fact] = queue.top();
+            queue.pop();
+            if (out.costs[fact] != NEVER || (about_[fact] == robot && values_[fact] == closed)) continue;
+            out.costs[fact] = cost;
+            out.achiever[fact] = by;
+            for (const int need : met_by_[fact]) {
+                if (out.support[need] >= 0) continue;
+                out.support[need] = fact;
+                const int number = preconditions_[need];
+                const Operator& op = operators_[number];
+                sums[number] += cost;
+                if (++met[number] < op.needs.size()) continue;
+                if (op.controllable && op.owner != robot && is_robot(op.owner)) continue;
+                for (const int effect : op.effects) queue.emplace(sums[number] + op.time + detours_[effect], number, effect);
+            }
+        }
+        return out;
+    }
+
+    void set_turns() {
+        std::map<std::pair<int, int>, int> first;  // by robot and location
+        std::vector<std::tuple<int, bool, int>> order;
+        for (const int a : watching_) {
+            int turn = a;
+            bool comes = false;
+            const int fact = done(a);
+            for (const Operator& op : operators_) {
+                if (!is_robot(op.owner) || std::find(op.effects.begin(), op.effects.end(), fact) == op.effects.end()) continue;
+                const auto& edges = game_.automata[op.owner].edges;
+                const auto end = std::find_if(edges.begin(), edges.end(), [&](const Edge& e) { return e.id == op.edge; });
+                const auto stays = [&](const Edge& e) { return e.target == end->source && e.source == end->target; };
+                comes |= std::none_of(edges.begin(), edges.end(), stays);
+                turn = std::min(turn, first.try_emplace({op.owner, end->target}, a).first->second);
+            }
+            order.emplace_back(turn, comes, a);
+        }
+        std::sort(order.begin(), order.end());
+        turns_.resize(game_.automata.size(), -1);
+        visits_.resize(game_.automata.size());
+        for (const auto& [turn, comes, a] : order) visits_[a] = comes;
+        for (std::size_t n = 0; n < order.size(); ++n) turns_[std::get<2>(order[n])] = watching_[n];
+    }
+
+    // A robot's battery is a variable that each of its ways lowers, and something that it does raises.
+    struct Battery {
+        int level, full;  // index in the discrete state, and the largest value
+        std::set<int> charging;
+    };
+
+    void find_battery(int robot) {
+        const auto& edges = game_.automata[robot].edges;
+        // By how much an edge changes a variable that it tests, 0: it does not, or in several ways.
+        const auto change = [](const Edge& edge, int variable) {
+            for (const auto& clause : edge.clauses)
+                for (const auto& set : edge.assign)
+                    if (clause.size() == 1 && clause.front().variable == variable && set.variable == variable)
+                        return set.value - clause.front().value;
+            return 0;
+        };
+        const auto is_way = [&](const Edge& edge) {
+            return edge.controllable && std::any_of(edges.begin(), edges.end(), [&](const Edge& end) {
+                return end.source == edge.target && end.target != edge.source;
+            });
+        };
+        for (int variable = 0; variable < static_cast<int>(game_.variables.size()); ++variable) {
+            Battery battery{static_cast<int>(game_.automata.size()) + variable, 0, {}};
+            bool lowered = false, otherwise = false;
+            for (const Edge& edge : edges) {
+                const int by = change(edge, variable);
+                if (is_way(edge)) (by < 0 ? lowered : otherwise) = true;
+                if (by <= 0) continue;
+                if (is_timed(robot, edge.source)) battery.charging.insert(edge.source);
+                for (const auto& set : edge.assign)
+                    if (set.variable == variable) battery.full = std::max(battery.full, set.value);
+            }
+            if (lowered && !otherwise && !battery.charging.empty()) batteries_.emplace(robot, battery);
+        }
+    }
+
+    void forget() {
+        looks_.clear();
+        looked_from_ = States(looked_from_.width());
+    }
 
     bool is_robot(int a) const { return std::find(robots_.begin(), robots_.end(), a) != robots_.end(); }
 
@@ -236,7 +358,8 @@ class Duties {
     }
 
     const Game& game_;
-    std::vector<int> robots_, watching_;
+    std::vector<int> robots_, watching_, turns_;
+    std::vector<bool> visits_;
 
     int facts_ = 0;
     std::map<std::pair<int, int>, int> numbers_;  // of facts: an automaton or (behind them) a variable, and its value
@@ -246,8 +369,12 @@ class Duties {
     std::vector<Operator> operators_;
 
     std::vector<std::int64_t> detours_;           // per fact what it costs besides the way
-    std::vector<std::int64_t> costs_, sums_;
-    std::vector<int> achiever_, support_, met_;
+
+    std::map<int, Battery> batteries_;            // by robot
+
+    States looked_from_;                          // a state, the robot and `closed`
+    std::deque<Look> looks_;                      // likewise
+    const Look* now_ = nullptr;
 };
 
 }  // namespace pursue

@@ -18,8 +18,8 @@ class Forward {
   public:
     using R = typename Z::raw_t;
 
-    Forward(const Game& game, LimitMonitor& monitor, const Guess& guess)
-        : game_(game), monitor_(monitor), guess_(guess), joints_(game), dispatch_(game, joints_, guess),
+    Forward(const Game& game, LimitMonitor& monitor, Joints& joints, Duties& duties, const Guess& guess)
+        : game_(game), monitor_(monitor), guess_(guess), joints_(joints), dispatch_(game, joints_, duties, guess),
           width_(game.automata.size() + game.variables.size()), states_(width_ + dispatch_.robots()) {
         bounds_of_clocks();
     }
@@ -362,7 +362,7 @@ class Forward {
     const Game& game_;
     LimitMonitor& monitor_;
     const Guess guess_;
-    Joints joints_;
+    Joints& joints_;
     Dispatch dispatch_;
     const std::size_t width_;
     States states_;
@@ -372,15 +372,19 @@ class Forward {
     std::size_t followed_ = 0;
 };
 
-// The first policy that wins, or none.
+// The first policy that wins, or none. `joints`, `duties`: of the game.
 template <class Z>
-std::unique_ptr<Forward<Z>> winning_guess(const Game& game, LimitMonitor& monitor, const std::vector<int>& late) {
-    for (const Guess& each : late.empty() ? GUESSES : late_guesses(late)) {
-        auto forward = std::make_unique<Forward<Z>>(game, monitor, each);
-        if (!each.shared_out && forward->robots() < 2) continue;  // the same as one that was tried
-        if (each.relieved && !forward->has_guards()) continue;    // likewise
-        if (forward->wins()) return forward;
-    }
+std::unique_ptr<Forward<Z>> winning_guess(const Game& game, LimitMonitor& monitor, Joints& joints, Duties& duties,
+                                          const std::vector<int>& late) {
+    const std::vector<int> charges = duties.has_batteries() ? std::vector<int>{0, 60, 100} : std::vector<int>{0};
+    for (Guess each : late.empty() ? GUESSES : late_guesses(late))
+        for (const int charge : charges) {
+            each.charge = charge;
+            auto forward = std::make_unique<Forward<Z>>(game, monitor, joints, duties, each);
+            if (!each.shared_out && forward->robots() < 2) continue;  // the same as one that was tried
+            if (each.relieved && !forward->has_guards()) continue;    // likewise
+            if (forward->wins()) return forward;
+        }
     return nullptr;
 }
 

@@ -147,12 +147,14 @@ py::dict solve_with(const Game& game, const Limits& limits, double small_budget,
 template <class Z>
 py::dict guess_with(const Game& game, const Limits& limits, const std::vector<int>& late) {
     LimitMonitor monitor(limits);
+    Joints joints(game);
+    Duties duties(game);
     std::map<Discrete, std::vector<Piece<Z>>> plan;
     std::unique_ptr<Forward<Z>> winning;
     double seconds = 0;
     {
         const py::gil_scoped_release released;
-        winning = winning_guess<Z>(game, monitor, late);
+        winning = winning_guess<Z>(game, monitor, joints, duties, late);
         seconds = monitor.spent();
         if (winning) plan = winning->plan();
     }

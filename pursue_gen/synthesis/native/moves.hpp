@@ -13,6 +13,7 @@ class States {
     explicit States(std::size_t width) : width_(width), slots_(1024, -1) {}
 
     std::size_t size() const { return pool_.size() / width_; }
+    std::size_t width() const { return width_; }
 
     Discrete operator[](int k) const {
         const auto first = pool_.begin() + static_cast<std::ptrdiff_t>(k * width_);

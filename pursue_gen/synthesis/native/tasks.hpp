@@ -22,6 +22,8 @@ struct Guess {
     int reserve = 0;         // the part of their period, in hundredths, that is left then beside the way
     bool sets_off = false;   // but the first one is begun at once
     bool relieved = false;   // a post is for a robot without duties; until it is there, another one sees to the post first
+    bool alternates = false; // after a visit something else is done, if it is asked for, and the other way round
+    int charge = 0;          // a robot that charges goes on until its battery has so many hundredths
 };
 
 // One after the other.
@@ -34,6 +36,7 @@ inline const std::vector<Guess> GUESSES = {
     {Next::soonest_due, true, Idle::goes_to_post},
     {Next::nearest, false},                       {Next::nearest, false, Idle::goes_home},
     {Next::in_turn, true, Idle::stays, 4},        {Next::soonest_due, true, Idle::stays, 4},
+    {Next::in_turn, true, Idle::stays, 1, false, false, {}, 0, false, false, true},
 };
 
 // Likewise, where patrols wait until they are due, as late as is won.
