@@ -7,11 +7,11 @@ from typing import Dict, List, Mapping, Optional, Tuple
 
 from pursue_gen.language.wording import assumption_words
 from pursue_gen.replay.assumptions import newly_broken
-from pursue_gen.replay.beginnings import EXACT, with_beginnings
+from pursue_gen.replay.beginnings import EXACT
 from pursue_gen.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
 from pursue_gen.replay.game import Game
-from pursue_gen.replay.gaps import with_end, with_missing
-from pursue_gen.replay.moves import Move, Moves, after, place_of
+from pursue_gen.replay.gaps import completed
+from pursue_gen.replay.moves import Move, after, place_of
 from pursue_gen.replay.orders import Entry, Orders, in_time, of_plan, since_for
 from pursue_gen.replay.record import MissionRecord
 from pursue_gen.replay.robots import Done, check_robots
@@ -52,30 +52,24 @@ class Findings:
         return self.status == WON
 
 
-def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings:
-    """Checks the whole record; `tolerance`, in time units, is how far events may miss the model's windows."""
-    moves = Moves(game.network)
-    known = {state.seq for state in record.states}
+def check(
+    record: MissionRecord, game: Game, tolerance: float = 0.1, lateness: float = 0.0, offset: float = 0.0
+) -> Findings:
+    """Checks the whole record. In time units: `tolerance` is how far events may miss the model's windows, `lateness` how
+    long messages may be on their way beyond the reaction, `offset` by how much clocks of controllers may be wrong."""
+    moves = game.moves
     orders, unread = _orders_in(record, game)
-    states, late = with_beginnings(with_missing(record.states, record.words, moves, orders), moves)
-    whole = with_end(states, record.words, game.objective.goal)
-    record = replace(record, states=tuple(whole))
-    checker = _Checker(record, game, moves, orders, tolerance)
+    record, findings = (record, []) if record.is_exact else completed(record, moves, orders, game.objective.goal)
+    checker = _Checker(record, game, orders, tolerance, lateness + tolerance, offset + tolerance)
     checker.run()
     steps = checker.steps
     said = match_words(record, [(step.since, step.before, step.state) for step in steps], moves)
     steps = [replace(step, word=said.of(step.state.seq)) for step in steps]
-    text = "recorded {:.2f} s after it began: its first message is missing"
-    findings = [Finding(NOTE, "recorded late", seq, text.format(passed)) for seq, passed in late.items()]
-    text = "not recorded: the words that were recorded lead to it"
-    findings += [Finding(NOTE, "not recorded", seq, text) for seq in sorted({s.seq for s in states} - known)]
-    text = "no state was recorded that says how it ended: its observer said that the goal is reached"
-    findings += [Finding(NOTE, "not recorded", state.seq, text) for state in whole[len(states) :]]
     findings += [*unread, *checker.findings, *checker.timing(steps), *checker.commands(steps, said)]
     findings += unmatched_words(record, said, checker.moves)
     if not record.by_words:
         done = [*checker.turns, *((s.before, s.state, s.move[0][0], s.is_command) for s in steps)]
-        findings += check_robots(record, game, sorted(done, key=lambda step: step[1].seq), checker.orders)
+        findings += check_robots(record, game, sorted(done, key=lambda step: step[1].seq), checker.orders, lateness)
     findings += [Finding(FAULT, "recording", 0, f"the recording is not whole: {what}") for what in record.problems]
     last = max(record.states, key=lambda state: state.seq)
     last = [state for state in record.states if state.seq == last.seq][-1]
@@ -114,15 +108,19 @@ def _orders_in(record: MissionRecord, game: Game) -> Tuple[Dict[int, Orders], Li
 
 class _Checker:
     def __init__(
-        self, record: MissionRecord, game: Game, moves: Moves, orders: Mapping[int, Orders], tolerance: float
+        self, record: MissionRecord, game: Game, orders: Mapping[int, Orders], tolerance: float, late: float,
+        early: float,
     ) -> None:
-        self.moves = moves
+        """`late` and `early`: by how many time units commands may miss when they are due."""
+        self.moves = game.moves
         self.findings: List[Finding] = []
         self.steps: List[ReplayedStep] = []
         self.turns: List[Done] = []
         self.orders = orders
         self.holds = 0
         self._record, self._game, self._tolerance = record, game, tolerance
+        self._late, self._early = late, early
+        self._exact = min(EXACT, tolerance) if record.is_exact else EXACT
         self._zeros: Dict[str, float] = {}
         self._since: Dict[Entry, SystemState] = {}  # in which was decided what stands (else: in the last one)
 
@@ -255,7 +253,7 @@ class _Checker:
         wrong = {
             clock: state.clocks.get(clock, float("inf")) - value
             for clock, value in self._clocks_at(state).items()
-            if not abs(state.clocks.get(clock, float("inf")) - value) * state.unit <= EXACT
+            if not abs(state.clocks.get(clock, float("inf")) - value) * state.unit <= self._exact
         }
         if wrong:
             wrong_by = ", ".join(f"{clock} by {off:+.4f}" for clock, off in sorted(wrong.items()))
@@ -320,6 +318,11 @@ class _Checker:
                 how = "late" if late else "early"
                 text = f"{state.event} by {state.agent} comes {by:.2f} time units {how} for the model"
                 found.append(Finding(FAULT if step.is_command else WORLD, how, state.seq, text))
+            missed = self.moves.overdue(place_of(before), clocks) if not own else {}
+            for name, _ in self._game.objective.bad:
+                if missed.get(name, 0.0) > 2 * self._tolerance:
+                    text = f"{name} was at its deadline {missed[name]:.2f} time units before"
+                    found.append(Finding(FAULT, "deadline", state.seq, text))
             orders = self.orders.get(state.plan)
             if orders is None or state.status != RUNNING or self._is_at_goal(state):
                 continue
@@ -384,10 +387,10 @@ class _Checker:
         """True where the strategy has this command at the moment, or had it not longer ago than the reaction, since
         something happened that it sees."""
         before, state, first = step.before, step.state, self._record.states[0]
-        back = orders.reaction + self._tolerance
+        back = orders.reaction + self._late
         if not (self._record.is_late and step.since.seq == first.seq):  # else it may have been decided before
             back = min(back, (state.stamp - step.since.stamp) / state.unit)
-        return in_time(zones_of(orders, step), aged(before, state), back, self._tolerance)
+        return in_time(zones_of(orders, step), aged(before, state), back, self._early)
 
     def _is_reliable(self) -> str:
         """What else could be the reason for a strategy that does not fit."""

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, Dict, FrozenSet, Generic, Iterable, List, Mapping, Optional, Sequence, Tuple, TypeVar
+from typing import Any, Dict, FrozenSet, Generic, Iterable, List, Mapping, Optional, Tuple, TypeVar
 
-from pursue_gen.partition import SubStrategy
 from pursue_gen.replay.moves import DiscreteState, Move, Moves, after
 from pursue_gen.synthesis.plan_text import read_constraint
 from pursue_gen.synthesis.strategy import Constraint, Strategy, Zone
@@ -99,9 +98,9 @@ def since_for(agent: str, orders: Optional[Orders], since: Mapping[Entry, Since]
     return commanding or named or list(since.values()) or [now]
 
 
-def of_strategy(strategy: Strategy, subs: Sequence[SubStrategy], reaction: Fraction) -> Orders:
-    """The workspace's own strategy."""
-    owners, left_out = _owners((sub.controller, sub.agents) for sub in subs), frozenset(strategy.left_out_clocks)
+def of_strategy(strategy: Strategy, commands_of: Iterable[Tuple[str, Iterable[str]]], reaction: Fraction) -> Orders:
+    """The workspace's own strategy. `commands_of`: controllers, and the agents that each commands."""
+    owners, left_out = _owners(commands_of), frozenset(strategy.left_out_clocks)
     orders = Orders(owners=owners, reaction=float(reaction), left_out_clocks=left_out)
     for block in strategy.blocks:
         state: Dict[str, object] = {**dict(block.state.locations), **dict(block.state.values)}

@@ -19,6 +19,7 @@ from pursue_gen.simulation.opponents import Opponent, kind_in_mission
 from pursue_gen.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome, Settings
 from pursue_gen.simulation.planner import SimulatedPlanner
 from pursue_gen.simulation.promises import Promises
+from pursue_gen.simulation.recorder import Recorder
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage
 from pursue_gen.simulation.world import SimulatedAgent
@@ -83,6 +84,7 @@ class SimulatedMission:
         self._reachable = dict.fromkeys(stage.strategies, START)
         self._seen: Tuple[int, str] = (-1, "")
         self._became_true = BecameTrue()
+        self.recorder = Recorder()
 
     # The course of the mission ----------------------------------------------------------------------------------------
 
@@ -92,6 +94,7 @@ class SimulatedMission:
         self._observer.heartbeat()
         self._schedule_faults()
         events.schedule(START, lambda: self._observer.call("hear", "_start_"))
+        self.recorder.on_word(START, "_start_", "UI")
         while self._observer.mission.status not in ENDED and not (self._judge.problems or self._complaints):
             moment = events.next_time()
             if moment is None or moment > end:
@@ -172,6 +175,7 @@ class SimulatedMission:
         if news and self._record:
             self._note(_described(state))
         self._judge.on_state(state, moment)
+        self.recorder.states.append(state)
         self._promises.on_state(state, moment)
         self._driven.on_state(state)
         for node in self._controllers.values():
@@ -209,6 +213,7 @@ class SimulatedMission:
         """The observer publishes another plan."""
         self._plan = plan
         self._judge.on_plan(plan["plan"], plan["strategies"], plan["people"])
+        self.recorder.plans[plan["plan"]] = plan
         self._note(f"plan {plan['plan']} is published")
         for node in self._controllers.values():
             self._send_plan(node, plan)
@@ -224,6 +229,7 @@ class SimulatedMission:
         text = format_word(word)
         self._note(f"{node} publishes {text}")
         self._published.append(text)
+        self.recorder.on_word(self.events.now, text, node)
         deliver = to_process(self._observer, lambda: self._observer.call("hear", text))
         self._connections.send(f"word:{node}", max(0.0, latest - self.events.now), deliver, node)
 
@@ -231,6 +237,7 @@ class SimulatedMission:
         """A controller sends its robot an order."""
         self._note(f"{node} orders {order.agent}: {order.event} ({order.location})")
         self._judge.on_order(order, seq, newest, again)
+        self.recorder.on_order(self.events.now, order, node, again)
         mover = self._agents.get(order.agent)
         if mover is not None:
             self._connections.send_order(lambda: mover.on_order(order, seq))
@@ -239,6 +246,7 @@ class SimulatedMission:
 
     def _report(self, agent: str, text: str) -> None:
         self._note(f"{agent} reports {text}")
+        self.recorder.on_word(self.events.now, text, "simulator")
         self._became_true.note(agent, text, self.events.now)
 
         def deliver() -> None:
@@ -255,6 +263,7 @@ class SimulatedMission:
         chosen again, in the new state: without faults no report is late, so the earlier choice is dropped."""
         agent, seq = text.partition(":")[0], self._observer.mission.seq
         self._note(f"{agent} reports {text}")
+        self.recorder.on_word(self.events.now, text, "simulator")
 
         def deliver() -> None:
             if self.faulty or self._observer.mission.seq == seq:
@@ -366,6 +375,7 @@ class SimulatedMission:
             return
         self.fault_plan.count("junk")
         self._note(f"an unknown node publishes {text[:40]!r}")
+        self.recorder.on_word(self.events.now, text, "")
         self._observer.call("hear", text)
 
     def _on_planner(self, name: str, *args: Any) -> None:

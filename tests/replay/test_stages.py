@@ -36,7 +36,8 @@ FIRST_STAGE: Play = (
 @functools.lru_cache(maxsize=None)
 def game() -> Game:
     scenario, won = solved_in_stages()
-    orders = of_strategy(won.strategy, partition(won.strategy, won.network, scenario.agents), won.reaction)
+    subs = partition(won.strategy, won.network, scenario.agents)
+    orders = of_strategy(won.strategy, ((sub.controller, sub.agents) for sub in subs), won.reaction)
     return Game(scenario, won.network, won.objective, orders, given=True)
 
 
