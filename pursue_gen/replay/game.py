@@ -24,7 +24,7 @@ from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.network import Edge, Network, Objective
 from pursue_runtime.bounded import BadText, exact, read_yaml, whole
 
 DISTRIBUTED, DEDICATED = "distributed", "dedicated"
@@ -48,6 +48,15 @@ class Game:
     orders: Optional[Orders]
     why_not: str = ""
     given: bool = False
+
+    @property
+    def doubt(self) -> str:
+        """What else could be the reason where a mission does not fit the strategy; "" where nothing could."""
+        return "" if self.given else " (if the workspace has another strategy than a new solution: --workspace)"
+
+    def is_deadline(self, agent: str, edge: Edge) -> bool:
+        """True for a step by which an objective itself becomes broken."""
+        return edge.sync is None and (agent, edge.target) in self.objective.bad
 
     @cached_property
     def moves(self) -> Moves:

@@ -158,10 +158,11 @@ def in_time(zones: Iterable[Zone], clocks: Mapping[str, float], back: float, sla
     return any(_in_time(zone, clocks, back, slack) for zone in zones)
 
 
-def due_since(zones: Iterable[Zone], clocks: Mapping[str, float], back: float) -> Optional[float]:
-    """How many time units ago the clocks came into one of the zones, in the last `back` ones; None: they did not."""
-    found = [latest for earliest, latest in (_stay(zone, clocks, back, 0.0) for zone in zones) if earliest <= latest]
-    return max(found, default=None)
+def due_since(zones: Iterable[Zone], clocks: Mapping[str, float], back: float, least: float = 0.0) -> Optional[float]:
+    """How many time units ago the clocks came into one of the zones, in the last `back` ones, for as many as `least`;
+    None: they did not."""
+    stays = (_stay(zone, clocks, back, 0.0) for zone in zones)
+    return max((latest for earliest, latest in stays if latest - earliest >= least), default=None)
 
 
 def _in_time(zone: Zone, clocks: Mapping[str, float], back: float, slack: float) -> bool:

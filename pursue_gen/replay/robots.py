@@ -84,7 +84,7 @@ def check_robots(
     if not record.problems:
         commanded = {state.seq for _, state, _, is_command in steps if is_command}
         receipts = receipts_in(record, controllers)
-        last = record.states[-1].stamp
+        last = record.exact_until or record.states[-1].stamp
         for place, (state, _, robot, _) in enumerate(activities):
             way = lateness + (orders[state.plan].reaction if state.plan in orders else 0.0)
             on_its_way = record.is_exact and state.stamp + way * state.unit >= last

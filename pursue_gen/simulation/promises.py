@@ -14,8 +14,8 @@ from pursue_gen.language.conditions import At, Condition
 from pursue_gen.language.network_names import going, has_happened
 from pursue_gen.language.scenario import Always, Avoid, NeverHolds, NeverWith, Patrol, Ref, Respond, Safety, Scenario
 from pursue_gen.language.wording import assumption_words, objective_text
-from pursue_gen.simulation.commands import EPSILON
 from pursue_gen.simulation.meaning import broken_of, holds
+from pursue_gen.simulation.recorder import EPSILON
 from pursue_runtime.locations import is_action, is_under_way, place_of
 from pursue_runtime.state import LOST, WON, SystemState
 

@@ -9,7 +9,6 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.moves import Arena
 from pursue_gen.replay.game import Game
 from pursue_gen.replay.orders import of_strategy
-from pursue_gen.simulation.commands import Commands, commands_of
 from pursue_gen.solving.solution import Solution
 from pursue_gen.tga.scale import common_denominator
 from pursue_gen.workspace import Options, generate
@@ -23,10 +22,9 @@ class Stage:
     """A workspace's data as its nodes have them, and the game and strategy they were made from.
 
     `strategies`: each controller's, by the controller's name; `people`: the instructions for human allies.
-    `reaction` is in time units. `arena`: the joint moves of the network, as the checker reads it; `commands`: those
-    of the strategy as the solver made it. `reports`: the agents whose ends are reported by the world, not
-    commanded. `request`: what the planner gets of the game (config/game.yaml); None where the workspace has no such
-    file.
+    `reaction` is in time units. `arena`: the joint moves of the network, as the checker reads it; `game`: what missions
+    are checked against. `reports`: the agents whose ends are reported by the world, not commanded. `request`: what the
+    planner gets of the game (config/game.yaml); None where the workspace has no such file.
     """
 
     scenario: Scenario
@@ -39,7 +37,6 @@ class Stage:
     request: Optional[Mapping[str, Any]]
     reaction: float
     arena: Arena
-    commands: Commands
     game: Game
 
     @property
@@ -78,7 +75,6 @@ def stage_from(files: Mapping[str, bytes], scenario: Scenario, won: Solution) ->
         request=data.get("observer/game.yaml"),
         reaction=float(won.reaction),
         arena=Arena(won.network, common_denominator(won.network.times), idle_moves=True),
-        commands=commands_of(won.strategy),
         game=_game(scenario, won, strategies, people),
     )
 

@@ -67,6 +67,13 @@ def test_a_command_that_comes_later_than_the_reaction_is_a_fault() -> None:
     assert ("command", 4) in found(late, states(late))
 
 
+def test_a_state_that_is_published_again_begins_nothing() -> None:
+    play: Play = (FIRST_STAGE[0], (0.19, *FIRST_STAGE[1][1:]))
+    first, then = states(play)
+    again = first._replace(stamp=0.185, clocks=first.clocks_at(0.185))
+    assert found(play, [first, again, then]) == found(play, [first, then]) == []
+
+
 def test_a_word_that_led_to_nothing_names_what_came_first_and_mattered() -> None:
     play: Play = (*FIRST_STAGE, (7.02, "bot:bot_hub2depot@2", "controller_bot"), (7.03, "bot:load@2", "controller_bot"))
     words = tuple(read_word(at, text, node) for at, text, node in play)
