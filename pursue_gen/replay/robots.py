@@ -43,7 +43,8 @@ def check_robots(
     """
     robots = [agent.name for agent in game.scenario.agents if agent.is_robot]
     activities = _activities(steps, robots, record)
-    where = {robot: _places(game.scenario, robot) for robot in robots}
+    with_goals = {order.robot for order in record.orders if order.goal is not None}
+    where = {robot: _places(game.scenario, robot) for robot in robots if robot in with_goals}
     ways = {going(x.name, y.name): y.name for x in game.scenario.pois for y in game.scenario.pois}
     diary = _ActivityIndex(activities)
     uncommanded = _uncommanded(game.scenario, steps, record)
