@@ -9,9 +9,9 @@ from typing import AbstractSet, List, Mapping, Optional, Tuple
 from pursue_gen.explanation.policy import Window, window
 from pursue_gen.explanation.policy import span as delays
 from pursue_gen.play.state import GRAIN, PlayState, Setup, StandingDecision, later
-from pursue_gen.synthesis.game import JointMove, State, joint_moves
-from pursue_gen.synthesis.lookup import Blocks
-from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Strategy, Zone
+from pursue_gen.synthesis.game import JointMove, joint_moves
+from pursue_gen.synthesis.lookup import blocks_of, facts_of
+from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone
 from pursue_gen.tga.network import Edge
 from pursue_gen.tga.part import clocks_of
 
@@ -45,7 +45,7 @@ class Advisor:
     def __init__(self, setup: Setup, strategy: Strategy) -> None:
         self._setup, self.size = setup, len(strategy.blocks)
         self._left_out_clocks = frozenset(strategy.left_out_clocks)
-        self._blocks = Blocks(strategy)
+        self._blocks = blocks_of(strategy)
 
     def decision(self, play: PlayState) -> Optional[Decision]:
         """What the strategy decided before the last move, where that stands, or decides first after it; None: it waits
@@ -74,7 +74,7 @@ class Advisor:
         return [self._says(number, block, play) for number, block in self._holding(play)]
 
     def _holding(self, play: PlayState) -> List[Tuple[int, Block]]:
-        return self._blocks.find_all(self._named(play.entry.state))
+        return self._blocks.find(facts_of(self._setup.game, play.entry.state))
 
     def _decisions(self, play: PlayState) -> List[Decision]:
         """What each block that holds has decided or decides first."""
@@ -114,14 +114,6 @@ class Advisor:
                 return Holding(number, block, command, zone)
         return Holding(number, block, None, None)
 
-    def _named(self, state: State) -> DiscreteState:
-        game = self._setup.game
-        places = zip(game.automata, state.locations)
-        return DiscreteState(
-            tuple((automaton.name, automaton.locations[k]) for automaton, k in places),
-            tuple(zip(game.variables, state.values)),
-        )
-
     def _keys(self, move: JointMove, named: AbstractSet[str]) -> Tuple[Tuple[str, ...], ...]:
         """What the named automata do in the move; the first one makes it."""
         game = self._setup.game
@@ -148,5 +140,3 @@ def span(zone: Zone, clocks: Mapping[str, Fraction]) -> Optional[Window]:
 def _both(a: Window, b: Window) -> Window:
     common = a.at_least(b.low, b.low_open)
     return common if b.high is None else common.at_most(b.high, b.high_open)
-
-

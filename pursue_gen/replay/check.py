@@ -14,11 +14,12 @@ from pursue_gen.replay.game import Game
 from pursue_gen.replay.gaps import completed
 from pursue_gen.replay.lateness import longest_due
 from pursue_gen.replay.moves import Move, after, place_of
-from pursue_gen.replay.orders import Entry, Orders, in_time, of_plan, since_for
+from pursue_gen.replay.orders import Orders, in_time, of_plan, since_for
 from pursue_gen.replay.record import MissionRecord
 from pursue_gen.replay.robots import Done, check_robots
 from pursue_gen.replay.steps import ReplayedStep, aged, change, delays, where
 from pursue_gen.replay.word_matches import match_words, unmatched_words
+from pursue_gen.synthesis.lookup import Entry
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, LOST, RUNNING, WAITING, WON, SystemState
 
@@ -337,7 +338,7 @@ class _Checker:
             orders = self.orders.get(state.plan)
             if orders is None or state.status != RUNNING or self._is_at_goal(state):
                 continue
-            cover = [orders.cover.entered(block) for block in orders.cover.holding(place_of(state))]
+            cover = [orders.cover.entered(block) for block in orders.cover.holding(place_of(state).facts)]
             parts = ([zone for zones in part for zone in zones] for part in cover)
             back = orders.reaction if self._record.is_exact else 0.0  # what was decided in a zone takes effect after it
             if not cover or not all(in_time(zones, state.clocks, back, self._tolerance) for zones in parts):

@@ -12,8 +12,9 @@ from typing import Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tupl
 from pursue_gen.replay.beginnings import EXACT, with_beginnings
 from pursue_gen.replay.finding import NOTE, Finding
 from pursue_gen.replay.moves import DiscreteState, Move, Moves, after, place_of
-from pursue_gen.replay.orders import Entry, Orders, since_for
+from pursue_gen.replay.orders import Orders, since_for
 from pursue_gen.replay.record import MissionRecord, RecordedWord
+from pursue_gen.synthesis.lookup import Entry
 from pursue_runtime.state import LIVE, RUNNING, WON, SystemState
 from pursue_runtime.words import FINISH
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Dict, Mapping, Sequence, Tuple
 
 from pursue_gen.replay.moves import Moves, place_of
-from pursue_gen.replay.orders import Entry, Orders, due_since
+from pursue_gen.replay.orders import Orders, due_since
 from pursue_gen.replay.steps import ReplayedStep, aged
+from pursue_gen.synthesis.lookup import Entry
 from pursue_runtime.state import LIVE, RUNNING, SystemState
 
 _TOUCHED = 1.5e-5
@@ -51,7 +52,7 @@ def _due(
 ) -> Tuple[float, str]:
     """For how long a command was due at most when this state came, and which one."""
     found, clocks = (0.0, ""), aged(before, state)
-    for block in known.commands.holding(place_of(before)):
+    for block in known.commands.holding(place_of(before).facts):
         stay = (state.stamp - max(decided, since.get(block, moved))) / before.unit
         for command in known.commands.entered(block):
             due = due_since(command.zones, clocks, stay, _TOUCHED)

@@ -5,20 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, Dict, FrozenSet, Generic, Iterable, List, Mapping, Optional, Tuple, TypeVar
+from typing import Any, Dict, FrozenSet, Iterable, List, Mapping, Optional, Tuple, TypeVar
 
 from pursue_gen.replay.moves import DiscreteState, Move, Moves, after
+from pursue_gen.synthesis.lookup import Entry, StateTable
 from pursue_gen.synthesis.plan_text import read_constraint
 from pursue_gen.synthesis.strategy import Constraint, Strategy, Zone
 from pursue_gen.tga.words import event_word
 from pursue_runtime.bounded import exact
 
 EPSILON = 1e-6
-Payload = TypeVar("Payload")
 Since = TypeVar("Since")
-
-Entry = Tuple[Tuple[str, ...], Tuple[str, ...]]
-"""The automata and variables that an entry names, and the location or value of each."""
 
 
 @dataclass(frozen=True)
@@ -30,39 +27,13 @@ class Command:
     zones: Tuple[Zone, ...]
 
 
-class PlanTable(Generic[Payload]):
-    """Payloads by state; an entry may leave out automata and variables."""
-
-    def __init__(self) -> None:
-        self._tables: Dict[Tuple[str, ...], Dict[Tuple[str, ...], List[Payload]]] = {}
-
-    def add(self, state: Mapping[str, object], payload: Payload) -> None:
-        """Adds an entry."""
-        names = tuple(sorted(state))
-        self._tables.setdefault(names, {}).setdefault(tuple(str(state[name]) for name in names), []).append(payload)
-
-    def find(self, place: DiscreteState) -> List[Payload]:
-        """What was put there."""
-        return [payload for entry in self.holding(place) for payload in self.entered(entry)]
-
-    def entered(self, entry: Entry) -> List[Payload]:
-        """What was put where an entry holds."""
-        return self._tables.get(entry[0], {}).get(entry[1], [])
-
-    def holding(self, place: DiscreteState) -> List[Entry]:
-        """What the entries name that hold there, each once."""
-        everything = {**place.locations, **{name: str(value) for name, value in place.values.items()}}
-        named = ((names, tuple(everything.get(name, "") for name in names)) for names in self._tables)
-        return [(names, parts) for names, parts in named if parts in self._tables[names]]
-
-
 @dataclass(frozen=True)
 class Orders:
     """A strategy by state. `owners`: the nodes that command an agent; `reaction`: how late a command may come, in time
     units; `left_out_clocks`: those that do not matter to it."""
 
-    commands: PlanTable[Command] = field(default_factory=PlanTable)
-    cover: PlanTable[Tuple[Zone, ...]] = field(default_factory=PlanTable)
+    commands: StateTable[Command] = field(default_factory=StateTable)
+    cover: StateTable[Tuple[Zone, ...]] = field(default_factory=StateTable)
     owners: Mapping[str, FrozenSet[str]] = field(default_factory=dict)
     reaction: float = 0.1
     left_out_clocks: FrozenSet[str] = frozenset()
@@ -79,10 +50,10 @@ class Orders:
         there, resets = after(move, place)
         reset = set(resets) - self.left_out_clocks
         touched = {name for name, clocks in moves.clocks.items() if clocks & reset}
-        held = self.cover.holding(place)
+        held = self.cover.holding(place.facts)
         return {
             block: since.get(block, before) if block in held and touched.isdisjoint(block[0]) else now
-            for block in self.cover.holding(there)
+            for block in self.cover.holding(there.facts)
         }
 
 
@@ -103,7 +74,7 @@ def of_strategy(strategy: Strategy, commands_of: Iterable[Tuple[str, Iterable[st
     owners, left_out = _owners(commands_of), frozenset(strategy.left_out_clocks)
     orders = Orders(owners=owners, reaction=float(reaction), left_out_clocks=left_out)
     for block in strategy.blocks:
-        state: Dict[str, object] = {**dict(block.state.locations), **dict(block.state.values)}
+        state = block.state.facts
         for command in block.commands:
             first = command.moves[0]
             orders.commands.add(state, Command(first.automaton, event_word(first.automaton, first.edge), command.zones))
