@@ -26,7 +26,7 @@ from pursue_runtime.observer.planning import PlanRequest
 from pursue_runtime.observer.witnesses import PATIENCE
 from pursue_runtime.orders import Order
 from pursue_runtime.sentences import in_words
-from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
+from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, STOPPED, WON, SystemState
 from pursue_runtime.words import Word, format_word
 
 START = 1000.0
@@ -160,15 +160,12 @@ class SimulatedMission:
         moment = self.events.now
         if self._observer.looks_back and self._latched is not None:
             moment = self._became_true.moment(state, self._latched, moment)
-        started = state.status != WAITING and (self._latched is None or self._latched.status not in ENDED)
-        if started and abs(state.stamp - moment) > EPSILON:
-            self._complaints.append(f"state {state.seq} is of {moment - START:.6f}, and says {state.stamp - START:.6f}")
         self._latched = state
         news = (state.seq, state.status) != self._seen
         self._seen = (state.seq, state.status)
         if news and self._record:
             self._note(_described(state))
-        self.recorder.states.append(state)
+        self.recorder.on_state(moment, state)
         self._promises.on_state(state, moment)
         self._driven.on_state(state)
         for node in self._controllers.values():

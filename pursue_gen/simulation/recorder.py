@@ -12,7 +12,7 @@ from pursue_gen.replay.game import Game
 from pursue_gen.replay.record import MissionRecord, RecordedWord, RobotOrder, read_word
 from pursue_runtime.locations import is_movement
 from pursue_runtime.orders import Order
-from pursue_runtime.state import SystemState
+from pursue_runtime.state import ENDED, WAITING, SystemState
 
 EPSILON = 5e-6
 """Moments (in time units) that are closer than this are the same: clocks and stamps travel as decimals."""
@@ -38,6 +38,14 @@ class Recorder:
         self.plans: Dict[int, Mapping[str, Any]] = {}
         self.words: List[RecordedWord] = []
         self.orders: List[RobotOrder] = []
+        self._misdated: List[str] = []
+
+    def on_state(self, now: float, state: SystemState) -> None:
+        """The observer publishes a state of this moment; an ended mission is as it was when it ended."""
+        ended = bool(self.states) and self.states[-1].status in ENDED
+        if not ended and state.status != WAITING and abs(state.stamp - now) > EPSILON * state.unit:
+            self._misdated.append(f"state {state.seq} is of {now:.6f}, and says {state.stamp:.6f}")
+        self.states.append(state)
 
     def on_word(self, now: float, text: str, node: str) -> None:
         """A node publishes a word."""
@@ -67,5 +75,5 @@ class Recorder:
         text = "{0.event} by {0.agent} (state {0.seq}) came outside the model's window"
         untimely = [text.format(state) for state in steps if state.seq in beside]
         untimely += [each.text for each in found.findings if each.kind == "overdue"]
-        problems = tuple(f"state {each.seq}: {each.text}" for each in wrong)
-        return Judgement(problems, len(found.steps), tuple(untimely), *found.longest_due)
+        problems = [*self._misdated, *(f"state {each.seq}: {each.text}" for each in wrong)]
+        return Judgement(tuple(problems), len(found.steps), tuple(untimely), *found.longest_due)
