@@ -46,6 +46,7 @@ class Advisor:
         self._setup, self.size = setup, len(strategy.blocks)
         self._left_out_clocks = frozenset(strategy.left_out_clocks)
         self._blocks = blocks_of(strategy)
+        self._clocks = {automaton.name: clocks_of(automaton) for automaton in setup.network.automata}
 
     def decision(self, play: PlayState) -> Optional[Decision]:
         """What the strategy decided before the last move, where that stands, or decides first after it; None: it waits
@@ -55,17 +56,17 @@ class Advisor:
     def standing(self, before: PlayState, play: PlayState) -> Tuple[StandingDecision, ...]:
         """What had been decided before a move, and stands after it: the same block holds, and no clock of an automaton
         that it names was reset, but those that the strategy leaves out."""
-        network, game = self._setup.network, self._setup.game
+        game = self._setup.game
         aged = later(before.entry, play.since - before.since)
         reset = {c for c, was, now in zip(game.clocks, aged.clocks, play.entry.clocks) if was != now}
         reset -= self._left_out_clocks
-        touched = {automaton.name for automaton in network.automata if reset & clocks_of(automaton)}
-        held = dict(self._holding(play))
+        states = facts_of(game, before.entry.state), facts_of(game, play.entry.state)
+        entries = [entry for entry, stands in self._blocks.standing(*states, reset, self._clocks).items() if stands]
+        numbers = {number for entry in entries for number, _ in self._blocks.entered(entry)}
         return tuple(
             StandingDecision(decision.number, decision.command, decision.at)
             for decision in self._decisions(before)
-            if decision.at <= play.since and decision.number in held
-            if touched.isdisjoint(name for name, _ in held[decision.number].state.locations)
+            if decision.at <= play.since and decision.number in numbers
         )
 
     def holdings(self, play: PlayState) -> List[Holding]:

@@ -42,19 +42,10 @@ class Orders:
         self, move: Move, place: DiscreteState, moves: Moves, since: Mapping[Entry, Since], before: Since, now: Since
     ) -> Dict[Entry, Since]:
         """For each block that holds after a move, since when what it decides stands: as before it (`since`; `before`
-        where that says nothing), or from `now` on.
-
-        It stands if the block held before as well, and the move resets no clock of an automaton that it names, but
-        those that the strategy leaves out.
-        """
+        where that says nothing), or from `now` on. Clocks that the strategy leaves out do not matter."""
         there, resets = after(move, place)
-        reset = set(resets) - self.left_out_clocks
-        touched = {name for name, clocks in moves.clocks.items() if clocks & reset}
-        held = self.cover.holding(place.facts)
-        return {
-            block: since.get(block, before) if block in held and touched.isdisjoint(block[0]) else now
-            for block in self.cover.holding(there.facts)
-        }
+        stands = self.cover.standing(place.facts, there.facts, set(resets) - self.left_out_clocks, moves.clocks)
+        return {block: since.get(block, before) if known else now for block, known in stands.items()}
 
 
 def since_for(agent: str, orders: Optional[Orders], since: Mapping[Entry, Since], now: Since) -> List[Since]:

@@ -5,7 +5,7 @@ The run time has a table of its own (pursue_runtime/strategy.py): missions are j
 
 from __future__ import annotations
 
-from typing import Dict, Generic, List, Mapping, Tuple, TypeVar
+from typing import AbstractSet, Dict, Generic, List, Mapping, Tuple, TypeVar
 
 from pursue_gen.synthesis.game import Game, State
 from pursue_gen.synthesis.strategy import Block, Strategy
@@ -42,6 +42,15 @@ class StateTable(Generic[Payload]):
         """What the entries name that hold there, each once."""
         named = ((names, tuple([str(state.get(name, "")) for name in names])) for names in self._tables)
         return [(names, parts) for names, parts in named if parts in self._tables[names]]
+
+    def standing(
+        self, before: Facts, state: Facts, reset: AbstractSet[str], clocks: Mapping[str, AbstractSet[str]]
+    ) -> Dict[Entry, bool]:
+        """For each entry that holds in a state, whether what it decided before the last move stands: it held then as
+        well, and of the clocks that were `reset` none is of an automaton that it names. `clocks`: those of each."""
+        held = self.holding(before)
+        touched = {name for name, own in clocks.items() if own & reset}
+        return {entry: entry in held and touched.isdisjoint(entry[0]) for entry in self.holding(state)}
 
 
 def blocks_of(strategy: Strategy) -> StateTable[Tuple[int, Block]]:
