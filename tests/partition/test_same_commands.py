@@ -27,6 +27,7 @@ Known = Set[Tuple[str, str]]
         "patterns/strict_ordered_patrolling",
         "patterns/strict_ordered_visit",
         "museum/rounds",
+        "industry/coffee",
         "thesis/scenario_1",
         "thesis/catch_the_thief",
     ],
@@ -37,7 +38,8 @@ def test_controllers_hold_the_commands_of_the_strategy(name: str) -> None:
     stage = stage_of(scenario, won, Options(reaction=won.reaction))
     for block in won.strategy.blocks:
         state = SystemState(1, 0.0, dict(block.state.locations), dict(block.state.values), {})
-        tables = [strategy.commands(state) for strategy in stage.strategies.values()]
+        nodes = [*stage.strategies.values(), *([stage.people] if stage.people else [])]
+        tables = [node.commands(state) for node in nodes]
         held: Known = {(command.agent, command.event) for table in tables for command in table}
         covered: Known = {key for entry in stage.cover.find(state) for key in entry.commands}
         meant = {(command.agent, command.event) for command in stage.game.orders.commands.find(block.state.facts)}
