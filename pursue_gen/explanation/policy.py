@@ -13,9 +13,9 @@ from typing import AbstractSet, Callable, Iterator, List, Mapping, NamedTuple, O
 from pursue_gen.explanation.position import Position
 from pursue_gen.language import network_names as names
 from pursue_gen.synthesis.game import Game, JointMove, State, invariant
-from pursue_gen.synthesis.lookup import Blocks
+from pursue_gen.synthesis.lookup import blocks_of, facts_of
 from pursue_gen.synthesis.reference.relaxed import RelaxedPlanner
-from pursue_gen.synthesis.strategy import Block, DiscreteState, Strategy, Zone
+from pursue_gen.synthesis.strategy import Block, Strategy, Zone
 from pursue_gen.tga.network import Edge
 from pursue_gen.zones.dbm import is_strict
 
@@ -93,7 +93,7 @@ class Controller:
 
     def __init__(self, game: Game, strategies: Sequence[Strategy]) -> None:
         self._game = game
-        self._books = [Blocks(strategy) for strategy in strategies]
+        self._books = [blocks_of(strategy) for strategy in strategies]
         self._planners = _planners(game)
         self._been: Set[State] = set()
 
@@ -101,9 +101,9 @@ class Controller:
         """One of the controller's moves and when; None: wait."""
         self._been.add(here.state)
         windows = [(move, window(self._game, here, move)) for move in moves]
-        state = _named(self._game, here.state)
+        state = facts_of(self._game, here.state)
         for book in self._books:
-            blocks = [block for _, block in book.find_all(state)]
+            blocks = [block for _, block in book.find(state)]
             if blocks and all(self._knows(block, here) for block in blocks):
                 choices = (self._advised(block, here, windows) for block in blocks)
                 return min((choice for choice in choices if choice), key=lambda choice: choice[1], default=None)
@@ -183,14 +183,6 @@ def _planners(game: Game) -> List[_Planner]:
             plans = RelaxedPlanner(replace(game, goal=(idle,)))
             found.append(_Planner(plans, (number, locations.index(names.AT_RISK))))
     return found
-
-
-def _named(game: Game, state: State) -> DiscreteState:
-    places = zip(game.automata, state.locations)
-    return DiscreteState(
-        tuple((automaton.name, automaton.locations[k]) for automaton, k in places),
-        tuple(zip(game.variables, state.values)),
-    )
 
 
 def _key(automaton: str, edge: Edge) -> _Key:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any, Dict, Iterable, List, Sequence, Union
 
-from pursue_gen.language.network_names import OBJECTIVE, REACH
+from pursue_gen.language.network_names import OBJECTIVE, REACH, is_safety_objective, rule_turn
 from pursue_gen.language.numbers import Number, decimal_text
 from pursue_gen.partition.split import SubStrategy
 from pursue_gen.synthesis.plan_text import constraint_texts
@@ -74,8 +74,9 @@ def _command(command: Command) -> Dict[str, Any]:
 
 
 def _state(state: DiscreteState) -> Dict[str, Union[str, int]]:
-    """Where every automaton is, and the variables that do not follow from that: all but the `P<automaton>`."""
-    follows = {f"P{automaton}" for automaton, _ in state.locations}
+    """Where every automaton is, and the variables that do not follow from that: all but the `P<automaton>`. That of an
+    objective does not, either: it says which place of a patrol comes next."""
+    follows = {rule_turn(automaton) for automaton, _ in state.locations if not is_safety_objective(automaton)}
     parts: Dict[str, Union[str, int]] = dict(state.locations)
     parts.update((name, value) for name, value in state.values if name not in follows)
     return parts

@@ -9,9 +9,9 @@ from typing import AbstractSet, List, Mapping, Optional, Tuple
 from pursue_gen.explanation.policy import Window, window
 from pursue_gen.explanation.policy import span as delays
 from pursue_gen.play.state import GRAIN, PlayState, Setup, StandingDecision, later
-from pursue_gen.synthesis.game import JointMove, State, joint_moves
-from pursue_gen.synthesis.lookup import Blocks
-from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Strategy, Zone
+from pursue_gen.synthesis.game import JointMove, joint_moves
+from pursue_gen.synthesis.lookup import blocks_of, facts_of
+from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone
 from pursue_gen.tga.network import Edge
 
 
@@ -44,7 +44,8 @@ class Advisor:
     def __init__(self, setup: Setup, strategy: Strategy) -> None:
         self._setup, self.size = setup, len(strategy.blocks)
         self._left_out_clocks = frozenset(strategy.left_out_clocks)
-        self._blocks = Blocks(strategy)
+        self._blocks = blocks_of(strategy)
+        self._clocks = {automaton.name: automaton.clocks for automaton in setup.network.automata}
 
     def decision(self, play: PlayState) -> Optional[Decision]:
         """What the strategy decided before the last move, where that stands, or decides first after it; None: it waits
@@ -54,17 +55,17 @@ class Advisor:
     def standing(self, before: PlayState, play: PlayState) -> Tuple[StandingDecision, ...]:
         """What had been decided before a move, and stands after it: the same block holds, and no clock of an automaton
         that it names was reset, but those that the strategy leaves out."""
-        network, game = self._setup.network, self._setup.game
+        game = self._setup.game
         aged = later(before.entry, play.since - before.since)
         reset = {c for c, was, now in zip(game.clocks, aged.clocks, play.entry.clocks) if was != now}
         reset -= self._left_out_clocks
-        touched = {automaton.name for automaton in network.automata if reset & automaton.clocks}
-        held = dict(self._holding(play))
+        states = facts_of(game, before.entry.state), facts_of(game, play.entry.state)
+        entries = [entry for entry, stands in self._blocks.standing(*states, reset, self._clocks).items() if stands]
+        numbers = {number for entry in entries for number, _ in self._blocks.entered(entry)}
         return tuple(
             StandingDecision(decision.number, decision.command, decision.at)
             for decision in self._decisions(before)
-            if decision.at <= play.since and decision.number in held
-            if touched.isdisjoint(name for name, _ in held[decision.number].state.locations)
+            if decision.at <= play.since and decision.number in numbers
         )
 
     def holdings(self, play: PlayState) -> List[Holding]:
@@ -73,7 +74,7 @@ class Advisor:
         return [self._says(number, block, play) for number, block in self._holding(play)]
 
     def _holding(self, play: PlayState) -> List[Tuple[int, Block]]:
-        return self._blocks.find_all(self._named(play.entry.state))
+        return self._blocks.find(facts_of(self._setup.game, play.entry.state))
 
     def _decisions(self, play: PlayState) -> List[Decision]:
         """What each block that holds has decided or decides first."""
@@ -113,14 +114,6 @@ class Advisor:
                 return Holding(number, block, command, zone)
         return Holding(number, block, None, None)
 
-    def _named(self, state: State) -> DiscreteState:
-        game = self._setup.game
-        places = zip(game.automata, state.locations)
-        return DiscreteState(
-            tuple((automaton.name, automaton.locations[k]) for automaton, k in places),
-            tuple(zip(game.variables, state.values)),
-        )
-
     def _keys(self, move: JointMove, named: AbstractSet[str]) -> Tuple[Tuple[str, ...], ...]:
         """What the named automata do in the move; the first one makes it."""
         game = self._setup.game
@@ -147,5 +140,3 @@ def span(zone: Zone, clocks: Mapping[str, Fraction]) -> Optional[Window]:
 def _both(a: Window, b: Window) -> Window:
     common = a.at_least(b.low, b.low_open)
     return common if b.high is None else common.at_most(b.high, b.high_open)
-
-

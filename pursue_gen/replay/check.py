@@ -7,20 +7,24 @@ from typing import Dict, List, Mapping, Optional, Tuple
 
 from pursue_gen.language.wording import assumption_words
 from pursue_gen.replay.assumptions import newly_broken
-from pursue_gen.replay.beginnings import EXACT, with_beginnings
+from pursue_gen.replay.beginnings import EXACT
+from pursue_gen.replay.commands import CommandCheck
 from pursue_gen.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
 from pursue_gen.replay.game import Game
-from pursue_gen.replay.gaps import with_end, with_missing
-from pursue_gen.replay.moves import Move, Moves, after, place_of
-from pursue_gen.replay.orders import Entry, Orders, in_time, of_plan, since_for
+from pursue_gen.replay.gaps import completed
+from pursue_gen.replay.lateness import longest_due
+from pursue_gen.replay.moves import Move, after, place_of
+from pursue_gen.replay.orders import Orders, in_time, of_plan, since_for
 from pursue_gen.replay.record import MissionRecord
 from pursue_gen.replay.robots import Done, check_robots
-from pursue_gen.replay.steps import ReplayedStep, aged, change, delays, where, zones_of
-from pursue_gen.replay.word_matches import WordMatches, match_words, unmatched_words
-from pursue_gen.tga.network import Edge
-from pursue_runtime.locations import is_end, is_movement
+from pursue_gen.replay.steps import ReplayedStep, aged, change, delays, where
+from pursue_gen.replay.word_matches import match_words, unmatched_words
+from pursue_gen.synthesis.lookup import Entry
 from pursue_runtime.sentences import in_words
-from pursue_runtime.state import ENDED, HOLDING, RUNNING, WAITING, WON, SystemState
+from pursue_runtime.state import ENDED, HOLDING, LOST, RUNNING, WAITING, WON, SystemState
+
+MARKED = 0.1
+"""Time units after a deadline at which the observer takes it for missed: reports are on their way."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +32,8 @@ class Findings:
     """What was found: steps in order, findings in order of their states, how it ended.
 
     `delays`: how late each command of a controller took effect, in time units since it was due; `reaction`: how late
-    the strategy allows that, 0 where it is not known.
+    the strategy allows that, 0 where it is not known; `longest_due`: for how long a command was due at most before
+    something happened, and which one, of simulations in which messages may be late.
     """
 
     steps: Tuple[ReplayedStep, ...]
@@ -40,6 +45,7 @@ class Findings:
     counts: Mapping[str, int] = field(default_factory=dict)
     delays: Tuple[float, ...] = ()
     reaction: float = 0.0
+    longest_due: Tuple[float, str] = (0.0, "")
 
     @property
     def kept(self) -> bool:
@@ -52,30 +58,26 @@ class Findings:
         return self.status == WON
 
 
-def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings:
-    """Checks the whole record; `tolerance`, in time units, is how far events may miss the model's windows."""
-    moves = Moves(game.network)
-    known = {state.seq for state in record.states}
+def check(
+    record: MissionRecord, game: Game, tolerance: float = 0.1, lateness: float = 0.0, offset: float = 0.0
+) -> Findings:
+    """Checks the whole record. In time units: `tolerance`: how far events may miss the model's windows; `lateness`: how
+    long messages may be on their way beyond the reaction; `offset`: by how much clocks of controllers may be wrong."""
+    moves = game.moves
     orders, unread = _orders_in(record, game)
-    states, late = with_beginnings(with_missing(record.states, record.words, moves, orders), moves)
-    whole = with_end(states, record.words, game.objective.goal)
-    record = replace(record, states=tuple(whole))
-    checker = _Checker(record, game, moves, orders, tolerance)
+    record, findings = (record, []) if record.is_exact else completed(record, moves, orders, game.objective.goal)
+    grace = tolerance + (0.0 if record.is_exact and not lateness else MARKED)
+    checker = _Checker(record, game, orders, tolerance, grace)
     checker.run()
     steps = checker.steps
     said = match_words(record, [(step.since, step.before, step.state) for step in steps], moves)
     steps = [replace(step, word=said.of(step.state.seq)) for step in steps]
-    text = "recorded {:.2f} s after it began: its first message is missing"
-    findings = [Finding(NOTE, "recorded late", seq, text.format(passed)) for seq, passed in late.items()]
-    text = "not recorded: the words that were recorded lead to it"
-    findings += [Finding(NOTE, "not recorded", seq, text) for seq in sorted({s.seq for s in states} - known)]
-    text = "no state was recorded that says how it ended: its observer said that the goal is reached"
-    findings += [Finding(NOTE, "not recorded", state.seq, text) for state in whole[len(states) :]]
-    findings += [*unread, *checker.findings, *checker.timing(steps), *checker.commands(steps, said)]
+    commanded = CommandCheck(record, game, orders, lateness + tolerance, offset + tolerance).findings(steps)
+    findings += [*unread, *checker.findings, *checker.timing(steps), *commanded]
     findings += unmatched_words(record, said, checker.moves)
     if not record.by_words:
         done = [*checker.turns, *((s.before, s.state, s.move[0][0], s.is_command) for s in steps)]
-        findings += check_robots(record, game, sorted(done, key=lambda step: step[1].seq), checker.orders)
+        findings += check_robots(record, game, sorted(done, key=lambda step: step[1].seq), checker.orders, lateness)
     findings += [Finding(FAULT, "recording", 0, f"the recording is not whole: {what}") for what in record.problems]
     last = max(record.states, key=lambda state: state.seq)
     last = [state for state in record.states if state.seq == last.seq][-1]
@@ -92,7 +94,11 @@ def check(record: MissionRecord, game: Game, tolerance: float = 0.1) -> Findings
     findings.sort(key=lambda finding: finding.seq)
     length = (last.stamp - start) / last.unit
     how_late = delays(steps, orders), max((known.reaction for known in orders.values()), default=0.0)
-    return Findings(tuple(steps), tuple(findings), last.status, in_words(last.reason), start, length, counts, *how_late)
+    due = 0.0, ""
+    if record.exact_until is not None and lateness:
+        due = longest_due(record.states, record.exact_until, steps, moves, orders)
+    ended = last.status, in_words(last.reason), start, length
+    return Findings(tuple(steps), tuple(findings), *ended, counts, *how_late, due)
 
 
 def _orders_in(record: MissionRecord, game: Game) -> Tuple[Dict[int, Orders], List[Finding]]:
@@ -114,17 +120,20 @@ def _orders_in(record: MissionRecord, game: Game) -> Tuple[Dict[int, Orders], Li
 
 class _Checker:
     def __init__(
-        self, record: MissionRecord, game: Game, moves: Moves, orders: Mapping[int, Orders], tolerance: float
+        self, record: MissionRecord, game: Game, orders: Mapping[int, Orders], tolerance: float, grace: float
     ) -> None:
-        self.moves = moves
+        """`grace`: the time units after a deadline until it is taken for missed."""
+        self.moves = game.moves
         self.findings: List[Finding] = []
         self.steps: List[ReplayedStep] = []
         self.turns: List[Done] = []
         self.orders = orders
         self.holds = 0
-        self._record, self._game, self._tolerance = record, game, tolerance
+        self._record, self._game, self._tolerance, self._grace = record, game, tolerance, grace
+        self._exact = min(EXACT, tolerance) if record.is_exact else EXACT
         self._zeros: Dict[str, float] = {}
-        self._since: Dict[Entry, SystemState] = {}  # in which was decided what stands (else: in the last one)
+        self._since: Dict[Entry, SystemState] = {}  # in which was decided what stands (else: in the one before)
+        self._first_of: Dict[int, SystemState] = {}  # each state as it was when it began
 
     def run(self) -> None:
         """The states one by one."""
@@ -133,6 +142,7 @@ class _Checker:
             if not self.moves.knows(place_of(state)):
                 self._report(FAULT, "scenario", state, "this state is not one of the scenario: is it the right one?")
                 return
+            self._first_of.setdefault(state.seq, state)
             if before is None:
                 self._first(state)
             elif state.seq == before.seq:
@@ -192,7 +202,8 @@ class _Checker:
         move = self._move(before, state)
         since, self._since = self._since, {}
         if move is not None:
-            decided = max(since_for(move[0][0], self.orders.get(before.plan), since, before), key=lambda each: each.seq)
+            begun = self._first_of[before.seq]
+            decided = max(since_for(move[0][0], self.orders.get(before.plan), since, begun), key=lambda each: each.seq)
             self.steps.append(ReplayedStep(before, state, move, decided))
             self._since = self._standing(before, state, move, since)
             self._zeros.update(dict.fromkeys(after(move, place_of(before))[1], state.stamp))
@@ -230,7 +241,7 @@ class _Checker:
         orders = self.orders.get(state.plan)
         if orders is None or (before.status, before.plan, state.status) != (RUNNING, state.plan, RUNNING):
             return {}
-        return orders.after(move, place_of(before), self.moves, since, before, state)
+        return orders.after(move, place_of(before), self.moves, since, self._first_of[before.seq], state)
 
     def _turned(self, before: SystemState, state: SystemState) -> bool:
         """True where robots that could not go on turn round with a new plan, as the only change."""
@@ -255,7 +266,7 @@ class _Checker:
         wrong = {
             clock: state.clocks.get(clock, float("inf")) - value
             for clock, value in self._clocks_at(state).items()
-            if not abs(state.clocks.get(clock, float("inf")) - value) * state.unit <= EXACT
+            if not abs(state.clocks.get(clock, float("inf")) - value) * state.unit <= self._exact
         }
         if wrong:
             wrong_by = ", ".join(f"{clock} by {off:+.4f}" for clock, off in sorted(wrong.items()))
@@ -292,6 +303,9 @@ class _Checker:
                 elif name in late:
                     text = f"its status is won, but {name} was at its deadline {late[name]:.2f} time units before"
                     self._report(FAULT, "end", last, text)
+        elif last.status == LOST:
+            for agent in (name for name in late if name not in dict(bad)):
+                self._report(WORLD, "overdue", last, f"{agent} should have left {last.locations[agent]} before")
         elif last.status not in (*ENDED, WAITING):
             for agent, by in late.items():
                 text = f"{agent} was {by:.2f} time units late in {last.locations[agent]} when the recording ended"
@@ -302,10 +316,6 @@ class _Checker:
         goal = self._game.objective.goal
         return bool(goal) and all(state.locations[name] == location for name, location in goal)
 
-    def _is_deadline(self, agent: str, edge: Edge) -> bool:
-        """True for a step by which an objective itself becomes broken."""
-        return edge.sync is None and (agent, edge.target) in self._game.objective.bad
-
     # What was done, by whom -------------------------------------------------------------------------------------------
 
     def timing(self, steps: List[ReplayedStep]) -> List[Finding]:
@@ -315,80 +325,24 @@ class _Checker:
             before, state = step.before, step.state
             clocks = aged(before, state)
             by, late = self.moves.untimely(step.move, place_of(before), clocks)
-            own = self._is_deadline(*step.move[0])
-            if by > (0.001 if step.is_command else 2 * self._tolerance if own else self._tolerance):
+            own = self._game.is_deadline(*step.move[0])
+            if by > (0.001 if step.is_command else self._grace if own else self._tolerance):
                 how = "late" if late else "early"
                 text = f"{state.event} by {state.agent} comes {by:.2f} time units {how} for the model"
                 found.append(Finding(FAULT if step.is_command else WORLD, how, state.seq, text))
+            missed = self.moves.overdue(place_of(before), clocks) if not own else {}
+            for name, _ in self._game.objective.bad:
+                if missed.get(name, 0.0) > self._grace:
+                    text = f"{name} was at its deadline {missed[name]:.2f} time units before"
+                    found.append(Finding(FAULT, "deadline", state.seq, text))
             orders = self.orders.get(state.plan)
             if orders is None or state.status != RUNNING or self._is_at_goal(state):
                 continue
-            cover = [orders.cover.entered(block) for block in orders.cover.holding(place_of(state))]
+            cover = [orders.cover.entered(block) for block in orders.cover.holding(place_of(state).facts)]
             parts = ([zone for zones in part for zone in zones] for part in cover)
-            if not cover or not all(in_time(zones, state.clocks, 0.0, self._tolerance) for zones in parts):
+            back = orders.reaction if self._record.is_exact else 0.0  # what was decided in a zone takes effect after it
+            if not cover or not all(in_time(zones, state.clocks, back, self._tolerance) for zones in parts):
                 what = "at these clocks" if cover else "in this state"
-                text = f"the strategy does not know what to do {what}: {where(state)}{self._is_reliable()}"
+                text = f"the strategy does not know what to do {what}: {where(state)}{self._game.doubt}"
                 found.append(Finding(WORLD, "uncovered", state.seq, text))
         return found
-
-    def commands(self, steps: List[ReplayedStep], said: WordMatches) -> List[Finding]:
-        """Whether commands were the strategy's, given by those who may, and while the mission ran."""
-        found: List[Finding] = []
-        controllers = {node for orders in self.orders.values() for nodes in orders.owners.values() for node in nodes}
-        for step in steps:
-            before, state, word = step.before, step.state, step.word
-            agent, edge = step.move[0]
-            own = self._is_deadline(agent, edge)
-            if word is None:
-                if not own:
-                    text = f"no word for {state.event} was recorded"
-                    level = UNRECORDED if state.stamp <= self._record.whole_from else FAULT
-                    found.append(Finding(level, "unsaid", state.seq, text))
-                    found += self._unsaid_command(step)
-                continue
-            orders = self.orders.get(before.plan)
-            if word.seq is None:
-                # A controller reports where its own robots arrive: it sees move_base's results and their positions.
-                is_arrival = is_movement(edge.source) and is_end(edge.source, edge.target)
-                own_robots = orders is not None and word.node in orders.owners.get(agent, ())
-                if word.node in controllers - {"UI"} and not (is_arrival and own_robots):
-                    text = f"{word.node} published {word.text}, and ends are reported by robots"
-                    found.append(Finding(FAULT, "owner", state.seq, text))
-                continue
-            if before.status == HOLDING:
-                found.append(Finding(FAULT, "held", state.seq, f"{word.text} was taken while the mission held"))
-            if orders is None:
-                continue
-            owners = orders.owners.get(agent, frozenset())
-            by_hand = bool(word.node) and word.node not in controllers
-            if word.node in controllers and word.node not in owners:
-                text = f"{word.node} commands {agent}, which is for {' or '.join(sorted(owners)) or 'no node'}"
-                found.append(Finding(FAULT, "owner", state.seq, text))
-            if not self._wanted(orders, step):
-                text = f"{state.event} by {agent} is not what the strategy prescribes in state {before.seq}"
-                text += f"; it was published by {word.node}" if by_hand else self._is_reliable()
-                found.append(Finding(NOTE if by_hand else FAULT, "command", state.seq, text))
-        return found
-
-    def _unsaid_command(self, step: ReplayedStep) -> List[Finding]:
-        """Find whether a step without a recorded word, which only a controller may begin, is not the strategy's."""
-        agent, edge = step.move[0]
-        orders = self.orders.get(step.before.plan)
-        begun = orders is not None and agent in orders.owners and not is_end(edge.source, edge.target)
-        if orders is None or not begun or self._wanted(orders, step):
-            return []
-        text = f"{step.state.event} by {agent} is not what the strategy says in state {step.before.seq}"
-        return [Finding(FAULT, "command", step.state.seq, text + self._is_reliable())]
-
-    def _wanted(self, orders: Orders, step: ReplayedStep) -> bool:
-        """True where the strategy has this command at the moment, or had it not longer ago than the reaction, since
-        something happened that it sees."""
-        before, state, first = step.before, step.state, self._record.states[0]
-        back = orders.reaction + self._tolerance
-        if not (self._record.is_late and step.since.seq == first.seq):  # else it may have been decided before
-            back = min(back, (state.stamp - step.since.stamp) / state.unit)
-        return in_time(zones_of(orders, step), aged(before, state), back, self._tolerance)
-
-    def _is_reliable(self) -> str:
-        """What else could be the reason for a strategy that does not fit."""
-        return "" if self._game.given else " (if the workspace has another strategy than a new solution: --workspace)"

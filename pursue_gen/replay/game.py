@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Mapping, Optional, Tuple
 
@@ -12,6 +13,7 @@ from pursue_gen.files import LARGEST_TEXT, read_text
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import partition
+from pursue_gen.replay.moves import Moves
 from pursue_gen.replay.orders import Orders, of_strategy
 from pursue_gen.solving.inputs import game_of as ideal_game
 from pursue_gen.solving.optional import promised
@@ -22,7 +24,7 @@ from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.network import Edge, Network, Objective
 from pursue_runtime.bounded import BadText, exact, read_yaml, whole
 
 DISTRIBUTED, DEDICATED = "distributed", "dedicated"
@@ -46,6 +48,20 @@ class Game:
     orders: Optional[Orders]
     why_not: str = ""
     given: bool = False
+
+    @property
+    def doubt(self) -> str:
+        """What else could be the reason where a mission does not fit the strategy; "" where nothing could."""
+        return "" if self.given else " (if the workspace has another strategy than a new solution: --workspace)"
+
+    def is_deadline(self, agent: str, edge: Edge) -> bool:
+        """True for a step by which an objective itself becomes broken."""
+        return edge.sync is None and (agent, edge.target) in self.objective.bad
+
+    @cached_property
+    def moves(self) -> Moves:
+        """The joint moves of the network."""
+        return Moves(self.network)
 
 
 @dataclass(frozen=True)
@@ -145,5 +161,5 @@ def game_of(source: Source, limits: Limits = NO_LIMITS, progress: Optional[Liste
             return Game(scenario, network, objective, None, _OTHER_PLAN)
         network, strategy = won.network, won.strategy
     subs = partition(strategy, network, scenario.agents, source.controllers, source.reach_obj)
-    orders = of_strategy(strategy, subs, source.rules.reaction)
+    orders = of_strategy(strategy, ((sub.controller, sub.agents) for sub in subs), source.rules.reaction)
     return Game(scenario, network, objective, orders, given=source.plan is not None or bool(source.digest))

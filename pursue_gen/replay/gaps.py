@@ -6,12 +6,15 @@ were recorded say what happened meanwhile, and the clocks of the later state whe
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_gen.replay.beginnings import EXACT
+from pursue_gen.replay.beginnings import EXACT, with_beginnings
+from pursue_gen.replay.finding import NOTE, Finding
 from pursue_gen.replay.moves import DiscreteState, Move, Moves, after, place_of
-from pursue_gen.replay.orders import Entry, Orders, since_for
-from pursue_gen.replay.record import RecordedWord
+from pursue_gen.replay.orders import Orders, since_for
+from pursue_gen.replay.record import MissionRecord, RecordedWord
+from pursue_gen.synthesis.lookup import Entry
 from pursue_runtime.state import LIVE, RUNNING, WON, SystemState
 from pursue_runtime.words import FINISH
 
@@ -35,6 +38,26 @@ class _Step(NamedTuple):
     agent: str
     place: DiscreteState
     resets: Tuple[str, ...]
+
+
+def completed(
+    record: MissionRecord, moves: Moves, orders: Mapping[int, Orders], goal: Sequence[Tuple[str, str]]
+) -> Tuple[MissionRecord, List[Finding]]:
+    """The record with the states that it lacks, as far as they follow from the others and from words, and a note for
+    each of them.
+
+    `orders`: the strategies by the number of their plan, as far as they are known.
+    """
+    known = {state.seq for state in record.states}
+    states, late = with_beginnings(with_missing(record.states, record.words, moves, orders), moves)
+    whole = with_end(states, record.words, goal)
+    text = "recorded {:.2f} s after it began: its first message is missing"
+    notes = [Finding(NOTE, "recorded late", seq, text.format(passed)) for seq, passed in late.items()]
+    text = "not recorded: the words that were recorded lead to it"
+    notes += [Finding(NOTE, "not recorded", seq, text) for seq in sorted({s.seq for s in states} - known)]
+    text = "no state was recorded that says how it ended: its observer said that the goal is reached"
+    notes += [Finding(NOTE, "not recorded", state.seq, text) for state in whole[len(states) :]]
+    return replace(record, states=tuple(whole)), notes
 
 
 def with_missing(

@@ -26,6 +26,11 @@ class DiscreteState(NamedTuple):
     locations: Mapping[str, str]
     values: Mapping[str, int]
 
+    @property
+    def facts(self) -> Mapping[str, object]:
+        """Both, by name."""
+        return {**self.locations, **self.values}
+
 
 def place_of(state: SystemState) -> DiscreteState:
     """The discrete part of a state of a mission."""

@@ -5,21 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, Dict, FrozenSet, Generic, Iterable, List, Mapping, Optional, Sequence, Tuple, TypeVar
+from typing import Any, Dict, FrozenSet, Iterable, List, Mapping, Optional, Tuple, TypeVar
 
-from pursue_gen.partition import SubStrategy
 from pursue_gen.replay.moves import DiscreteState, Move, Moves, after
+from pursue_gen.synthesis.lookup import Entry, StateTable
 from pursue_gen.synthesis.plan_text import read_constraint
 from pursue_gen.synthesis.strategy import Constraint, Strategy, Zone
 from pursue_gen.tga.words import event_word
 from pursue_runtime.bounded import exact
 
 EPSILON = 1e-6
-Payload = TypeVar("Payload")
 Since = TypeVar("Since")
-
-Entry = Tuple[Tuple[str, ...], Tuple[str, ...]]
-"""The automata and variables that an entry names, and the location or value of each."""
 
 
 @dataclass(frozen=True)
@@ -31,39 +27,13 @@ class Command:
     zones: Tuple[Zone, ...]
 
 
-class PlanTable(Generic[Payload]):
-    """Payloads by state; an entry may leave out automata and variables."""
-
-    def __init__(self) -> None:
-        self._tables: Dict[Tuple[str, ...], Dict[Tuple[str, ...], List[Payload]]] = {}
-
-    def add(self, state: Mapping[str, object], payload: Payload) -> None:
-        """Adds an entry."""
-        names = tuple(sorted(state))
-        self._tables.setdefault(names, {}).setdefault(tuple(str(state[name]) for name in names), []).append(payload)
-
-    def find(self, place: DiscreteState) -> List[Payload]:
-        """What was put there."""
-        return [payload for entry in self.holding(place) for payload in self.entered(entry)]
-
-    def entered(self, entry: Entry) -> List[Payload]:
-        """What was put where an entry holds."""
-        return self._tables.get(entry[0], {}).get(entry[1], [])
-
-    def holding(self, place: DiscreteState) -> List[Entry]:
-        """What the entries name that hold there, each once."""
-        everything = {**place.locations, **{name: str(value) for name, value in place.values.items()}}
-        named = ((names, tuple(everything.get(name, "") for name in names)) for names in self._tables)
-        return [(names, parts) for names, parts in named if parts in self._tables[names]]
-
-
 @dataclass(frozen=True)
 class Orders:
     """A strategy by state. `owners`: the nodes that command an agent; `reaction`: how late a command may come, in time
     units; `left_out_clocks`: those that do not matter to it."""
 
-    commands: PlanTable[Command] = field(default_factory=PlanTable)
-    cover: PlanTable[Tuple[Zone, ...]] = field(default_factory=PlanTable)
+    commands: StateTable[Command] = field(default_factory=StateTable)
+    cover: StateTable[Tuple[Zone, ...]] = field(default_factory=StateTable)
     owners: Mapping[str, FrozenSet[str]] = field(default_factory=dict)
     reaction: float = 0.1
     left_out_clocks: FrozenSet[str] = frozenset()
@@ -72,19 +42,10 @@ class Orders:
         self, move: Move, place: DiscreteState, moves: Moves, since: Mapping[Entry, Since], before: Since, now: Since
     ) -> Dict[Entry, Since]:
         """For each block that holds after a move, since when what it decides stands: as before it (`since`; `before`
-        where that says nothing), or from `now` on.
-
-        It stands if the block held before as well, and the move resets no clock of an automaton that it names, but
-        those that the strategy leaves out.
-        """
+        where that says nothing), or from `now` on. Clocks that the strategy leaves out do not matter."""
         there, resets = after(move, place)
-        reset = set(resets) - self.left_out_clocks
-        touched = {name for name, clocks in moves.clocks.items() if clocks & reset}
-        held = self.cover.holding(place)
-        return {
-            block: since.get(block, before) if block in held and touched.isdisjoint(block[0]) else now
-            for block in self.cover.holding(there)
-        }
+        stands = self.cover.standing(place.facts, there.facts, set(resets) - self.left_out_clocks, moves.clocks)
+        return {block: since.get(block, before) if known else now for block, known in stands.items()}
 
 
 def since_for(agent: str, orders: Optional[Orders], since: Mapping[Entry, Since], now: Since) -> List[Since]:
@@ -99,12 +60,12 @@ def since_for(agent: str, orders: Optional[Orders], since: Mapping[Entry, Since]
     return commanding or named or list(since.values()) or [now]
 
 
-def of_strategy(strategy: Strategy, subs: Sequence[SubStrategy], reaction: Fraction) -> Orders:
-    """The workspace's own strategy."""
-    owners, left_out = _owners((sub.controller, sub.agents) for sub in subs), frozenset(strategy.left_out_clocks)
+def of_strategy(strategy: Strategy, commands_of: Iterable[Tuple[str, Iterable[str]]], reaction: Fraction) -> Orders:
+    """The workspace's own strategy. `commands_of`: controllers, and the agents that each commands."""
+    owners, left_out = _owners(commands_of), frozenset(strategy.left_out_clocks)
     orders = Orders(owners=owners, reaction=float(reaction), left_out_clocks=left_out)
     for block in strategy.blocks:
-        state: Dict[str, object] = {**dict(block.state.locations), **dict(block.state.values)}
+        state = block.state.facts
         for command in block.commands:
             first = command.moves[0]
             orders.commands.add(state, Command(first.automaton, event_word(first.automaton, first.edge), command.zones))
@@ -159,10 +120,11 @@ def in_time(zones: Iterable[Zone], clocks: Mapping[str, float], back: float, sla
     return any(_in_time(zone, clocks, back, slack) for zone in zones)
 
 
-def due_since(zones: Iterable[Zone], clocks: Mapping[str, float], back: float) -> Optional[float]:
-    """How many time units ago the clocks came into one of the zones, in the last `back` ones; None: they did not."""
-    found = [latest for earliest, latest in (_stay(zone, clocks, back, 0.0) for zone in zones) if earliest <= latest]
-    return max(found, default=None)
+def due_since(zones: Iterable[Zone], clocks: Mapping[str, float], back: float, least: float = 0.0) -> Optional[float]:
+    """How many time units ago the clocks came into one of the zones, in the last `back` ones, for as many as `least`;
+    None: they did not."""
+    stays = (_stay(zone, clocks, back, 0.0) for zone in zones)
+    return max((latest for earliest, latest in stays if latest - earliest >= least), default=None)
 
 
 def _in_time(zone: Zone, clocks: Mapping[str, float], back: float, slack: float) -> bool:

@@ -36,7 +36,11 @@ class RecordedWord:
 @dataclass(frozen=True)
 class RobotOrder:
     """An order to a robot: a goal (x, y, z; None where it was not read) or an action, with the number of the state by
-    which it was given (None: it has none)."""
+    which it was given (None: it has none).
+
+    `location`: where the robot is meanwhile, `again`: its controller has been restarted since its last order, as far as
+    that is known.
+    """
 
     at: float
     robot: str
@@ -44,6 +48,8 @@ class RobotOrder:
     goal: Optional[Tuple[float, float, float]] = None
     action: str = ""
     seq: Optional[int] = None
+    location: str = ""
+    again: bool = False
 
     @property
     def is_goal(self) -> bool:
@@ -60,7 +66,8 @@ class MissionRecord:
     does not name the nodes that published its words. `drives`: those that were measured without a mission.
     `whole_from`: the moment (seconds) from which on it has everything, of a recorder that was started late.
     `received`: when the first state of each number was received: long after its stamp, where an observer that was away
-    has shown later what had happened meanwhile.
+    has shown later what had happened meanwhile. `exact_until`: of a simulation, which
+    has everything, dated by one clock, the moment (seconds) at which it ended.
     """
 
     states: Tuple[SystemState, ...]
@@ -73,10 +80,16 @@ class MissionRecord:
     drives: Tuple[Drive, ...] = ()
     whole_from: float = -math.inf
     received: Mapping[int, float] = field(default_factory=dict)
+    exact_until: Optional[float] = None
 
     def known_from(self, state: SystemState) -> float:
         """Since when nodes may know of a state (seconds)."""
         return max(state.stamp, self.received.get(state.seq, state.stamp))
+
+    @property
+    def is_exact(self) -> bool:
+        """True where it has everything, dated by one clock."""
+        return self.exact_until is not None
 
     @property
     def is_late(self) -> bool:

@@ -34,16 +34,17 @@ action)."""
 
 
 def check_robots(
-    record: MissionRecord, game: Game, steps: Sequence[Done], orders: Mapping[int, Orders]
+    record: MissionRecord, game: Game, steps: Sequence[Done], orders: Mapping[int, Orders], lateness: float = 0.0
 ) -> List[Finding]:
     """Orders without a state that begins them, orders that were never sent, goals that lead elsewhere.
 
-    A goal of a node that is no controller is of the world: a person has sent the robot elsewhere (rviz), and it is
-    taken back.
+    An order is on its way for the reaction, and `lateness` (time units) more. A goal of a node that is no controller is
+    of the world: a person has sent the robot elsewhere (rviz), and it is taken back.
     """
     robots = [agent.name for agent in game.scenario.agents if agent.is_robot]
     activities = _activities(steps, robots, record)
-    where = {robot: _places(game.scenario, robot) for robot in robots}
+    with_goals = {order.robot for order in record.orders if order.goal is not None}
+    where = {robot: _places(game.scenario, robot) for robot in robots if robot in with_goals}
     ways = {going(x.name, y.name): y.name for x in game.scenario.pois for y in game.scenario.pois}
     diary = _ActivityIndex(activities)
     uncommanded = _uncommanded(game.scenario, steps, record)
@@ -68,6 +69,9 @@ def check_robots(
         again = place in ordered
         ordered.add(place)
         state, _, robot, location = activities[place]
+        wrong = _wrong(order, activities[place], again) if record.is_exact else ""
+        if wrong:
+            found.append(Finding(FAULT, "order", state.seq, f"{robot} is ordered {order.action or location} {wrong}"))
         if state.seq in uncommanded:
             text = f"{robot} was ordered to begin {state.event}, which the strategy did not command"
             found.append(Finding(FAULT, "order", state.seq, text))
@@ -81,11 +85,26 @@ def check_robots(
     if not record.problems:
         commanded = {state.seq for _, state, _, is_command in steps if is_command}
         receipts = receipts_in(record, controllers)
+        last = record.exact_until or record.states[-1].stamp
         for place, (state, _, robot, _) in enumerate(activities):
-            if place not in ordered and state.seq in commanded:
+            way = lateness + (orders[state.plan].reaction if state.plan in orders else 0.0)
+            on_its_way = record.is_exact and state.stamp + way * state.unit >= last
+            if place not in ordered and state.seq in commanded and not on_its_way:
                 found.append(_untold(record, activities[place], (robot, state.seq) in receipts))
         found += without_receipt(record, _at_once(activities, commanded), receipts)
     return found
+
+
+def _wrong(order: RobotOrder, activity: Activity, again: bool) -> str:
+    """What is wrong with an order of which everything is known; "" where nothing is."""
+    state, end, robot, location = activity
+    if order.location != state.locations[robot] or order.action not in ("", state.event):
+        return f"({order.location}), and began {state.event} ({state.locations[robot]})"
+    if order.again:
+        return ""
+    if end > state.stamp and order.at > end:
+        return "after that was over"
+    return "for the second time" if again and not location else ""
 
 
 def _untold(record: MissionRecord, activity: Activity, has_receipt: bool) -> Finding:

@@ -41,7 +41,7 @@ def aged(before: SystemState, state: SystemState) -> Dict[str, float]:
 def zones_of(orders: Orders, step: ReplayedStep) -> List[Zone]:
     """When the strategy has the command that a step followed."""
     wanted = step.move[0][0], step.state.event
-    commands = orders.commands.find(place_of(step.before))
+    commands = orders.commands.find(place_of(step.before).facts)
     return [zone for command in commands if (command.agent, command.event) == wanted for zone in command.zones]
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import bisect
+import math
 from dataclasses import dataclass
 from typing import Dict, FrozenSet, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.replay.finding import NOTE, WORLD, Finding
-from pursue_gen.replay.moves import DiscreteState, Moves, place_of
+from pursue_gen.replay.moves import EXACT, DiscreteState, Moves, place_of
 from pursue_gen.replay.record import MissionRecord, RecordedWord
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, WAITING, SystemState
@@ -87,12 +88,13 @@ def match_words(
     for words in received.values():
         words.sort()
     used: Set[int] = set()
+    ago, later = (math.inf, EXACT) if record.is_exact else (APART, APART)  # no word comes after what it leads to
     found: Dict[int, RecordedWord] = {}
     arrivals = Arrivals(record.states)
     for since, before, state in steps:
         numbers = (*range(before.seq, since.seq - 1, -1), None)
         for words in (received.get((state.event, number), []) for number in numbers):
-            near = words[bisect.bisect(words, (state.stamp - APART,)) : bisect.bisect(words, (state.stamp + APART,))]
+            near = words[bisect.bisect(words, (state.stamp - ago,)) : bisect.bisect(words, (state.stamp + later,))]
             members = moves.sharing(place_of(before), state.event, state.agent) or (state.agent,)
             nearest: Dict[str, int] = {}
             for _, place in sorted(near, key=lambda entry: abs(entry[0] - state.stamp)):

@@ -1,4 +1,4 @@
-"""One simulated mission, from `_start_` to its end: nodes, connections, world and judge on one event queue."""
+"""One simulated mission, from `_start_` to its end: nodes, connections and world on one event queue."""
 
 from __future__ import annotations
 
@@ -6,19 +6,17 @@ import random
 from typing import Any, Dict, List, Optional, Tuple, Union
 
 from pursue_gen.simulation.became_true import BecameTrue
-from pursue_gen.simulation.commands import EPSILON
 from pursue_gen.simulation.connections import RECONNECTION, Connections
 from pursue_gen.simulation.driven import Driven
 from pursue_gen.simulation.event_queue import Action, EventQueue, Timer
 from pursue_gen.simulation.faults import Crash, FaultPlan
-from pursue_gen.simulation.judge import Judge
 from pursue_gen.simulation.junk import junk_word
-from pursue_gen.simulation.meaning import broken_of
 from pursue_gen.simulation.nodes import ControllerNode, ObserverNode, PeopleNode, to_process
 from pursue_gen.simulation.opponents import Opponent, kind_in_mission
 from pursue_gen.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome, Settings
 from pursue_gen.simulation.planner import SimulatedPlanner
 from pursue_gen.simulation.promises import Promises
+from pursue_gen.simulation.recorder import EPSILON, Judgement, Recorder
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage
 from pursue_gen.simulation.world import SimulatedAgent
@@ -56,10 +54,6 @@ class SimulatedMission:
         self.faulty = bool(self.fault_plan.kinds)
         self.lines: List[str] = []
         self._stage, self._settings, self._seed, self._record = stage, settings, seed, record
-        bad = stage.solution.objective.bad
-        broken = broken_of(stage.scenario)
-        offset = self.fault_plan.offset
-        self._judge = Judge(stage.arena, stage.commands, bad, stage.reaction, self.faulty, offset, broken)
         self._promises = Promises(stage.scenario, exact=not self.faulty)
         self._driven = Driven(stage.scenario)
         self._connections = Connections(self.events, self.fault_plan, name, stage.reaction)
@@ -83,6 +77,7 @@ class SimulatedMission:
         self._reachable = dict.fromkeys(stage.strategies, START)
         self._seen: Tuple[int, str] = (-1, "")
         self._became_true = BecameTrue()
+        self.recorder = Recorder()
 
     # The course of the mission ----------------------------------------------------------------------------------------
 
@@ -92,7 +87,8 @@ class SimulatedMission:
         self._observer.heartbeat()
         self._schedule_faults()
         events.schedule(START, lambda: self._observer.call("hear", "_start_"))
-        while self._observer.mission.status not in ENDED and not (self._judge.problems or self._complaints):
+        self.recorder.on_word(START, "_start_", "UI")
+        while self._observer.mission.status not in ENDED and not self._complaints:
             moment = events.next_time()
             if moment is None or moment > end:
                 events.now = end
@@ -114,11 +110,10 @@ class SimulatedMission:
 
     def _outcome(self) -> Outcome:
         mission = self._observer.mission
-        problems = [*self._judge.problems, *self._promises.problems, *self._complaints]
-        if self.faulty and self._latched is not None:
-            self._judge.note_lateness(self._latched, self.events.now)
+        judged = self.recorder.judged(self._stage.game, self.faulty, self.fault_plan.offset, self.events.now)
+        problems = [*judged.problems, *self._promises.problems, *self._complaints]
         end, reason = self._end(mission)
-        cause = self._cause(mission) if end in (STOPPED, HELD, LOST) else ""
+        cause = self._cause(mission, judged) if end in (STOPPED, HELD, LOST) else ""
         if end == LOST and not cause:
             end, reason = FAILED, f"it was lost, but no fault was longer than the margin: {reason}"
         time = (self.events.now if mission.goal_at is None else mission.goal_at) - START
@@ -129,24 +124,23 @@ class SimulatedMission:
             end, reason = FAILED, problems[0]
         happened = dict(sorted(self.fault_plan.happened.items()))
         return Outcome(
-            self._seed, self._kind, end, time, reason, len(self._judge.steps), mission.plan, self._judge.off_model,
-            self._judge.lateness, cause, tuple(problems), happened, tuple(self.lines), self._promises.duties,
+            self._seed, self._kind, end, time, reason, judged.steps, mission.plan, len(judged.untimely),
+            judged.lateness, cause, tuple(problems), happened, tuple(self.lines), self._promises.duties,
             self._driven.units,
         )
 
-    def _cause(self, mission: Mission) -> str:
+    def _cause(self, mission: Mission, judged: Judgement) -> str:
         """Which fault was longer than what the strategy is proven for; "" if none was."""
-        judge, margin = self._judge, self._settings.margin
-        causes = []
-        if judge.lateness > max(margin, USUAL * self._stage.reaction) + EPSILON:
-            causes.append(f"{judge.latest} was due for {judge.lateness:.3f} time units, the margin is {margin:g}")
-        causes += [f"{step} came outside the model's window" for step in judge.overdue[:1]]
+        margin, causes = self._settings.margin, []
+        if judged.lateness > max(margin, USUAL * self._stage.reaction) + EPSILON:
+            causes.append(f"{judged.latest} was due for {judged.lateness:.3f} time units, the margin is {margin:g}")
+        causes += judged.untimely[:1]
         causes += [f"{name} is late" for name in sorted(mission.late - set(mission.lost))]
         causes += [f"{name} {in_words(why)}" for name, why in sorted(mission.lost.items())]
         return "; ".join(causes)
 
     def _end(self, mission: Mission) -> Tuple[str, str]:
-        """How it ended, before the judge's problems are looked at."""
+        """How it ended, before what was found is looked at."""
         safety = self._stage.solution.objective.kind is Kind.SAFETY
         ends = {STOPPED: STOPPED, LOST: LOST, HOLDING: HELD}
         if mission.status == WON:
@@ -171,7 +165,7 @@ class SimulatedMission:
         self._seen = (state.seq, state.status)
         if news and self._record:
             self._note(_described(state))
-        self._judge.on_state(state, moment)
+        self.recorder.on_state(moment, state)
         self._promises.on_state(state, moment)
         self._driven.on_state(state)
         for node in self._controllers.values():
@@ -208,7 +202,7 @@ class SimulatedMission:
     def publish_plan(self, plan: Dict[str, Any]) -> None:
         """The observer publishes another plan."""
         self._plan = plan
-        self._judge.on_plan(plan["plan"], plan["strategies"], plan["people"])
+        self.recorder.plans[plan["plan"]] = plan
         self._note(f"plan {plan['plan']} is published")
         for node in self._controllers.values():
             self._send_plan(node, plan)
@@ -224,13 +218,16 @@ class SimulatedMission:
         text = format_word(word)
         self._note(f"{node} publishes {text}")
         self._published.append(text)
+        self.recorder.on_word(self.events.now, text, node)
         deliver = to_process(self._observer, lambda: self._observer.call("hear", text))
         self._connections.send(f"word:{node}", max(0.0, latest - self.events.now), deliver, node)
 
     def command_robot(self, node: str, order: Order, seq: int, newest: int, again: bool) -> None:
         """A controller sends its robot an order."""
         self._note(f"{node} orders {order.agent}: {order.event} ({order.location})")
-        self._judge.on_order(order, seq, newest, again)
+        if seq < newest:
+            self._complaints.append(f"{node} orders {order.event} as of state {seq}, though it knows state {newest}")
+        self.recorder.on_order(self.events.now, order, node, again)
         mover = self._agents.get(order.agent)
         if mover is not None:
             self._connections.send_order(lambda: mover.on_order(order, seq))
@@ -239,6 +236,7 @@ class SimulatedMission:
 
     def _report(self, agent: str, text: str) -> None:
         self._note(f"{agent} reports {text}")
+        self.recorder.on_word(self.events.now, text, "simulator")
         self._became_true.note(agent, text, self.events.now)
 
         def deliver() -> None:
@@ -255,6 +253,7 @@ class SimulatedMission:
         chosen again, in the new state: without faults no report is late, so the earlier choice is dropped."""
         agent, seq = text.partition(":")[0], self._observer.mission.seq
         self._note(f"{agent} reports {text}")
+        self.recorder.on_word(self.events.now, text, "simulator")
 
         def deliver() -> None:
             if self.faulty or self._observer.mission.seq == seq:
@@ -366,6 +365,7 @@ class SimulatedMission:
             return
         self.fault_plan.count("junk")
         self._note(f"an unknown node publishes {text[:40]!r}")
+        self.recorder.on_word(self.events.now, text, "")
         self._observer.call("hear", text)
 
     def _on_planner(self, name: str, *args: Any) -> None:

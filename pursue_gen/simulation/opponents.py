@@ -7,7 +7,7 @@ from typing import List, NamedTuple, Optional, Tuple
 
 from pursue_gen.language.network_names import is_going, is_under_way
 from pursue_gen.proof.moves import JointMove, State
-from pursue_gen.simulation.commands import EPSILON
+from pursue_gen.simulation.recorder import EPSILON
 from pursue_gen.simulation.remaining import Remaining
 from pursue_gen.simulation.stage import Stage
 from pursue_gen.tga.network import is_end

@@ -14,8 +14,8 @@ from pursue_gen.language.conditions import At, Condition
 from pursue_gen.language.network_names import going, has_happened
 from pursue_gen.language.scenario import Always, Avoid, NeverHolds, NeverWith, Patrol, Ref, Respond, Safety, Scenario
 from pursue_gen.language.wording import assumption_words, objective_text
-from pursue_gen.simulation.commands import EPSILON
-from pursue_gen.simulation.meaning import holds
+from pursue_gen.simulation.meaning import broken_of, holds
+from pursue_gen.simulation.recorder import EPSILON
 from pursue_runtime.locations import is_action, is_under_way, place_of
 from pursue_runtime.state import LOST, WON, SystemState
 
@@ -54,6 +54,7 @@ class Promises:
         self._begun: Optional[float] = None
         self._seq = 0
         self._called: Dict[int, float] = {}
+        self._condition, self._was_broken = broken_of(scenario), False
         self._duties = {number: Duty() for number, _ in duties_of(scenario)}
 
     @property
@@ -68,6 +69,7 @@ class Promises:
         if self._begun is None:
             return
         at = (now - self._begun) / state.unit
+        self._check_conditions(state)
         # A deadline that ends now is missed where the mission is lost, and kept where it is not.
         latest = at + EPSILON if state.status == LOST else at - EPSILON
         event = self._events.get(state.event, "") if state.seq > self._seq else ""
@@ -144,6 +146,18 @@ class Promises:
         elif begun and not before:
             self._since.setdefault(number, latest)
         return missed
+
+    def _check_conditions(self, state: SystemState) -> None:
+        """A mission is lost if and only if a condition of an objective says so, in the next state at the latest."""
+        if self._condition is None:
+            return
+        broken = self._condition(state.locations, state.values)
+        lost = any(state.locations.get(name) == names.LOSE for name in self._condition.automata)
+        if lost and not broken:
+            self.problems.append(f"state {state.seq} counts as lost, but no condition of an objective is broken there")
+        elif self._was_broken and not lost:
+            self.problems.append(f"a condition is broken before state {state.seq}, which does not count as lost")
+        self._was_broken = broken and not lost
 
     def _check_assumed(self, state: SystemState) -> None:
         """What is assumed never to hold does not, until a mission has seen it broken."""

@@ -7,7 +7,8 @@ from typing import Any, Dict, List, Mapping, Optional, Tuple
 
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.moves import Arena
-from pursue_gen.simulation.commands import Commands, commands_of
+from pursue_gen.replay.game import Game
+from pursue_gen.replay.orders import of_strategy
 from pursue_gen.solving.solution import Solution
 from pursue_gen.tga.scale import common_denominator
 from pursue_gen.workspace import Options, generate
@@ -21,10 +22,9 @@ class Stage:
     """A workspace's data as its nodes have them, and the game and strategy they were made from.
 
     `strategies`: each controller's, by the controller's name; `people`: the instructions for human allies.
-    `reaction` is in time units. `arena`: the joint moves of the network, as the checker reads it; `commands`: those
-    of the strategy as the solver made it. `reports`: the agents whose ends are reported by the world, not
-    commanded. `request`: what the planner gets of the game (config/game.yaml); None where the workspace has no such
-    file.
+    `reaction` is in time units. `arena`: the joint moves of the network, as the checker reads it; `game`: what missions
+    are checked against. `reports`: the agents whose ends are reported by the world, not commanded. `request`: what the
+    planner gets of the game (config/game.yaml); None where the workspace has no such file.
     """
 
     scenario: Scenario
@@ -37,7 +37,7 @@ class Stage:
     request: Optional[Mapping[str, Any]]
     reaction: float
     arena: Arena
-    commands: Commands
+    game: Game
 
     @property
     def robots(self) -> Tuple[str, ...]:
@@ -62,20 +62,28 @@ def stage_of(scenario: Scenario, won: Solution, options: Options) -> Stage:
 def stage_from(files: Mapping[str, bytes], scenario: Scenario, won: Solution) -> Stage:
     """The stage of these files of a workspace."""
     data = _data(files)
-    people = data.get("UI/people.yaml")
+    strategies = {name: Strategy(data[f"{name}/strategy.yaml"]) for name in _controllers(data)}
+    people = Strategy(data["UI/people.yaml"]) if "UI/people.yaml" in data else None
     return Stage(
         scenario=scenario,
         solution=won,
         model=Model(data["observer/model.yaml"]),
         cover=read_cover(data["observer/cover.yaml"]),
-        strategies={name: Strategy(data[f"{name}/strategy.yaml"]) for name in _controllers(data)},
-        people=None if people is None else Strategy(people),
+        strategies=strategies,
+        people=people,
         reports=tuple(data["UI/ui.yaml"]["reports"]),
         request=data.get("observer/game.yaml"),
         reaction=float(won.reaction),
         arena=Arena(won.network, common_denominator(won.network.times), idle_moves=True),
-        commands=commands_of(won.strategy),
+        game=_game(scenario, won, strategies, people),
     )
+
+
+def _game(scenario: Scenario, won: Solution, strategies: Mapping[str, Strategy], people: Optional[Strategy]) -> Game:
+    """What missions are checked against: the strategy as the solver made it."""
+    nodes = {**strategies, **({"UI": people} if people else {})}
+    orders = of_strategy(won.strategy, ((name, node.agents) for name, node in nodes.items()), won.reaction)
+    return Game(scenario, won.network, won.objective, orders, given=True)
 
 
 def _controllers(data: Mapping[str, Any]) -> List[str]:

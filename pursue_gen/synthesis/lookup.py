@@ -1,39 +1,68 @@
-"""The blocks of a strategy that hold in a discrete state."""
+"""What a strategy has for a discrete state: its entries may leave out automata and variables.
+
+The run time has a table of its own (pursue_runtime/strategy.py): missions are judged by this one.
+"""
 
 from __future__ import annotations
 
-from typing import Dict, List, Tuple
+from typing import AbstractSet, Dict, Generic, List, Mapping, Tuple, TypeVar
 
-from pursue_gen.synthesis.strategy import Block, DiscreteState, Strategy
+from pursue_gen.synthesis.game import Game, State
+from pursue_gen.synthesis.strategy import Block, Strategy
 
-Names = Tuple[Tuple[str, ...], Tuple[str, ...]]
-"""Names of automata, and names of variables."""
+Payload = TypeVar("Payload")
 
+Entry = Tuple[Tuple[str, ...], Tuple[str, ...]]
+"""The automata and variables that an entry names, and the location or value of each."""
 
-class Blocks:
-    """The blocks of a strategy by discrete state. One that does not name all automata and variables holds whatever the
-    others are."""
-
-    def __init__(self, strategy: Strategy) -> None:
-        self._tables: Dict[Names, Dict[DiscreteState, Tuple[int, Block]]] = {}
-        for number, block in enumerate(strategy.blocks, start=1):
-            self._tables.setdefault(_names(block.state), {})[block.state] = number, block
-
-    def find_all(self, state: DiscreteState) -> List[Tuple[int, Block]]:
-        """The number (from 1) and the block, of each that holds there: of parts that are played at the same time, one
-        each."""
-        places, values = dict(state.locations), dict(state.values)
-        found: List[Tuple[int, Block]] = []
-        for (automata, variables), table in self._tables.items():
-            if not (places.keys() >= set(automata) and values.keys() >= set(variables)):
-                continue
-            some = DiscreteState(
-                tuple((name, places[name]) for name in automata), tuple((name, values[name]) for name in variables)
-            )
-            if some in table:
-                found.append(table[some])
-        return found
+Facts = Mapping[str, object]
+"""Automata and variables with the location or value of each."""
 
 
-def _names(state: DiscreteState) -> Names:
-    return tuple(name for name, _ in state.locations), tuple(name for name, _ in state.values)
+class StateTable(Generic[Payload]):
+    """Payloads by discrete state. An entry that leaves out automata and variables holds whatever they are."""
+
+    def __init__(self) -> None:
+        self._tables: Dict[Tuple[str, ...], Dict[Tuple[str, ...], List[Payload]]] = {}
+
+    def add(self, state: Facts, payload: Payload) -> None:
+        """Adds an entry."""
+        names = tuple(sorted(state))
+        self._tables.setdefault(names, {}).setdefault(tuple(str(state[name]) for name in names), []).append(payload)
+
+    def find(self, state: Facts) -> List[Payload]:
+        """What was put there."""
+        return [payload for entry in self.holding(state) for payload in self.entered(entry)]
+
+    def entered(self, entry: Entry) -> List[Payload]:
+        """What was put where an entry holds."""
+        return self._tables.get(entry[0], {}).get(entry[1], [])
+
+    def holding(self, state: Facts) -> List[Entry]:
+        """What the entries name that hold there, each once."""
+        named = ((names, tuple([str(state.get(name, "")) for name in names])) for names in self._tables)
+        return [(names, parts) for names, parts in named if parts in self._tables[names]]
+
+    def standing(
+        self, before: Facts, state: Facts, reset: AbstractSet[str], clocks: Mapping[str, AbstractSet[str]]
+    ) -> Dict[Entry, bool]:
+        """For each entry that holds in a state, whether what it decided before the last move stands: it held then as
+        well, and of the clocks that were `reset` none is of an automaton that it names. `clocks`: those of each."""
+        held = self.holding(before)
+        touched = {name for name, own in clocks.items() if own & reset}
+        return {entry: entry in held and touched.isdisjoint(entry[0]) for entry in self.holding(state)}
+
+
+def blocks_of(strategy: Strategy) -> StateTable[Tuple[int, Block]]:
+    """The blocks of a strategy with their numbers (from 1); of parts that are played at once, one each holds."""
+    table: StateTable[Tuple[int, Block]] = StateTable()
+    for number, block in enumerate(strategy.blocks, start=1):
+        table.add(block.state.facts, (number, block))
+    return table
+
+
+def facts_of(game: Game, state: State) -> Facts:
+    """A state of a game, by the names of its automata and variables."""
+    places = zip(game.automata, state.locations)
+    facts: Dict[str, object] = {automaton.name: automaton.locations[k] for automaton, k in places}
+    return {**facts, **dict(zip(game.variables, state.values))}

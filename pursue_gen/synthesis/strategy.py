@@ -30,6 +30,11 @@ class DiscreteState:
     locations: Tuple[Tuple[str, str], ...]
     values: Tuple[Tuple[str, int], ...]
 
+    @property
+    def facts(self) -> Mapping[str, object]:
+        """Both, by name."""
+        return {**dict(self.locations), **dict(self.values)}
+
 
 @dataclass(frozen=True)
 class Move:

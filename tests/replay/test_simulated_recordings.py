@@ -10,23 +10,21 @@ from typing import Any, Dict, List, Sequence, Tuple
 
 import pytest
 
-from pursue_gen.drawing.layout import poses
 from pursue_gen.language import parse
 from pursue_gen.replay.check import Findings, check
 from pursue_gen.replay.finding import FAULT, NOTE, WORLD
 from pursue_gen.replay.game import Game, Source, game_of
 from pursue_gen.replay.journal import Journal, read_journal, reconstruct
 from pursue_gen.replay.moves import Moves
-from pursue_gen.replay.record import MissionRecord, RecordedWord, RobotOrder, read_word
+from pursue_gen.replay.record import RecordedWord
 from pursue_gen.simulation.mission import START, SimulatedMission
 from pursue_gen.simulation.outcome import Outcome, Settings
 from pursue_gen.simulation.stage import Stage, stage_of
 from pursue_gen.solving.rules import DEFAULT, Rules
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.workspace import Options
-from pursue_runtime.orders import Order
 from pursue_runtime.state import SystemState
-from pursue_runtime.words import ORDERED, Word, format_word
+from pursue_runtime.words import ORDERED
 from tests.assumptions import AWAY, CAFE, GOODBYE, LEAVES, MUSEUM, ONCE
 
 CARTS = """\
@@ -55,57 +53,28 @@ def made(text: str) -> Tuple[Stage, Game]:
 
 
 class Recorded(SimulatedMission):
-    """A mission that keeps what a recorder would receive. `calls`: when others do what."""
+    """A mission that is recorded as on robots: what is missing is not known. `calls`: when others do what."""
 
     def __init__(self, text: str, seed: int, calls: Sequence[Tuple[float, str]] = ()) -> None:
         stage, self.game = made(text)
-        # Words that mean nothing are a fault as well: with it the judge lets assumptions be broken.
+        # Words that mean nothing are a fault as well: with it assumptions may be broken.
         super().__init__(stage, Settings("still", ("junk",), until=120.0), seed, None)
-        self.states: List[SystemState] = []
-        self.words: List[RecordedWord] = []
-        self.orders: List[RobotOrder] = []
         for at, word in calls:
             self.events.schedule(START + at, lambda word=word: self._report_move(word))  # type: ignore[misc]
 
     def run(self) -> Outcome:
-        self.words.append(read_word(START, "_start_", "UI"))
         outcome = super().run()
         end = self.events.now + 0.5
         while (self.events.next_time() or end) < end:  # the last state is on its way to the controllers
             self.events.step()
         return outcome
 
-    def publish(self, state: SystemState) -> None:
-        self.states.append(state)
-        super().publish(state)
-
-    def publish_word(self, node: str, word: Word, latest: float) -> None:
-        self.words.append(read_word(self.events.now, format_word(word), node))
-        super().publish_word(node, word, latest)
-
-    def command_robot(self, node: str, order: Order, seq: int, newest: int, again: bool) -> None:
-        pose = poses(self.game.scenario)[0].get(order.location.rpartition("_to_")[2])
-        goes = order.location.startswith("going_") and pose is not None
-        goal = (pose.x, pose.y, pose.z) if goes and pose is not None else None
-        action, number = ("", None) if goes else (order.event, order.seq)
-        self.orders.append(RobotOrder(self.events.now, order.agent, node, goal, action, number))
-        super().command_robot(node, order, seq, newest, again)
-
     def _choose_move(self, state: SystemState) -> None:
         """Others do what is in `calls`, and nothing else."""
 
-    def _report(self, agent: str, text: str) -> None:
-        self.words.append(read_word(self.events.now, text, "simulator"))
-        super()._report(agent, text)
-
-    def _report_move(self, text: str) -> None:
-        self.words.append(read_word(self.events.now, text, "UI"))
-        super()._report_move(text)
-
     def found(self) -> Findings:
         """What the replay says of it."""
-        plans = {} if self._plan is None else {self._plan["plan"]: self._plan}
-        return check(MissionRecord(tuple(self.states), tuple(self.words), tuple(self.orders), plans), self.game)
+        return check(replace(self.recorder.record(self.events.now), exact_until=None), self.game)
 
     def journal(self) -> bytes:
         """What the observer has written down."""
@@ -132,60 +101,61 @@ def test_conditions_and_own_turns_are_steps_of_the_model(seed: int) -> None:
 
 def acknowledges(word: RecordedWord, event: str, mission: Recorded) -> bool:
     """Return True for the word that acknowledges the order that follows from this event."""
-    return word.event == ORDERED and word.seq in {state.seq for state in mission.states if state.event == event}
+    begun = {state.seq for state in mission.recorder.states if state.event == event}
+    return word.event == ORDERED and word.seq in begun
 
 
 @pytest.mark.parametrize("event", ["load", "unload"])
 def test_an_order_that_was_not_recorded_was_given_if_the_robots_side_has_acknowledged_it(event: str) -> None:
     mission = Recorded(CARTS, 1)
     mission.run()
-    mission.orders = [order for order in mission.orders if order.action != event]
-    words = mission.words
+    mission.recorder.orders = [order for order in mission.recorder.orders if order.action != event]
+    words = mission.recorder.words
     assert "acknowledged" in kinds(mission.found(), NOTE) and kinds(mission.found(), FAULT) == []
-    mission.words = [word for word in words if not acknowledges(word, event, mission)]
+    mission.recorder.words = [word for word in words if not acknowledges(word, event, mission)]
     assert "untold" in kinds(mission.found(), FAULT)
     # who gives orders does not acknowledge them
-    doer = next(state.agent for state in mission.states if state.event == event)
+    doer = next(state.agent for state in mission.recorder.states if state.event == event)
     controller = f"controller_{doer}"
-    mission.words = [replace(w, node=controller) if acknowledges(w, event, mission) else w for w in words]
+    mission.recorder.words = [replace(w, node=controller) if acknowledges(w, event, mission) else w for w in words]
     assert "untold" in kinds(mission.found(), FAULT)
 
 
 def test_a_mission_is_not_won_with_an_order_that_nobody_has_acknowledged() -> None:
     mission = Recorded(CARTS, 1)
     mission.run()
-    assert mission.states[-1].status == "won"
-    mission.words = [word for word in mission.words if not acknowledges(word, "unload", mission)]
+    assert mission.recorder.states[-1].status == "won"
+    mission.recorder.words = [word for word in mission.recorder.words if not acknowledges(word, "unload", mission)]
     (finding,) = [finding for finding in mission.found().findings if finding.kind == "unacknowledged"]
     assert finding.level == FAULT and finding.text.endswith("'s side has not acknowledged unload")
-    mission.states = [state for state in mission.states if state.status != "won"]
+    mission.recorder.states = [state for state in mission.recorder.states if state.status != "won"]
     assert "unacknowledged" not in kinds(mission.found(), FAULT)  # it was not won yet
 
 
 def test_an_order_without_a_number_is_acknowledged_by_nobody() -> None:
     mission = Recorded(CARTS, 1)
     mission.run()
-    mission.words = [word for word in mission.words if not acknowledges(word, "unload", mission)]
-    mission.orders = [replace(order, seq=None) for order in mission.orders]
+    mission.recorder.words = [word for word in mission.recorder.words if not acknowledges(word, "unload", mission)]
+    mission.recorder.orders = [replace(order, seq=None) for order in mission.recorder.orders]
     assert "unacknowledged" not in kinds(mission.found(), FAULT)
 
 
 def test_who_unloads_without_having_loaded_is_a_fault() -> None:
     mission = Recorded(CARTS, 1)
     mission.run()
-    loaded = next(state for state in mission.states if state.event == "loadDONE").agent
+    loaded = next(state for state in mission.recorder.states if state.event == "loadDONE").agent
     other = {"cart1": "cart2", "cart2": "cart1"}[loaded]
-    last = mission.states[-1].seq
-    mission.states = [s._replace(agent=other) if s.seq == last else s for s in mission.states]
+    last = mission.recorder.states[-1].seq
+    mission.recorder.states = [s._replace(agent=other) if s.seq == last else s for s in mission.recorder.states]
     assert "step" in kinds(mission.found(), FAULT)
 
 
 def test_what_is_done_while_its_condition_does_not_hold_is_a_fault() -> None:
     mission = Recorded(CARTS, 1)
     mission.run()
-    opened = next(n for n, state in enumerate(mission.states) if state.event == "open")
-    closed = [state._replace(values={**state.values, "Sgate": 0}) for state in mission.states]
-    mission.states = [*mission.states[:opened], *closed[opened:]]
+    opened = next(n for n, state in enumerate(mission.recorder.states) if state.event == "open")
+    closed = [state._replace(values={**state.values, "Sgate": 0}) for state in mission.recorder.states]
+    mission.recorder.states = [*mission.recorder.states[:opened], *closed[opened:]]
     found = [finding for finding in mission.found().findings if finding.kind == "step"]
     assert any("_hall2plane" in finding.text for finding in found), found
 
@@ -218,7 +188,7 @@ def test_the_journal_leads_to_the_same_states(calls: Sequence[Tuple[float, str]]
     journal = read_journal(mission.journal())
     assert isinstance(journal, Journal) and not journal.problems
     record = reconstruct(journal, Moves(mission.game.network), mission.game.objective)
-    assert by_number(record.states) == by_number(mission.states)
+    assert by_number(record.states) == by_number(mission.recorder.states)
     assert any(state.values["assume1"] == 0 for state in record.states) is bool(calls)
 
 
@@ -228,7 +198,7 @@ def test_the_journal_knows_who_has_stayed_too_long() -> None:
     journal = read_journal(mission.journal())
     assert isinstance(journal, Journal)
     record = reconstruct(journal, Moves(mission.game.network), mission.game.objective)
-    assert by_number(record.states) == by_number(mission.states)
+    assert by_number(record.states) == by_number(mission.recorder.states)
 
 
 BELL = """\
@@ -247,8 +217,9 @@ objective: if ring then answer within 20
 def test_a_mission_that_somebody_ends_is_not_won_where_a_deadline_has_passed(later: float, expected: List[str]) -> None:
     mission = Recorded(BELL, 1, [(3.0, "ring")])
     mission.run()
-    rung = next(number for number, state in enumerate(mission.states) if state.event == "ring")
-    last = mission.states[rung]
+    rung = next(number for number, state in enumerate(mission.recorder.states) if state.event == "ring")
+    last = mission.recorder.states[rung]
     ended = {clock: value + later for clock, value in last.clocks.items()}
-    mission.states[rung + 1 :] = [last._replace(stamp=last.stamp + later * last.unit, clocks=ended, status="won")]
+    won = last._replace(stamp=last.stamp + later * last.unit, clocks=ended, status="won")
+    mission.recorder.states[rung + 1 :] = [won]
     assert [each for each in kinds(mission.found(), FAULT) if each == "end"] == expected

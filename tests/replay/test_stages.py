@@ -36,7 +36,8 @@ FIRST_STAGE: Play = (
 @functools.lru_cache(maxsize=None)
 def game() -> Game:
     scenario, won = solved_in_stages()
-    orders = of_strategy(won.strategy, partition(won.strategy, won.network, scenario.agents), won.reaction)
+    subs = partition(won.strategy, won.network, scenario.agents)
+    orders = of_strategy(won.strategy, ((sub.controller, sub.agents) for sub in subs), won.reaction)
     return Game(scenario, won.network, won.objective, orders, given=True)
 
 
@@ -64,6 +65,13 @@ def test_a_command_of_the_first_stage_stands_whatever_the_visitor_does() -> None
 def test_a_command_that_comes_later_than_the_reaction_is_a_fault() -> None:
     late = tuple((1.4, text, node) if at == 1.12 else (at, text, node) for at, text, node in FIRST_STAGE)
     assert ("command", 4) in found(late, states(late))
+
+
+def test_a_state_that_is_published_again_begins_nothing() -> None:
+    play: Play = (FIRST_STAGE[0], (0.19, *FIRST_STAGE[1][1:]))
+    first, then = states(play)
+    again = first._replace(stamp=0.185, clocks=first.clocks_at(0.185))
+    assert found(play, [first, again, then]) == found(play, [first, then]) == []
 
 
 def test_a_word_that_led_to_nothing_names_what_came_first_and_mattered() -> None:

@@ -78,7 +78,7 @@ def test_a_report_counts_at_the_time_at_which_it_became_true(seed: int, nth: int
 def test_the_judge_notices_a_report_that_counts_when_it_is_heard(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(returning, "said_at", lambda text: None)
     mission = Away(stage("thesis/scenario_1"), 1)
-    assert mission.run().problems[0].startswith("state 5: C")  # a clock that has another value
+    assert any("state 5 is of" in problem for problem in mission.run().problems)
 
 
 @pytest.mark.parametrize("seed", range(1, 6))

@@ -7,9 +7,9 @@ from typing import Any, List
 
 import pytest
 
-from pursue_gen.simulation.judge import Judge
 from pursue_gen.simulation.mission import simulate_mission
 from pursue_gen.simulation.outcome import GOAL, HELD, Settings
+from pursue_gen.simulation.recorder import Recorder
 from pursue_gen.simulation.stage import Stage, stage_of
 from pursue_gen.workspace import Options
 from pursue_runtime.observer.mission import Mission
@@ -39,20 +39,21 @@ def test_with_faults_missions_reach_the_goal_or_stop_safely(kind: str) -> None:
 
 
 class Judged:
-    """A mission by hand, and the judge who sees its states."""
+    """A mission by hand, and what is held against it."""
 
     def __init__(self) -> None:
         on = stage()
         self.mission = Mission(on.model, on.cover, lambda level, text: None)
-        self.judge = Judge(on.arena, on.commands, on.solution.objective.bad, on.reaction)
+        self._recorder = Recorder()
 
     def hear(self, word: str, now: float) -> List[str]:
-        """What the judge holds against the states that follow from a word; they must exist."""
+        """What is held against the commands so far, once this word is heard; states must follow from it."""
         states = self.mission.on_word(word, now)
         assert states, word
-        for state in states:
-            self.judge.on_state(state, now)
-        return self.judge.problems
+        self._recorder.on_word(now, word, "")
+        self._recorder.states += states
+        problems = self._recorder.judged(stage().game, False, 0.0, now).problems
+        return [problem for problem in problems if "no order" not in problem]
 
     def loaded(self) -> None:
         """The robot has loaded, which begins the second stage."""
@@ -77,7 +78,7 @@ def test_in_the_first_stage_what_was_commanded_stands_whatever_the_visitor_does(
 def test_what_was_due_longer_ago_than_the_reaction_is_a_problem() -> None:
     judged = begun()
     assert judged.hear("visitor_gate2hub", 1.06) == []
-    assert "was not due there" in judged.hear("bot:bot_hub2depot@2", 1.17)[0]
+    assert "is not what the strategy prescribes" in judged.hear("bot:bot_hub2depot@2", 1.17)[0]
 
 
 def test_in_the_second_stage_a_move_of_the_visitor_makes_commands_stale() -> None:

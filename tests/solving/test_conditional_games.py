@@ -6,10 +6,9 @@ import pytest
 
 from pursue_gen.explanation.explain import explain
 from pursue_gen.language import parse
-from pursue_gen.simulation.judge import Judge
-from pursue_gen.simulation.meaning import broken_of
 from pursue_gen.simulation.mission import simulate_mission
 from pursue_gen.simulation.outcome import GOAL, HELD, SAFE, Settings
+from pursue_gen.simulation.promises import Promises
 from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import solve_scenario
@@ -111,29 +110,29 @@ def test_the_observer_ends_a_mission_whose_condition_is_broken() -> None:
     """The visitor is back sooner than the model allows, while the robot is still there: the mission is lost."""
     read = parse(EARLY, "x.pur", "x")
     stage = stage_of(read, solve_scenario(read, DEFAULT), Options())
-    judge = Judge(stage.arena, stage.commands, stage.solution.objective.bad, stage.reaction, True, 0.0, broken_of(read))
+    promises = Promises(read, exact=False)
     mission = Mission(stage.model, stage.cover, lambda level, text: None)
     states: "list[tuple[SystemState, float]]" = []
     for now, word in ((0.0, "_start_"), (1.3, "visitor_b2a"), (1.4, "visitor_going_b_to_a2a")):
         states += [(state, now) for state in mission.on_word(word, now)]
     for state, now in states:
-        judge.on_state(state, now)
+        promises.on_state(state, now)
     last, _ = states[-1]
     assert (last.status, last.locations["obj"]) == ("lost", "lose")
-    assert not [problem for problem in judge.problems if "objective" in problem or "lost" in problem]
+    assert promises.problems == []
 
 
-def test_the_judge_knows_what_the_condition_means() -> None:
+def test_what_the_condition_means_is_known() -> None:
     read = parse(EARLY, "x.pur", "x")
     stage = stage_of(read, solve_scenario(read, DEFAULT), Options())
     at = {automaton.name: automaton.initial for automaton in stage.model.automata}
     first = SystemState(1, 0.0, at, dict(stage.model.variables), dict.fromkeys(stage.model.clocks, 0.0))
 
     def problems(*places: "dict[str, str]") -> str:
-        judge = Judge(stage.arena, stage.commands, stage.solution.objective.bad, 0.1, True, 0.0, broken_of(read))
+        promises = Promises(read, exact=False)
         for number, place in enumerate(places, start=1):
-            judge.on_state(first._replace(seq=number, locations={**at, **place}), 0.0)
-        return " ".join(judge.problems)
+            promises.on_state(first._replace(seq=number, locations={**at, **place}), 0.0)
+        return " ".join(promises.problems)
 
     assert "does not count as lost" in problems({}, {"visitor": "a"}, {"visitor": "a"})
     assert "counts as lost, but" in problems({}, {"obj": "lose"})
