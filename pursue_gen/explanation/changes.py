@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Dict, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
-from pursue_gen.explanation.knobs import Knob, Variant, knobs
+from pursue_gen.explanation.repairs import Knob, Variant, knobs
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played

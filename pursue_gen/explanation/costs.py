@@ -12,9 +12,9 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
+from pursue_gen.explanation.ablations import Part, without_each
 from pursue_gen.explanation.cheaper import Form, cheaper
 from pursue_gen.explanation.decided import Decided, decided, texts
-from pursue_gen.explanation.lesser import Part, without_each
 from pursue_gen.explanation.part import rules_for
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit

@@ -14,11 +14,11 @@ from pursue_gen.explanation.part import part_of_scenario, rules_for
 from pursue_gen.language.scenario import Patrol, Scenario, StatedObjective
 from pursue_gen.language.wording import listed, objective_text, patrol_text
 from pursue_gen.outcomes import LimitHit
-from pursue_gen.solving.assumed_alone import idle
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.shares import can_be_shared, won_in_shares
 from pursue_gen.solving.subgoals import commanded_agents
+from pursue_gen.solving.vacuity import idle
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.cone import cone_of_influence

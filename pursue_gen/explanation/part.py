@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Collection, FrozenSet, Sequence, Set, Tuple
 
-from pursue_gen.explanation.lesser import without_agent
+from pursue_gen.explanation.ablations import without_agent
 from pursue_gen.language.names import events_used, refs_of
 from pursue_gen.language.scenario import Rule, Scenario, StatedObjective
 from pursue_gen.solving.one_robot import robot_alone

@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Iterator, List, Sequence, Tuple
 
-from pursue_gen.proof.left_out import why_it_matters
+from pursue_gen.proof.independence import why_it_matters
 from pursue_gen.proof.stages import Part
 from pursue_gen.synthesis.strategy import Block, Command, Move, Place, Strategy, Zone
 from pursue_gen.tga.network import Automaton, Edge, Network

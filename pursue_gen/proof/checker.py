@@ -17,7 +17,7 @@ from typing import Callable, Dict, FrozenSet, Mapping, Optional, Sequence, Set, 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.proof import reasons
 from pursue_gen.proof.closed_loop import ClosedLoop, in_words, sample
-from pursue_gen.proof.left_out import proven_part
+from pursue_gen.proof.independence import proven_part
 from pursue_gen.proof.moves import Arena
 from pursue_gen.proof.native.search import searches_of
 from pursue_gen.proof.passage_times import latest
@@ -82,7 +82,7 @@ def verify(
     though it wins, because extrapolation is not exact there. Whoever waits in a reach game may rely on
     one automaton at its bound that can move by itself; in a safety game all that are at their bounds must be able to.
     A strategy that names a part of the network is checked for that part, once nothing else can matter there
-    (`left_out`). Raises PursueError for a network or strategy that it cannot read; with exit status 5 at a limit on
+    (`independence`). Raises PursueError for a network or strategy that it cannot read; with exit status 5 at a limit on
     time or memory. `progress` is called a few times a second; `arenas` as for `ClosedLoop`. `closed`: no play may leave
     what the strategy covers (safety): that is looked at first.
     """

@@ -16,7 +16,7 @@ from typing import Any, Callable, Dict, Optional
 
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.proof.checker import LIMIT, verify
-from pursue_gen.proof.left_out import named_part
+from pursue_gen.proof.independence import named_part
 from pursue_gen.proof.moves import Arena
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
 from pursue_gen.synthesis.solve import solve

@@ -15,8 +15,8 @@ from dataclasses import replace
 from typing import AbstractSet, Deque, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_gen.proof.course import Course, Event, Stay, Value
-from pursue_gen.proof.left_out import why_it_matters
-from pursue_gen.proof.live import commanded, is_controllers, live, taken_over
+from pursue_gen.proof.independence import why_it_matters
+from pursue_gen.proof.relaxed_reachability import commanded, is_controllers, live, taken_over
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.strategy import Block, Command, Strategy
 from pursue_gen.tga.network import Edge, Kind, Network, Objective

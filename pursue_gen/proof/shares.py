@@ -2,10 +2,10 @@
 
 A share is to avoid some of what is to be avoided. Its blocks name what matters to that, and its commands are for agents
 whom no other share commands. In its game the commands of the others are moves of the environment, which may come at any
-time but need not come: so it wins whatever the others do. Only what they command at all can happen (see `live`): who is
-never sent to a place is not there. Whom a share does not name may be anywhere, and do at any time what he can do to
-those whom it names (see `tga.hidden`), but must not stop time (see `left_out`); that those whom another share names do
-not is shown there. Then each play of the network shows each share one of its plays.
+time but need not come: so it wins whatever the others do. Only what they command at all can happen (see
+`relaxed_reachability`): who is never sent to a place is not there. Whom a share does not name may be anywhere, and do
+at any time what he can do to those whom it names (see `tga.hidden`), but must not stop time (see `independence`); that
+those whom another share names do not is shown there. Then each play of the network shows each share one of its plays.
 
 What a share is to avoid and its blocks do not name is looked at apart, in a game for each of these (see `apart`).
 """
@@ -17,8 +17,8 @@ from typing import AbstractSet, FrozenSet, Iterator, List, Sequence, Set, Tuple,
 
 from pursue_gen.language.network_names import LOSE
 from pursue_gen.proof.apart import games_apart, kept_apart
-from pursue_gen.proof.left_out import why_it_matters, with_clocks_of
-from pursue_gen.proof.live import Commanded, Extent, commanded, live
+from pursue_gen.proof.independence import why_it_matters, with_clocks_of
+from pursue_gen.proof.relaxed_reachability import Commanded, Extent, commanded, live
 from pursue_gen.proof.stages import Part
 from pursue_gen.proof.watched import why_it_may_miss
 from pursue_gen.synthesis.strategy import Block, Place, Strategy

@@ -3,10 +3,10 @@
 A stage ends when its milestones are reached, locations of automata or values of variables, and the next one begins
 there. Its parts, one for each milestone, are played at the same time, by different agents. The blocks of a part name
 the agents that matter to it and the milestones of the stages before, which holds them apart from the blocks of other
-stages. While a stage lasts, nobody commands what only other stages command (see `live`); what a part does not name must
-not matter to it (see `left_out`). Of where a stage begins nothing is used but what `known` says: so a part that is won
-from all these points is won, whatever was before, and every play goes through all stages to the goal. What is to be
-avoided, and cannot happen any more in a stage, needs no guard there.
+stages. While a stage lasts, nobody commands what only other stages command (see `relaxed_reachability`); what a part
+does not name must not matter to it (see `independence`). Of where a stage begins nothing is used but what `stage_entry`
+says: so a part that is won from all these points is won, whatever was before, and every play goes through all stages to
+the goal. What is to be avoided, and cannot happen any more in a stage, needs no guard there.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from dataclasses import dataclass, replace
 from typing import AbstractSet, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.proof.closed_loop import joint_move
-from pursue_gen.proof.known import Known, State, after_part, at_start, moved
-from pursue_gen.proof.left_out import why_it_matters
-from pursue_gen.proof.live import Extent, commanded, live
+from pursue_gen.proof.independence import why_it_matters
 from pursue_gen.proof.moves import Arena, Situation
+from pursue_gen.proof.relaxed_reachability import Extent, commanded, live
+from pursue_gen.proof.stage_entry import Known, State, after_part, at_start, moved
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Place, Strategy, with_edges
 from pursue_gen.tga.begin import BEGIN, BEGUN, beginning_in
 from pursue_gen.tga.ending import REACHED, ending_at, is_value, owner_of

@@ -13,7 +13,7 @@ from typing import Dict, Iterable, Optional, Tuple
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.network_names import AT_RISK
 from pursue_gen.proof.closed_loop import ClosedLoop
-from pursue_gen.proof.left_out import named_part
+from pursue_gen.proof.independence import named_part
 from pursue_gen.proof.native.search import searches_of
 from pursue_gen.proof.passage_times import INSTANT, latest
 from pursue_gen.proof.passages import Fault, played

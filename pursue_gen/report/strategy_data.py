@@ -11,7 +11,7 @@ from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Reach, Scenario
 from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
-from pursue_gen.proof.live import commanded
+from pursue_gen.proof.relaxed_reachability import commanded
 from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import Game, State, initial_state, is_goal, joint_moves

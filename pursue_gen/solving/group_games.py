@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Dict, FrozenSet, Iterator, Sequence, Set, Tuple
 
-from pursue_gen.proof.live import Commanded, is_controllers, live, taken_over
+from pursue_gen.proof.relaxed_reachability import Commanded, is_controllers, live, taken_over
 from pursue_gen.proof.shares import left_to_others
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.solving.useful import useful

@@ -14,10 +14,10 @@ from pursue_gen.language.parser import Reading, read
 from pursue_gen.language.parser import read_text as read_scenario
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import Invalid
-from pursue_gen.solving.assumed_alone import check_assumed_alone
 from pursue_gen.solving.forbidden import check_forbidden
 from pursue_gen.solving.periods import least_period, longest, with_period, without_period
 from pursue_gen.solving.request import SolveRequest
+from pursue_gen.solving.vacuity import check_assumed_alone
 from pursue_gen.synthesis.limits import Listener
 from pursue_gen.tga import scenario_objective, translate, translation_notes
 from pursue_gen.tga.network import Network, Objective

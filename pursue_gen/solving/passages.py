@@ -13,7 +13,7 @@ from typing import Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optiona
 
 from pursue_gen.language.network_names import is_going, is_under_way
 from pursue_gen.proof.checker import verify
-from pursue_gen.proof.live import is_controllers, taken_over
+from pursue_gen.proof.relaxed_reachability import is_controllers, taken_over
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.passage_steps import Play, strategy_of
 from pursue_gen.solving.routes import Floor, routes

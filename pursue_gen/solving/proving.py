@@ -8,7 +8,7 @@ from typing import Callable, Mapping, Optional
 from pursue_gen.diagnostics import error
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT, Report, pruned, pruned_ranks, verify
-from pursue_gen.proof.left_out import named_part
+from pursue_gen.proof.independence import named_part
 from pursue_gen.proof.simplify import simplified
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey

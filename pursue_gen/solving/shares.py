@@ -18,7 +18,7 @@ from typing import Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional,
 
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT, verify
-from pursue_gen.proof.live import Commanded, commanded
+from pursue_gen.proof.relaxed_reachability import Commanded, commanded
 from pursue_gen.solving.distances import time_to_help
 from pursue_gen.solving.due_moves import patrols
 from pursue_gen.solving.efforts import EFFORTS, Effort

@@ -9,11 +9,11 @@ from typing import Optional, Sequence, Tuple, Union
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit, Lost, NotProven
-from pursue_gen.proof.left_out import named_part
+from pursue_gen.proof.independence import named_part
 from pursue_gen.proof.worst_case import LIMIT, with_counter, worst_case
 from pursue_gen.solving.attempts import decided_by_attempts
 from pursue_gen.solving.contradictions import excluded_by_a_stay
-from pursue_gen.solving.crowds import has_parts, little_work, won_by_some, works_in_parallel
+from pursue_gen.solving.decomposition import has_parts, little_work, won_by_some, works_in_parallel
 from pursue_gen.solving.errands import excluded_by_an_errand
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.least_time import Guarantee, bounds, fastest, unscaled
@@ -191,7 +191,7 @@ def _with_little_work(
 ) -> Union[Verdict, Solution, Found, Tuple[Objective, ...], None]:
     """The verdict in one piece, or a proven strategy with orders of passage, or one that leaves out agents, or pauses
     of the environment, or parts of the objective that are lost; None where little work finds neither (see `passages`,
-    `shares`, `lost_promises`, `crowds` and `without_pauses`)."""
+    `shares`, `lost_promises`, `decomposition` and `without_pauses`)."""
     start, work, rests = options.limits.now(), little_work(game), bool(pauses(game))
     several, shared = len(promises(objective)) > 1, can_be_shared(game, objective)
     crowd = crowd_of(game, objective)

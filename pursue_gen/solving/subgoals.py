@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Dict, FrozenSet, Iterable, Iterator, List, Optional, Set, Tuple
 
-from pursue_gen.proof.live import is_controllers, taken_over
+from pursue_gen.proof.relaxed_reachability import is_controllers, taken_over
 from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Automaton, Edge, Network

@@ -8,8 +8,8 @@ from dataclasses import replace
 import pytest
 
 from pursue_gen.explanation import costs as costs_module
+from pursue_gen.explanation.ablations import without_each
 from pursue_gen.explanation.costs import Cost, Costs, as_json, costs, in_words
-from pursue_gen.explanation.lesser import without_each
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import Rules, played

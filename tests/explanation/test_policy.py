@@ -12,7 +12,7 @@ from benchmarks.families import deliver_by_robots
 from pursue_gen.explanation.policy import Controller
 from pursue_gen.explanation.position import Position
 from pursue_gen.language import parse
-from pursue_gen.solving.crowds import won_by_some
+from pursue_gen.solving.decomposition import won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.compile_game import compile_game

@@ -14,8 +14,8 @@ from typing import AbstractSet, Dict, List, Optional, Sequence, Set, Tuple
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.proof.known import Known, at_start
-from pursue_gen.proof.live import is_controllers, taken_over
+from pursue_gen.proof.relaxed_reachability import is_controllers, taken_over
+from pursue_gen.proof.stage_entry import Known, at_start
 from pursue_gen.proof.stages import after_stage
 from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.synthesis.limits import Limits

@@ -15,7 +15,7 @@ from pursue_gen.language import parse
 from pursue_gen.proof import checker
 from pursue_gen.proof.checker import pruned, verify
 from pursue_gen.proof.closed_loop import ClosedLoop
-from pursue_gen.proof.left_out import named_part
+from pursue_gen.proof.independence import named_part
 from pursue_gen.proof.native.search import searches_of
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.policies import won_by_policy

@@ -19,7 +19,7 @@ from pursue_gen.proof.checker import Report, pruned, verify
 from pursue_gen.proof.moves import Arena, JointMove, State
 from pursue_gen.proof.native import tables
 from pursue_gen.proof.worst_case import worst_case
-from pursue_gen.solving.crowds import won_by_some
+from pursue_gen.solving.decomposition import won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Place, Strategy

@@ -13,7 +13,7 @@ from pursue_gen.explanation.network_words import zone_texts
 from pursue_gen.language import load, parse
 from pursue_gen.partition import partition
 from pursue_gen.report.strategy_data import UNKNOWN, StrategyData, as_json, size, strategy_data_of
-from pursue_gen.solving.crowds import won_by_some
+from pursue_gen.solving.decomposition import won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solution import Solution, solve_scenario

@@ -14,7 +14,7 @@ from benchmarks.ordinary_families import buildings_apart
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Respond, Scenario
 from pursue_gen.proof.closed_loop import ClosedLoop
-from pursue_gen.proof.left_out import named_part
+from pursue_gen.proof.independence import named_part
 from pursue_gen.proof.native.search import searches_of
 from pursue_gen.proof.search import Depth
 from pursue_gen.proof.worst_case import INSTANT

@@ -16,7 +16,7 @@ from pursue_gen.simulation.make import make_case
 from pursue_gen.simulation.mission import simulate_mission
 from pursue_gen.simulation.outcome import GOAL, SAFE, Settings
 from pursue_gen.simulation.runs import MissionRunner
-from pursue_gen.solving.crowds import won_by_some
+from pursue_gen.solving.decomposition import won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import IDEAL, Rules, played

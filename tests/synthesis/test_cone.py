@@ -15,7 +15,7 @@ from pursue_gen.language import parse
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.checker import verify
-from pursue_gen.proof.left_out import named_part, why_it_matters
+from pursue_gen.proof.independence import named_part, why_it_matters
 from pursue_gen.solving.rules import DEFAULT, IDEAL, Rules, played
 from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.synthesis.solve import solve

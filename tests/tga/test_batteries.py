@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.explanation.ablations import without_each
 from pursue_gen.explanation.explain import explain
-from pursue_gen.explanation.lesser import without_each
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.play.games import session_of

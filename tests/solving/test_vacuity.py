@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pursue_gen.solving.assumed_alone import check_assumed_alone
+from pursue_gen.solving.vacuity import check_assumed_alone
 from tests.assumptions import APART, AWAY, CAFE, GOODBYE, LEAVES, MUSEUM, ONCE, ROOMS, UNTOUCHED, scenario
 from tests.authoring.commands import pursue
 

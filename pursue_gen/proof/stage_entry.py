@@ -11,7 +11,7 @@ from functools import cached_property
 from itertools import product
 from typing import AbstractSet, Dict, FrozenSet, List, Mapping, Optional, Sequence, Set, Tuple
 
-from pursue_gen.proof.live import Extent, may_hold
+from pursue_gen.proof.relaxed_reachability import Extent, may_hold
 from pursue_gen.tga.network import Automaton, Network
 
 State = Tuple[Tuple[str, ...], Tuple[int, ...]]

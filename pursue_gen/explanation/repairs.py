@@ -7,8 +7,8 @@ from fractions import Fraction
 from typing import Callable, Dict, Iterable, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Span
+from pursue_gen.explanation.ablations import without_conditions
 from pursue_gen.explanation.assumption_changes import assumption_changes
-from pursue_gen.explanation.lesser import without_conditions
 from pursue_gen.explanation.number_changes import (
     SLOWER,
     NumberChange,

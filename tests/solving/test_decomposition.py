@@ -20,7 +20,7 @@ from pursue_gen.simulation.make import make_case
 from pursue_gen.simulation.mission import simulate_mission
 from pursue_gen.simulation.outcome import Settings
 from pursue_gen.simulation.runs import MissionRunner
-from pursue_gen.solving.crowds import has_parts, won_by_some
+from pursue_gen.solving.decomposition import has_parts, won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.request import SolveRequest
@@ -140,7 +140,7 @@ def test_where_there_are_no_parts_the_game_is_searched_once(monkeypatch: pytest.
         games.append(named.get("first"))
         return solve(*given, **named)
 
-    monkeypatch.setattr("pursue_gen.solving.crowds._FIRST", 1)
+    monkeypatch.setattr("pursue_gen.solving.decomposition._FIRST", 1)
     monkeypatch.setattr("pursue_gen.solving.solution.solve", counted)
     monkeypatch.setattr("pursue_gen.solving.without_pauses.solve", counted)
     scenario = scenario_of(catch_by_places(4))

@@ -8,7 +8,7 @@ from typing import Dict, Set
 import pytest
 
 from pursue_gen.diagnostics import Severity
-from pursue_gen.explanation.lesser import without_agent, without_each
+from pursue_gen.explanation.ablations import without_agent, without_each
 from pursue_gen.language import load, parse
 from pursue_gen.language.checks import check
 from pursue_gen.language.scenario import Choice, Ref, RuleBody, Scenario

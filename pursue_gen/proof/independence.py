@@ -4,7 +4,8 @@ A strategy may speak of a part of the network: its blocks then name some of the 
 that part alone (`named_part`), and what `why_it_matters` finds is held against it. Where that finds nothing, each play
 of the network shows the part as one of its own plays: what is left out changes nothing in the part, takes no command
 from the controller, and cannot stop time. A move that changes nothing in the part is no move there (see `moves`).
-Edges that can never be taken while only the strategy commands change nothing at all: they are dead (see `live`).
+Edges that can never be taken while only the strategy commands change nothing at all: they are dead (see
+`relaxed_reachability`).
 
 A strategy may also leave out clocks of that part. It is then proven for the part without them, and without the bounds
 on them: they may only have kept the environment from acting.
@@ -15,8 +16,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import AbstractSet, Dict, Iterable, List, NamedTuple, Optional, Sequence, Set, Tuple
 
-from pursue_gen.proof.live import Places, commanded, live
 from pursue_gen.proof.moves import Arena, Bound
+from pursue_gen.proof.relaxed_reachability import Places, commanded, live
 from pursue_gen.proof.zones import without
 from pursue_gen.synthesis.strategy import Strategy, Zone
 from pursue_gen.tga.hidden import is_loosened, why_not_hidden
@@ -134,9 +135,9 @@ def why_it_matters(
 ) -> str:
     """Why what the part of the network leaves out may matter in it; "" if it cannot.
 
-    `places`: where its automata may come to (see `live`); None: where they may without commands. `from_start`: they
-    begin in their initial locations, not in the middle of a play. `hiding`: what is left out may do to the part what
-    `tga.hidden` lets it do.
+    `places`: where its automata may come to (see `relaxed_reachability`); None: where they may without commands.
+    `from_start`: they begin in their initial locations, not in the middle of a play. `hiding`: what is left out may do
+    to the part what `tga.hidden` lets it do.
     """
     places = live(network, frozenset())[1].places if places is None else places
     kept = {automaton.name: automaton for automaton in part.automata}
