@@ -52,7 +52,7 @@ _WAYS = 30
 _TIMES = 8
 """So many times each group is looked at again, as the others' commands have changed."""
 
-_MORE = 8
+_MORE = 5
 """Policies that were tried in vain are tried again with so many times the work: of those that win nine in ten take less
 than a twentieth of what they may."""
 
