@@ -30,7 +30,7 @@ LONGEST = (
     "proof/test_checker_random", "synthesis/test_limits", "lsp/test_hostile", "runtime/observer/test_journal",
     "solving/test_objectives", "lsp/test_server", "runtime/ui/test_browser", "authoring/test_new",
     "report/test_report_command", "solving/test_verifytga", "benchmarks/test_synthesis", "replanning/test_request",
-    "solving/test_crowds_random", "transport/test_sender", "solving/test_crowds", "proof/test_twins",
+    "solving/test_crowds_random", "transport/test_sender", "solving/test_decomposition", "proof/test_twins",
     "tga/test_conditions", "proof/test_simplify", "language/test_formatter", "transport/test_bundles",
     "workspace/test_writer_kills", "zones/test_federation", "benchmarks/test_random_games", "runtime/test_fleet_life",
     "tga/test_uppaal_write", "report/test_commands",

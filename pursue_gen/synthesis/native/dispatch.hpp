@@ -68,8 +68,9 @@ class Dispatch {
         std::vector<std::set<int>> ways;
         std::vector<bool> waits;
         for (std::size_t r = 0; r < robots.size(); ++r) {
-            waits.push_back(is_waiting(memory[r]) && !duties_.has_less(d, robots[r], 100));
-            const int duty = is_waiting(memory[r]) && !waits[r] ? -1 : memory[r];  // it charges while it waits
+            const bool charges = duties_.has_less(d, robots[r], 100) && duties_.is_at_charger(d, robots[r]);
+            waits.push_back(is_waiting(memory[r]) && !charges);
+            const int duty = is_waiting(memory[r]) && charges ? -1 : memory[r];  // it charges while it waits there
             wanted.push_back(wants(d, enabled, r, duty, ways.emplace_back()));
         }
         std::vector<int> commands = wanted;
@@ -188,6 +189,7 @@ class Dispatch {
                 joints_.enabled(now, enabled);
                 const int next = wants(now, enabled, r, a, way);
                 if (next < 0) return out;
+                duties_.look(now, robot);  // a robot with a battery has looked ahead
                 now = ended(joints_[next].target(now), robot);
                 time += duties_.cost(duties_.at_location(robot, now[robot])) % Duties::DETOUR + 1;
                 round.erase(std::remove_if(round.begin() + 1, round.end(), [&](int b) { return !duties_.is_open(now, b); }), round.end());
