@@ -6,7 +6,7 @@ import pickle
 import subprocess
 import sys
 
-from pursue_gen.tga.network import Edge, Test
+from pursue_gen.tga.network import Edge, Guard, Test
 
 EDGE = Edge("here", "there", assign=(("Pbot", 2),))
 
@@ -15,7 +15,7 @@ def test_an_edge_names_each_variable_once_in_its_order() -> None:
     tested = Edge(
         "here",
         "there",
-        EDGE.guard.__class__(integers=((Test("b", 1), Test("a", 2)), (Test("b", 3),))),
+        Guard(integers=((Test("b", 1), Test("a", 2)), (Test("b", 3),))),
         assign=(("c", 1), ("a", 0)),
     )
     assert tested.variables == ("b", "a", "c")
