@@ -97,7 +97,7 @@ def verify(
     if strategy.in_parts:
         if strategy.stages and strategy.left_out_clocks:
             return Report(False, "left out: a strategy in stages leaves no clock out", (), frozenset(), 0)
-        how = limit, prompt, limits, progress
+        how = limit, prompt, limits, progress, closed
         return _in_parts(network, objective, strategy, reaction, ranks, how)
     part, matters = proven_part(network, objective, strategy)
     if matters:
@@ -162,10 +162,10 @@ def _in_parts(
     strategy: Strategy,
     reaction: Fraction,
     ranks: Optional[Mapping[ZoneKey, int]],
-    how: Tuple[int, Optional[bool], Limits, Optional[Listener]],
+    how: Tuple[int, Optional[bool], Limits, Optional[Listener], bool],
 ) -> Report:
     """The outcome of all stages or shares, each of which has to win; `ranks` are those within them."""
-    limit, prompt, limits, progress = how
+    limit, prompt, limits, progress, closed = how
     used: Set[ZoneKey] = set()
     states, start = 0, limits.now()
     called, taken_apart = ("share", shares_of) if strategy.shares else ("stage", parts_of)
@@ -175,7 +175,7 @@ def _in_parts(
             return Report(False, reason, (), frozenset(), states)
         own = None if ranks is None else _ranks_of(part, ranks)
         left = max(1, limit - states), prompt, own, limits.since(start), progress
-        report = verify(part.game, part.objective, part.strategy, reaction, *left)
+        report = verify(part.game, part.objective, part.strategy, reaction, *left, closed=closed)
         states += report.states
         used.update((part.numbers[b], what, n) for b, what, n in report.used if part.numbers[b] >= 0)
         if not report.ok:

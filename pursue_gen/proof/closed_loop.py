@@ -126,18 +126,18 @@ class ClosedLoop:
     def steps_from_all(self, state: State) -> List[Tuple[JointMove, Entry]]:
         """All that may follow if each of the covered points may be entered. Raises Broken where the strategy fails."""
         situation, covered = self.arena.situation(state), self.covered(state)
-        passage = self._passage(state, covered)
+        passage = self._passage(state, covered, self._advice_in(state, situation).waits)
         # Nobody waits or decides elsewhere.
         flights = (part for _, part in passage.taken if not any(zone.includes(part) for zone in covered))
         return self._entries(situation, passage, (*covered, *flights))
 
     def _steps(self, state: State, zone: Dbm) -> List[Tuple[JointMove, Entry]]:
-        passage = self._passage(state, (zone,))
+        passage = self._passage(state, (zone,), (zone,))
         return self._entries(self.arena.situation(state), passage, passage.active)
 
-    def _passage(self, state: State, entries: Sequence[Dbm]) -> Passage:
+    def _passage(self, state: State, entries: Sequence[Dbm], pieces: Sequence[Dbm]) -> Passage:
         situation = self.arena.situation(state)
-        passage = pass_time(entries, situation, self._advice_in(state, situation), self.rules)
+        passage = pass_time(entries, pieces, situation, self._advice_in(state, situation), self.rules)
         self.used.update(passage.used)
         return passage
 

@@ -105,12 +105,16 @@ class Rules:
     instant: int = 0
 
 
-def pass_time(entries: Sequence[Dbm], situation: Situation, advice: Advice, rules: Rules) -> Passage:
-    """Follow the strategy from the points of the entries until a discrete step. Raises Broken where it fails."""
+def pass_time(
+    entries: Sequence[Dbm], pieces: Sequence[Dbm], situation: Situation, advice: Advice, rules: Rules
+) -> Passage:
+    """Follow the strategy from the points of the entries until a discrete step. Raises Broken where it fails.
+
+    `pieces`: the entries, or those of their points that are in no command's zone and perhaps others of theirs.
+    """
     assert situation.invariant is not None
     acts = advice.acts
     decided: Dict[int, List[Dbm]] = {}
-    pieces: Sequence[Dbm] = entries
     for k, act in enumerate(acts):
         for entry in entries:
             common = entry.intersect(act.zone)

@@ -18,7 +18,7 @@ from itertools import chain, combinations, islice
 from typing import Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.outcomes import LimitHit, NotProven
-from pursue_gen.proof.checker import LIMIT, verify
+from pursue_gen.proof.checker import verify
 from pursue_gen.proof.relaxed_reachability import Commanded, commanded
 from pursue_gen.solving.distances import time_to_help
 from pursue_gen.solving.due_moves import patrols
@@ -152,8 +152,8 @@ class _Search:
         group = Group(frozenset(few), self._objective.bad)
         game = self._games.game(group, frozenset(), NEEDED)
         wanted = Objective(Kind.SAFETY, bad=self._objective.bad)
-        strategy = self._guessed(game, wanted, 1.0, free=bool(pauses(game)))
-        return None if strategy is None else self._proven({group: strategy})
+        strategy = self._guess(game, wanted, 1.0, free=bool(pauses(game)))
+        return None if strategy is None else self._proven({group: without_hidden(strategy)})
 
     def _able(self, place: Place) -> Tuple[str, ...]:
         """The robots that can do something about what is to be avoided there."""
@@ -295,7 +295,7 @@ class _Search:
             watchers=watchers,
         )
         limits = self._options.limits
-        report = verify(self._network, self._objective, strategy, self._reaction, LIMIT, limits=limits)
+        report = verify(self._network, self._objective, strategy, self._reaction, limits=limits, closed=True)
         return strategy if report.ok else None
 
     def _strategy(self, group: Group, theirs: Commanded) -> Optional[Strategy]:
@@ -343,6 +343,15 @@ class _Search:
             return self._guessed(game, wanted, share / 4, free) if len(wanted.bad) == 1 else None
 
     def _guessed(self, game: Network, wanted: Objective, share: float, free: bool) -> Optional[Strategy]:
+        """A guess that is proven."""
+        strategy = self._guess(game, wanted, share, free)
+        if strategy is not None:
+            with suppress(NotProven, LimitHit):
+                proven = prove(game, wanted, strategy, self._reaction, options=self._options, closed=True)
+                return without_hidden(proven)
+        return None
+
+    def _guess(self, game: Network, wanted: Objective, share: float, free: bool) -> Optional[Strategy]:
         key, before = (game, wanted.bad, free), self.budget.work
         if share * before < _MORE * self._known.guessed.get(key, 0):
             return None
@@ -353,10 +362,7 @@ class _Search:
             return None
         strategy, stats = found
         self._known.stats.append(stats)
-        with suppress(NotProven, LimitHit):
-            proven = prove(game, wanted, strategy, self._reaction, options=self._options, closed=True)
-            return without_hidden(proven)
-        return None
+        return strategy
 
 
 def _each_once(ways: Iterable[Tuple[Group, ...]]) -> Iterator[Tuple[Group, ...]]:

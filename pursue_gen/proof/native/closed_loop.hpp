@@ -83,7 +83,7 @@ class ClosedLoop {
     // All that may follow if each of the covered points may be entered. Throws Broken where the strategy fails.
     Steps<Z> steps_from_all(int state) {
         const Zones<Z> all = covered(state);
-        const Passage<Z> passage = pass(state, all);
+        const Passage<Z> passage = pass(state, all, advice(state).waits);
         Zones<Z> active = all;
         // Nobody waits or decides elsewhere.
         for (const auto& [move, part] : passage.taken)
@@ -156,13 +156,13 @@ class ClosedLoop {
     }
 
     Steps<Z> steps(int state, const Z& zone) {
-        const Passage<Z> passage = pass(state, {zone});
+        const Passage<Z> passage = pass(state, {zone}, {zone});
         return entries(state, passage, passage.active(watch));
     }
 
-    Passage<Z> pass(int state, const Zones<Z>& entries) {
+    Passage<Z> pass(int state, const Zones<Z>& entries, const Zones<Z>& pieces) {
         Delay<Z> delay(arena.situation(state), advice(state), rules, arena.dim, watch);
-        Passage<Z> passage = delay.pass(entries);
+        Passage<Z> passage = delay.pass(entries, pieces);
         for (int key : passage.used) {
             if (used.size() <= static_cast<std::size_t>(key)) used.resize(key + 1, false);
             used[key] = true;

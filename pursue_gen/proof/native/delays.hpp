@@ -105,9 +105,9 @@ class Delay {
     Delay(const Situation<Z>& situation, const Advice<Z>& advice, const Rules& rules, int dim, Watch& watch)
         : situation_(situation), advice_(advice), rules_(rules), dim_(dim), watch_(watch), decided_(advice.acts.size()) {}
 
+    // `pieces`: the entries, or those of their points that are in no command's zone and perhaps others of theirs.
     // Requires: the invariant holds at all points of the entries. Throws Broken where the strategy fails.
-    Passage<Z> pass(const Zones<Z>& entries) {
-        Zones<Z> pieces = entries;
+    Passage<Z> pass(const Zones<Z>& entries, Zones<Z> pieces) {
         for (std::size_t k = 0; k < advice_.acts.size(); ++k) {
             const Z& zone = advice_.acts[k].zone;
             watch_.tick();

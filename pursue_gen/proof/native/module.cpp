@@ -95,6 +95,7 @@ auto with_zones(int dim, bool wide, F f) {
     if (!wide) {
         if (dim <= 4) return f(Dbm<4, std::int32_t>{});
         if (dim <= 8) return f(Dbm<8, std::int32_t>{});
+        if (dim <= 12) return f(Dbm<12, std::int32_t>{});
         if (dim <= 16) return f(Dbm<16, std::int32_t>{});
     }
     if (dim <= 8) return f(Dbm<8, std::int64_t>{});

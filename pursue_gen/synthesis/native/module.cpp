@@ -193,13 +193,16 @@ py::dict sized(const Game& game, const F& run) {
         if (dim <= 5) return run(Dbm<5, std::int16_t>{});
         if (dim <= 6) return run(Dbm<6, std::int16_t>{});
         if (dim <= 8) return run(Dbm<8, std::int16_t>{});
+        if (dim <= 12) return run(Dbm<12, std::int16_t>{});
         if (dim <= 16) return run(Dbm<16, std::int16_t>{});
     }
 #endif
     if (!fits<wide_t>(game)) throw std::invalid_argument("constants too large");
 #ifndef PURSUE_ONE_SIZE
     if (dim <= 8) return run(Dbm<8, wide_t>{});
+    if (dim <= 12) return run(Dbm<12, wide_t>{});
     if (dim <= 16) return run(Dbm<16, wide_t>{});
+    if (dim <= 24) return run(Dbm<24, wide_t>{});
     if (dim <= 40) return run(Dbm<40, wide_t>{});
 #endif
     if (dim <= 128) return run(Dbm<128, wide_t>{});
