@@ -86,7 +86,7 @@ class WithTemplates(build_py):
     """
 
     def run(self) -> None:
-        """Copies what pursue_gen.workspace.templates_dir, .cli.explain and .authoring.examples look for."""
+        """Copies what pursue_gen.workspace.templates_dir, .cli.explain and .tools.authoring.examples look for."""
         super().run()
         if getattr(self, "editable_mode", False):
             return

@@ -14,11 +14,11 @@ from pathlib import Path
 from random import Random
 from typing import Callable, Dict, List, Optional, Tuple
 
-from pursue_gen.calibration.picture import draw
-from pursue_gen.calibration.proposal import Options, propose
-from pursue_gen.calibration.samples import Sample, Samples, Way, Work
-from pursue_gen.calibration.windows import spread_of, window_of
 from pursue_gen.language import parse
+from pursue_gen.tools.calibration.picture import draw
+from pursue_gen.tools.calibration.proposal import Options, propose
+from pursue_gen.tools.calibration.samples import Sample, Samples, Way, Work
+from pursue_gen.tools.calibration.windows import spread_of, window_of
 
 NOISES: Dict[str, Callable[[Random], float]] = {
     "normal": lambda random: max(0.2, random.gauss(1.0, 0.1)),

@@ -16,12 +16,12 @@ from benchmarks.lab_scenarios import lab_scenario
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Patrol, Scenario
 from pursue_gen.outcomes import LimitHit, Lost
-from pursue_gen.simulation.outcome import Settings
-from pursue_gen.simulation.runs import MissionRunner, case_of
 from pursue_gen.solving.optional import promised_of
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.synthesis.limits import Limits
+from pursue_gen.tools.simulation.outcome import Settings
+from pursue_gen.tools.simulation.runs import MissionRunner, case_of
 from pursue_gen.workspace import Options
 
 Demands = Tuple[Tuple[str, float], ...]

@@ -34,10 +34,10 @@ from benchmarks.synthesis import machine, version
 from benchmarks.tables import markdown
 from pursue_gen.files import write_texts
 from pursue_gen.language import load
-from pursue_gen.replay import check, game_of, read_recording
-from pursue_gen.replay.finding import WORLD
-from pursue_gen.replay.game import from_workspace
-from pursue_gen.replay.journal import Journal
+from pursue_gen.tools.replay import check, game_of, read_recording
+from pursue_gen.tools.replay.finding import WORLD
+from pursue_gen.tools.replay.game import from_workspace
+from pursue_gen.tools.replay.journal import Journal
 from pursue_runtime.drives.report import ARRIVED
 from pursue_runtime.state import RUNNING
 

@@ -1,8 +1,8 @@
 """Missions on a real ROS master whose nodes are killed at random moments: `python -m benchmarks.kills`.
 
-Each mission is recorded twice (see second_recorder), and judged afterwards by `pursue_gen.replay` from what either
-recorder has, what the observer has heard beside that, and the workspace's strategy alone. Where there are promises
-alone, the mission is ended after a time.
+Each mission is recorded twice (see second_recorder), and judged afterwards by `pursue_gen.tools.replay` from what
+either recorder has, what the observer has heard beside that, and the workspace's strategy alone. Where there are
+promises alone, the mission is ended after a time.
 `--out docs` writes what was found to docs/benchmarks/kills.json and docs/kills.md; with `--first 240` it adds the
 missions from 240 on to the 240 that are there. Each mission is written as soon as it and all before it have ended, so
 an interruption loses none. The kills of a mission follow from its number and the seed; the moments at which they hit
@@ -38,10 +38,10 @@ from benchmarks.ros_world import NO_ANSWER, ROOT, Hasty, World, generated, world
 from benchmarks.second_recorder import NAME, bag_of, command, heard_in, merged, topics_of, with_heard
 from benchmarks.synthesis import machine, version
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.replay import Findings, check, game_of, read_recording
-from pursue_gen.replay.finding import FAULT, UNRECORDED, WORLD
-from pursue_gen.replay.game import Game, from_workspace
-from pursue_gen.replay.journal import Journal
+from pursue_gen.tools.replay import Findings, check, game_of, read_recording
+from pursue_gen.tools.replay.finding import FAULT, UNRECORDED, WORLD
+from pursue_gen.tools.replay.game import Game, from_workspace
+from pursue_gen.tools.replay.journal import Journal
 from pursue_runtime.observer.mark import MARK
 from pursue_runtime.words import EVENTS, FINISH
 

@@ -26,12 +26,12 @@ from benchmarks.synthesis import machine, version
 from pursue_gen.files import write_texts
 from pursue_gen.language import load, parse
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.replay import check, game_of, read_recording
-from pursue_gen.replay.game import from_workspace
-from pursue_gen.replay.journal import Journal
 from pursue_gen.solving.inputs import settled
 from pursue_gen.solving.optional import promised_of
 from pursue_gen.solving.request import SolveRequest
+from pursue_gen.tools.replay import check, game_of, read_recording
+from pursue_gen.tools.replay.game import from_workspace
+from pursue_gen.tools.replay.journal import Journal
 from pursue_gen.workspace import Options, write_workspace
 from pursue_gen.workspace.packages import SHARED
 

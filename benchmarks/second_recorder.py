@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Callable, Dict, Iterable, List, Sequence, Set, Tuple, TypeVar
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.replay import read_recording
-from pursue_gen.replay.journal import Journal
-from pursue_gen.replay.record import MissionRecord, RecordedWord, RobotOrder, read_word
+from pursue_gen.tools.replay import read_recording
+from pursue_gen.tools.replay.journal import Journal
+from pursue_gen.tools.replay.record import MissionRecord, RecordedWord, RobotOrder, read_word
 from pursue_runtime.state import SystemState
 
 NAME = "record_second"

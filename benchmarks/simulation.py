@@ -23,17 +23,17 @@ from benchmarks import simulation_page
 from benchmarks.synthesis import machine, version
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
-from pursue_gen.simulation.faults import read_faults
-from pursue_gen.simulation.make import make_case
-from pursue_gen.simulation.mission import simulate_mission
-from pursue_gen.simulation.outcome import FAILED, Settings
-from pursue_gen.simulation.runs import Case, MissionRunner
 from pursue_gen.solving.optional import promised
 from pursue_gen.solving.options import DEFAULT
 from pursue_gen.solving.periods import least_period
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.tools.simulation.faults import read_faults
+from pursue_gen.tools.simulation.make import make_case
+from pursue_gen.tools.simulation.mission import simulate_mission
+from pursue_gen.tools.simulation.outcome import FAILED, Settings
+from pursue_gen.tools.simulation.runs import Case, MissionRunner
 from pursue_runtime.state import LOST
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -27,7 +27,7 @@ from pursue_gen.language.scenario import (
     Sequence,
     Waits,
 )
-from pursue_gen.simulation.meaning import holds
+from pursue_gen.tools.simulation.meaning import holds
 from pursue_runtime.locations import is_movement
 
 Rest = Union[str, Tuple[str, "Rest", "Rest"]]

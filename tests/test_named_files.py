@@ -17,18 +17,18 @@ import pytest
 pytest.importorskip("cryptography", reason="cryptography is not installed")
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.draw.storage import version
 from pursue_gen.drawing.floor import read_image
 from pursue_gen.drawing.floor_picture import read_floor
 from pursue_gen.files import read_text
 from pursue_gen.language.formatter_files import layout_of
-from pursue_gen.replay import read_recording
-from pursue_gen.replay.game import from_workspace
 from pursue_gen.solving.inputs import load_game
-from pursue_gen.transport.bundles import read_bundle
-from pursue_gen.transport.keys import load_private, load_public
-from pursue_gen.transport.poses_file import read_poses
-from pursue_gen.transport.robots_file import read_robots
+from pursue_gen.tools.draw.storage import version
+from pursue_gen.tools.replay import read_recording
+from pursue_gen.tools.replay.game import from_workspace
+from pursue_gen.tools.transport.bundles import read_bundle
+from pursue_gen.tools.transport.keys import load_private, load_public
+from pursue_gen.tools.transport.poses_file import read_poses
+from pursue_gen.tools.transport.robots_file import read_robots
 from pursue_gen.workspace.machines import read_machines
 from pursue_runtime.bundle import read_keys
 from pursue_runtime.data import DataError, read_data
@@ -167,11 +167,11 @@ def test_a_line_without_end_is_no_answer(tmp_path: Path, words: List[str]) -> No
 
 OTHERS = {
     "pursue_gen/cli/explain.py": "pages of the package",
-    "pursue_gen/cli/report.py": "the beginning of a page that it replaces",
-    "pursue_gen/draw/server.py": "the page's own files",
+    "pursue_gen/tools/commands/report.py": "the beginning of a page that it replaces",
+    "pursue_gen/tools/draw/server.py": "the page's own files",
     "pursue_gen/language/formatter_items.py": "the grammar",
     "pursue_gen/language/syntax.py": "the grammar",
-    "pursue_gen/report/html.py": "the package's styles",
+    "pursue_gen/tools/report/html.py": "the package's styles",
     "pursue_gen/solving/verifytga.py": "what it has let a program write",
     "pursue_gen/synthesis/limits.py": "facts of the system",
     "pursue_gen/workspace/folder.py": "files of a workspace, opened in its folder",

@@ -32,10 +32,6 @@ from pursue_gen.language import load, parse
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.language.wording import listed, objective_text, periods_found, promise_words
 from pursue_gen.outcomes import Lost
-from pursue_gen.report import timeline
-from pursue_gen.report.recording import ending_text, simulated
-from pursue_gen.simulation.outcome import Settings
-from pursue_gen.simulation.runs import Case, case_of
 from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.least_time import Guarantee
 from pursue_gen.solving.optional import promised
@@ -47,6 +43,10 @@ from pursue_gen.solving.solution import Solution, solution
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga.network import Kind
+from pursue_gen.tools.report import timeline
+from pursue_gen.tools.report.recording import ending_text, simulated
+from pursue_gen.tools.simulation.outcome import Settings
+from pursue_gen.tools.simulation.runs import Case, case_of
 from pursue_gen.workspace import Options
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -4,32 +4,12 @@ from __future__ import annotations
 
 import gc
 import sys
+from importlib import import_module
 
 import typer
 
 from pursue_gen import __version__
-from pursue_gen.cli.bundle import bundle
-from pursue_gen.cli.calibrate import calibrate
-from pursue_gen.cli.check import check
-from pursue_gen.cli.draw import draw
-from pursue_gen.cli.examples import examples
-from pursue_gen.cli.explain import explain
-from pursue_gen.cli.fmt import fmt
 from pursue_gen.cli.groups import Commands
-from pursue_gen.cli.keys import keys
-from pursue_gen.cli.lsp import lsp
-from pursue_gen.cli.new import new
-from pursue_gen.cli.play import play
-from pursue_gen.cli.replan import replan
-from pursue_gen.cli.replay import replay
-from pursue_gen.cli.report import report
-from pursue_gen.cli.send import send
-from pursue_gen.cli.sim import sim
-from pursue_gen.cli.solve import solve
-from pursue_gen.cli.survey import survey
-from pursue_gen.cli.tga import tga
-from pursue_gen.cli.verify import verify
-from pursue_gen.cli.ws import ws
 from pursue_gen.outcomes import INTERRUPTED
 
 app = typer.Typer(
@@ -46,6 +26,42 @@ app = typer.Typer(
     "robots differ; 130 interrupted.",
 )
 
+
+COMMANDS = (
+    ("cli.check", "For example: pursue-gen check my_floor.pur"),
+    ("cli.survey", "For example: pursue-gen survey map.yaml my_floor.pur --radius 0.25 --speed bot1=0.4"),
+    ("cli.tga", "For example: pursue-gen tga scenarios/thesis/scenario_1.pur -o uppaal"),
+    (
+        "cli.solve",
+        "For example: pursue-gen solve my_floor.pur -o plan.txt; "
+        "as UPPAAL-TIGA plays: pursue-gen solve TGA.xml TCTL.q --ends controllable --reaction 0",
+    ),
+    ("cli.verify", "For example: pursue-gen verify my_floor.pur plan.txt"),
+    ("cli.ws", "For example: pursue-gen ws scenarios/thesis/scenario_1.pur"),
+    ("cli.explain", "For example: pursue-gen explain PML110"),
+    ("tools.commands.play", "For example: pursue-gen play scenarios/thesis/catch_the_thief.pur"),
+    ("tools.commands.report", "For example: pursue-gen report scenarios/thesis/scenario_3.pur --html"),
+    ("tools.commands.replay", "For example: pursue-gen replay mission.bag"),
+    (
+        "tools.commands.calibrate",
+        "For example: pursue-gen calibrate my_floor.pur mission.bag drives.bag -o my_floor_calibrated.pur",
+    ),
+    ("tools.commands.sim", "For example: pursue-gen sim my_floor.pur --runs 10000 --faults delay,loss --jobs 4"),
+    ("cli.fmt", "For example: pursue-gen fmt my_floor.pur"),
+    ("tools.commands.new", "For example: pursue-gen new my_floor --kind reach --robots 2"),
+    ("tools.commands.draw", "For example: pursue-gen draw map.yaml my_floor.pur"),
+    ("tools.commands.examples", "For example: pursue-gen examples thesis/scenario_1"),
+    ("tools.commands.replan", "For example: pursue-gen replan < request.json"),
+    ("tools.commands.lsp", "For example, in an editor's settings: pursue-gen lsp"),
+    ("tools.commands.keys", ""),
+    ("tools.commands.bundle", "For example: pursue-gen bundle my_floor.pur --poses lab.yaml --key lab"),
+    ("tools.commands.send", "For example: pursue-gen send my_floor.pur --to robots.yaml --poses lab.yaml"),
+)
+"""The module of each command, in which a function or a group has the command's name, and the last line of its help.
+
+Tools stand above `cli` in the layers, so their commands are named here and not imported. This is no entry point of the
+installation: a checkout on PYTHONPATH alone has all commands, too.
+"""
 
 _OBJECTS = 300_000
 """So many new objects are made between two searches for garbage: strategies are many small values without cycles."""
@@ -78,32 +94,13 @@ def _options(
     pass
 
 
-app.command(epilog="For example: pursue-gen check my_floor.pur")(check)
-app.command(epilog="For example: pursue-gen survey map.yaml my_floor.pur --radius 0.25 --speed bot1=0.4")(survey)
-app.command(epilog="For example: pursue-gen tga scenarios/thesis/scenario_1.pur -o uppaal")(tga)
-app.command(
-    epilog="For example: pursue-gen solve my_floor.pur -o plan.txt; "
-    "as UPPAAL-TIGA plays: pursue-gen solve TGA.xml TCTL.q --ends controllable --reaction 0"
-)(solve)
-app.command(epilog="For example: pursue-gen verify my_floor.pur plan.txt")(verify)
-app.command(epilog="For example: pursue-gen ws scenarios/thesis/scenario_1.pur")(ws)
-app.command(epilog="For example: pursue-gen explain PML110")(explain)
-app.command(epilog="For example: pursue-gen play scenarios/thesis/catch_the_thief.pur")(play)
-app.command(epilog="For example: pursue-gen report scenarios/thesis/scenario_3.pur --html")(report)
-app.command(epilog="For example: pursue-gen replay mission.bag")(replay)
-app.command(epilog="For example: pursue-gen calibrate my_floor.pur mission.bag drives.bag -o my_floor_calibrated.pur")(
-    calibrate
-)
-app.command(epilog="For example: pursue-gen sim my_floor.pur --runs 10000 --faults delay,loss --jobs 4")(sim)
-app.command(epilog="For example: pursue-gen fmt my_floor.pur")(fmt)
-app.command(epilog="For example: pursue-gen new my_floor --kind reach --robots 2")(new)
-app.command(epilog="For example: pursue-gen draw map.yaml my_floor.pur")(draw)
-app.command(epilog="For example: pursue-gen examples thesis/scenario_1")(examples)
-app.command(epilog="For example: pursue-gen replan < request.json")(replan)
-app.command(epilog="For example, in an editor's settings: pursue-gen lsp")(lsp)
-app.add_typer(keys, name="keys")
-app.command(epilog="For example: pursue-gen bundle my_floor.pur --poses lab.yaml --key lab")(bundle)
-app.command(epilog="For example: pursue-gen send my_floor.pur --to robots.yaml --poses lab.yaml")(send)
+for _module, _example in COMMANDS:
+    _name = _module.rpartition(".")[2]
+    _command = getattr(import_module(f"pursue_gen.{_module}"), _name)
+    if isinstance(_command, typer.Typer):
+        app.add_typer(_command, name=_name)
+    else:
+        app.command(epilog=_example)(_command)
 
 
 if __name__ == "__main__":

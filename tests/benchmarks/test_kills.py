@@ -19,10 +19,10 @@ from benchmarks.kills_page import OTHERS, OUTCOMES, RULES, Mission, mismatch, pa
 from benchmarks.lab_scenarios import lab_scenario
 from benchmarks.ros_world import ROOT, World
 from pursue_gen.language import parse
-from pursue_gen.replay import Findings
-from pursue_gen.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
 from pursue_gen.solving.solution import solve_scenario
-from tests.replay.recordings import PLAY, game, mission, write_bag, write_journal
+from pursue_gen.tools.replay import Findings
+from pursue_gen.tools.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
+from tests.tools.replay.recordings import PLAY, game, mission, write_bag, write_journal
 from tests.waiting import until
 
 NODES = ("UI", "controller_bot1", "observer", "simulator")

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 pytest.importorskip("rospy", reason="the names of recorders are the run time's, which needs ROS")
 
 from benchmarks.second_recorder import HEARD, NAME, SAME, bag_of, command, heard_in, merged, topics_of, with_heard
-from pursue_gen.replay.record import MissionRecord, RobotOrder, read_word
+from pursue_gen.tools.replay.record import MissionRecord, RobotOrder, read_word
 from pursue_runtime.nodes.publishing import is_recorder
 from pursue_runtime.observer.records import format_record
 from pursue_runtime.state import SystemState

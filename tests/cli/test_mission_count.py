@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from pursue_gen.cli import mission_count
-from pursue_gen.cli.mission_count import counting
-from pursue_gen.simulation.planner import SEARCHES
+from pursue_gen.tools.commands import mission_count
+from pursue_gen.tools.commands.mission_count import counting
+from pursue_gen.tools.simulation.planner import SEARCHES
 from tests.cli.test_progress import ERASE, Screen
 from tests.waiting import until
 

@@ -15,12 +15,12 @@ from pursue_gen.language.edits import edited
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.labels import LONGEST_LABEL, markdown, why_no_label
 from pursue_gen.language.wording import objective_text, objective_words
-from pursue_gen.lsp.document import Document
-from pursue_gen.lsp.fixes import fixes
-from pursue_gen.lsp.hover import hover
-from pursue_gen.lsp.navigation import rename
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import write_network
+from pursue_gen.tools.lsp.document import Document
+from pursue_gen.tools.lsp.fixes import fixes
+from pursue_gen.tools.lsp.hover import hover
+from pursue_gen.tools.lsp.navigation import rename
 from tests.language.texts import findings
 
 TEXT = """\

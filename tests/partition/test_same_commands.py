@@ -7,13 +7,13 @@ from typing import Set, Tuple
 import pytest
 
 from pursue_gen.language import load
-from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.inputs import settled
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.solution import Rules, solve_scenario
+from pursue_gen.tools.simulation.stage import stage_of
 from pursue_gen.workspace import Options
 from pursue_runtime.state import SystemState
-from tests.simulation.stages import SCENARIOS
+from tests.tools.simulation.stages import SCENARIOS
 
 Known = Set[Tuple[str, str]]
 """Agents, and what they are to do."""

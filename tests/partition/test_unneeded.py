@@ -10,11 +10,11 @@ import pytest
 import yaml
 
 from pursue_gen.partition import unneeded, unneeded_words
-from pursue_gen.report.verdict import section
+from pursue_gen.tools.report.verdict import section
 from pursue_runtime.ui.page import Facts, FloorPlan, Page
 from pursue_runtime.ui.promise import read_promise
-from tests.authoring.commands import pursue
 from tests.stories import files, model, scenario, solved
+from tests.tools.authoring.commands import pursue
 
 TWO = """\
 poi "a"

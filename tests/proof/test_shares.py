@@ -16,10 +16,6 @@ from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.shares import names_of
-from pursue_gen.simulation.make import make_case
-from pursue_gen.simulation.mission import simulate_mission
-from pursue_gen.simulation.outcome import SAFE, Settings
-from pursue_gen.simulation.runs import MissionRunner
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules, played
@@ -32,6 +28,10 @@ from pursue_gen.synthesis.strategy import Block, Command, Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Automaton, ClockBound, Guard, Network, Objective
 from pursue_gen.tga.watchers import Watcher, with_watchers
+from pursue_gen.tools.simulation.make import make_case
+from pursue_gen.tools.simulation.mission import simulate_mission
+from pursue_gen.tools.simulation.outcome import SAFE, Settings
+from pursue_gen.tools.simulation.runs import MissionRunner
 from tests.proof.test_stages import of_the_whole
 
 RANDOM = settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))

@@ -11,8 +11,8 @@ import pytest
 from fake_robots import Robots, robots_workspace, wait_for
 from ros_world import Ros, end
 
-from pursue_gen.calibration.recordings import samples_in
 from pursue_gen.language import load
+from pursue_gen.tools.calibration.recordings import samples_in
 
 pytestmark = pytest.mark.ros
 

@@ -12,8 +12,8 @@ from ros_world import SCENARIOS, Ros, end
 
 from pursue_gen.language import load
 from pursue_gen.partition import partition
-from pursue_gen.report.ros_graph import topics
 from pursue_gen.solving.solution import Rules, solve_scenario
+from pursue_gen.tools.report.ros_graph import topics
 from tests.waiting import PATIENCE
 
 Build = Callable[..., Path]

@@ -69,7 +69,8 @@ def test_a_report_is_made_in_the_install_space_with_the_native_engine(
     done = rosrun(ros, installed, f"report {SCENARIO.name} --html --runs 5", tmp_path)
     assert done.returncode == 0, done.stdout
     page = (tmp_path / "scenario_1_report.html").read_text(encoding="utf-8")
-    assert (ROOT / "pursue_gen" / "report" / "page.css").read_text(encoding="utf-8").strip().splitlines()[0] in page
+    style = ROOT / "pursue_gen" / "tools" / "report" / "page.css"
+    assert style.read_text(encoding="utf-8").strip().splitlines()[0] in page
     native = ros.run(f"source {installed}/setup.bash; python3 -c '{ENGINE}'", tmp_path, **SYSTEM)
     assert native.returncode == 0, native.stdout
 

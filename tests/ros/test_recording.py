@@ -11,8 +11,8 @@ from typing import Any, Callable, Dict
 import pytest
 from ros_world import Ros
 
-from pursue_gen.calibration.recordings import samples_in
 from pursue_gen.language import load
+from pursue_gen.tools.calibration.recordings import samples_in
 from tests.waiting import PATIENCE
 
 Build = Callable[..., Path]

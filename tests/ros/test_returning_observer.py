@@ -12,13 +12,13 @@ from launched_mission import EVENTS, launched
 from ros_world import Ros, lay_over
 
 from pursue_gen.language import parse
-from pursue_gen.replay import check, game_of, read_recording
-from pursue_gen.replay.finding import FAULT
-from pursue_gen.replay.game import from_workspace
-from pursue_gen.replay.journal import Journal, reconstruct
-from pursue_gen.replay.moves import Moves
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.tools.replay import check, game_of, read_recording
+from pursue_gen.tools.replay.finding import FAULT
+from pursue_gen.tools.replay.game import from_workspace
+from pursue_gen.tools.replay.journal import Journal, reconstruct
+from pursue_gen.tools.replay.moves import Moves
 from pursue_gen.workspace import Options, write_workspace
 from pursue_runtime.words import parse_word
 

@@ -12,7 +12,7 @@ import pytest
 from fake_robots import UNIT, Robots, played, playing, robots_workspace, wait_for, well
 from ros_world import Ros, end
 
-from pursue_gen.replay import MissionRecord, read_recording
+from pursue_gen.tools.replay import MissionRecord, read_recording
 
 pytestmark = pytest.mark.ros
 

@@ -19,8 +19,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from pursue_gen.transport import sender
-from pursue_gen.transport.client import Answer, Robot, Status, Unreached
+from pursue_gen.tools.transport import sender
+from pursue_gen.tools.transport.client import Answer, Robot, Status, Unreached
 from pursue_runtime import bundle as mission_bundle
 from pursue_runtime.controller.follower import Follower
 from pursue_runtime.data import DataError

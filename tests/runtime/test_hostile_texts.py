@@ -22,13 +22,13 @@ pytest.importorskip("cryptography", reason="cryptography is not installed")
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.drawing.floor_picture import read_floor
 from pursue_gen.language.parser import parse
-from pursue_gen.replay.game import read_game
-from pursue_gen.replay.read import read_recording
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.tga.uppaal import read_network, read_query
-from pursue_gen.transport.client import Unreached, _object
-from pursue_gen.transport.poses_file import read_poses
-from pursue_gen.transport.robots_file import read_robots
+from pursue_gen.tools.replay.game import read_game
+from pursue_gen.tools.replay.read import read_recording
+from pursue_gen.tools.transport.client import Unreached, _object
+from pursue_gen.tools.transport.poses_file import read_poses
+from pursue_gen.tools.transport.robots_file import read_robots
 from pursue_gen.workspace.machines import parse_machines
 from pursue_runtime import bundle
 from pursue_runtime.bounded import DATA, exact, read_json, read_yaml, whole
@@ -46,7 +46,7 @@ from pursue_runtime.words import parse_word
 from pursue_runtime.zones import parse_zone
 from tests.partition.games import game
 from tests.runtime.reader_stage import Robot, mission
-from tests.transport.test_mission_bundle import KEY, KEYS, sealed, zipped
+from tests.tools.transport.test_mission_bundle import KEY, KEYS, sealed, zipped
 
 ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 300
@@ -310,7 +310,7 @@ def test_the_size_of_a_data_file_is_bounded_before_it_is_read(tmp_path: Path) ->
     assert "bytes" in refused(lambda _, text: read_data(text), tmp_path, str(path))
 
 
-BY_HAND = {"pursue_runtime/bounded.py", "pursue_runtime/observer/journal.py", "pursue_gen/simulation/nodes.py"}
+BY_HAND = {"pursue_runtime/bounded.py", "pursue_runtime/observer/journal.py", "pursue_gen/tools/simulation/nodes.py"}
 """The reader itself, the journal's own lines, and what a simulation keeps in memory."""
 CALLS = {
     "json": ("load", "loads", "JSONDecoder"),

@@ -22,7 +22,7 @@ SAFE = ("SafeLoader", "CSafeLoader")
 
 def programs() -> Dict[str, str]:
     """name → text of every Python file that runs on a robot: nodes and their modules, tests, what makes other plans."""
-    parts = ("pursue_runtime", "pursue_gen/replanning", "pursue_gen/transport", "templates")
+    parts = ("pursue_runtime", "pursue_gen/tools/replanning", "pursue_gen/tools/transport", "templates")
     files = [path for part in parts for path in sorted((ROOT / part).rglob("*.py"))]
     assert len(files) > 60
     return {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in files}

@@ -14,10 +14,10 @@ import pytest
 from pursue_gen.language import load
 from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.request import SolveRequest, solution_of
-from pursue_gen.transport.bundles import make_mission, sign
-from pursue_gen.transport.client import Robot
-from pursue_gen.transport.send_checks import fits, kept_by_all, previous
-from pursue_gen.transport.sender import Sent, look, send, wait
+from pursue_gen.tools.transport.bundles import make_mission, sign
+from pursue_gen.tools.transport.client import Robot
+from pursue_gen.tools.transport.send_checks import fits, kept_by_all, previous
+from pursue_gen.tools.transport.sender import Sent, look, send, wait
 from pursue_runtime import bundle as mission_bundle
 from pursue_runtime.manager.background import Background, bind
 from pursue_runtime.manager.manager import Manager, RequestLog

@@ -17,8 +17,8 @@ from pursue_gen.language import load, parse
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, read_text
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.report.recording import simulated
 from pursue_gen.synthesis.native.engine import available
+from pursue_gen.tools.report.recording import simulated
 from tests.scenarios.missions import Happening, random_play, trace
 from tests.scenarios.pictures import assert_same_picture
 from tests.scenarios.temporal_logic import Formula, Trace, is_kept, read_formula, trace_of

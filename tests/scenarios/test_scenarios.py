@@ -11,10 +11,10 @@ from docs.scenarios import make
 from pursue_gen.language import load
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, read_text
-from pursue_gen.simulation.outcome import GOAL, SAFE
-from pursue_gen.simulation.runs import MissionRunner
 from pursue_gen.synthesis.native.engine import available
 from pursue_gen.tga import translation_notes
+from pursue_gen.tools.simulation.outcome import GOAL, SAFE
+from pursue_gen.tools.simulation.runs import MissionRunner
 from tests.scenarios.pictures import assert_same_picture
 
 FILES = make.scenario_files()

@@ -18,14 +18,14 @@ from pursue_gen.proof.independence import named_part
 from pursue_gen.proof.native.search import searches_of
 from pursue_gen.proof.search import Depth
 from pursue_gen.proof.worst_case import INSTANT
-from pursue_gen.simulation.make import make_case
-from pursue_gen.simulation.runs import simulate
 from pursue_gen.solving.answers import Answer, answers
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import Solution, solve_scenario
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.tga.network import Network
+from pursue_gen.tools.simulation.make import make_case
+from pursue_gen.tools.simulation.runs import simulate
 from tests.cli.test_commands import pursue
 
 DESK = """

@@ -16,10 +16,6 @@ from pursue_gen.partition import partition
 from pursue_gen.partition.strategy_data import cover_data, strategy_data
 from pursue_gen.partition.strategy_file import render, render_cover
 from pursue_gen.proof.checker import verify
-from pursue_gen.simulation.make import make_case
-from pursue_gen.simulation.mission import simulate_mission
-from pursue_gen.simulation.outcome import GOAL, Settings
-from pursue_gen.simulation.runs import MissionRunner
 from pursue_gen.solving.given_plan import trials
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.quick import quick
@@ -30,6 +26,10 @@ from pursue_gen.solving.solution import Solution, guaranteed, solution
 from pursue_gen.solving.without_pauses import won_without_pauses
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tools.simulation.make import make_case
+from pursue_gen.tools.simulation.mission import simulate_mission
+from pursue_gen.tools.simulation.outcome import GOAL, Settings
+from pursue_gen.tools.simulation.runs import MissionRunner
 
 HOTEL = """
 poi "desk"

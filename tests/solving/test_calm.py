@@ -17,10 +17,6 @@ from pursue_gen.language.network_names import AT_RISK, is_going
 from pursue_gen.language.scenario import Patrol, Respond, Scenario
 from pursue_gen.outcomes import LimitHit, Lost, NotProven
 from pursue_gen.proof.checker import verify
-from pursue_gen.simulation.make import make_case
-from pursue_gen.simulation.mission import SimulatedMission
-from pursue_gen.simulation.outcome import SAFE
-from pursue_gen.simulation.runs import MissionRunner
 from pursue_gen.solving.answers import answers
 from pursue_gen.solving.calm import calm
 from pursue_gen.solving.due_moves import duties, only_due, patrols
@@ -34,6 +30,10 @@ from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.strategy import with_automata_of
 from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tools.simulation.make import make_case
+from pursue_gen.tools.simulation.mission import SimulatedMission
+from pursue_gen.tools.simulation.outcome import SAFE
+from pursue_gen.tools.simulation.runs import MissionRunner
 from pursue_runtime.state import SystemState
 from tests.patrols import game_of
 

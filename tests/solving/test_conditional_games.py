@@ -6,12 +6,12 @@ import pytest
 
 from pursue_gen.explanation.explain import explain
 from pursue_gen.language import parse
-from pursue_gen.simulation.mission import simulate_mission
-from pursue_gen.simulation.outcome import GOAL, HELD, SAFE, Settings
-from pursue_gen.simulation.promises import Promises
-from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.tools.simulation.mission import simulate_mission
+from pursue_gen.tools.simulation.outcome import GOAL, HELD, SAFE, Settings
+from pursue_gen.tools.simulation.promises import Promises
+from pursue_gen.tools.simulation.stage import stage_of
 from pursue_gen.workspace import Options
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import STOPPED, SystemState

@@ -15,13 +15,13 @@ from pursue_gen.diagnostics import PursueError, Severity
 from pursue_gen.language import check, parse
 from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, Holds, Not, OnWay, Who, condition_text
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.simulation.mission import simulate_mission
-from pursue_gen.simulation.outcome import GOAL, SAFE, Settings
-from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import Solution, solution
 from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tools.simulation.mission import simulate_mission
+from pursue_gen.tools.simulation.outcome import GOAL, SAFE, Settings
+from pursue_gen.tools.simulation.stage import stage_of
 from pursue_gen.workspace import Options
 from tests.conditions import ref
 

@@ -12,10 +12,6 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.native import tables
-from pursue_gen.simulation.make import make_case
-from pursue_gen.simulation.mission import simulate_mission
-from pursue_gen.simulation.outcome import GOAL, SAFE, Settings
-from pursue_gen.simulation.runs import MissionRunner
 from pursue_gen.solving.decomposition import won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
@@ -27,6 +23,10 @@ from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tools.simulation.make import make_case
+from pursue_gen.tools.simulation.mission import simulate_mission
+from pursue_gen.tools.simulation.outcome import GOAL, SAFE, Settings
+from pursue_gen.tools.simulation.runs import MissionRunner
 from tests.proof.staged_games import damaged
 from tests.proof.test_stages import of_the_whole
 from tests.solving.random_stories import stories

@@ -13,8 +13,6 @@ from pursue_gen.explanation.explain import explain, render
 from pursue_gen.language import parse
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.worst_case import worst_case
-from pursue_gen.simulation.outcome import GOAL, Settings
-from pursue_gen.simulation.runs import MissionRunner, case_of
 from pursue_gen.solving.given_plan import trials
 from pursue_gen.solving.least_time import fastest
 from pursue_gen.solving.rules import IDEAL, Rules
@@ -27,6 +25,8 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.tga.scale import common_denominator, scaled
 from pursue_gen.tga.uppaal import read_network, write_network
+from pursue_gen.tools.simulation.outcome import GOAL, Settings
+from pursue_gen.tools.simulation.runs import MissionRunner, case_of
 from pursue_gen.workspace import Options, generate
 from pursue_runtime.data import parse_data
 from tests.synthesis.random_games import networks

@@ -15,11 +15,6 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.checker import verify
-from pursue_gen.replay.game import Source, game_of
-from pursue_gen.simulation.make import make_case
-from pursue_gen.simulation.mission import simulate_mission
-from pursue_gen.simulation.outcome import Settings
-from pursue_gen.simulation.runs import MissionRunner
 from pursue_gen.solving.decomposition import has_parts, won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
@@ -31,6 +26,11 @@ from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tools.replay.game import Source, game_of
+from pursue_gen.tools.simulation.make import make_case
+from pursue_gen.tools.simulation.mission import simulate_mission
+from pursue_gen.tools.simulation.outcome import Settings
+from pursue_gen.tools.simulation.runs import MissionRunner
 
 DELAY = Fraction(1, 10)
 

@@ -14,7 +14,7 @@ from pursue_gen.solving.forbidden import check_forbidden
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.tga import scenario_objective, translate
 from tests.assumptions import APART, CAFE, LEAVES, MUSEUM, ONCE, ROOMS, scenario
-from tests.authoring.commands import pursue
+from tests.tools.authoring.commands import pursue
 from tests.whole_stories import stories
 
 WORKSHOP = """\

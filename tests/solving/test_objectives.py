@@ -9,13 +9,13 @@ import pytest
 from pursue_gen.explanation.explain import explain, render
 from pursue_gen.language import parse
 from pursue_gen.proof.checker import verify
-from pursue_gen.simulation.mission import simulate_mission
-from pursue_gen.simulation.outcome import GOAL, SAFE, Settings
-from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import fastest_solution, guaranteed, solve_scenario
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tools.simulation.mission import simulate_mission
+from pursue_gen.tools.simulation.outcome import GOAL, SAFE, Settings
+from pursue_gen.tools.simulation.stage import stage_of
 from pursue_gen.workspace import Options
 from tests.solving.verdicts import is_won, text
 

@@ -11,12 +11,6 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.partition.strategy_data import cover_data
 from pursue_gen.proof.checker import verify
-from pursue_gen.replay.game import Source, game_of
-from pursue_gen.report.strategy_data import size, strategy_data_of
-from pursue_gen.simulation.make import make_case
-from pursue_gen.simulation.mission import simulate_mission
-from pursue_gen.simulation.outcome import Settings
-from pursue_gen.simulation.runs import MissionRunner
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.passages import crowd_of, won_by_passages
 from pursue_gen.solving.request import SolveRequest
@@ -27,6 +21,12 @@ from pursue_gen.solving.verdict import verdict_json
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import read_network, write_network
+from pursue_gen.tools.replay.game import Source, game_of
+from pursue_gen.tools.report.strategy_data import size, strategy_data_of
+from pursue_gen.tools.simulation.make import make_case
+from pursue_gen.tools.simulation.mission import simulate_mission
+from pursue_gen.tools.simulation.outcome import Settings
+from pursue_gen.tools.simulation.runs import MissionRunner
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import read_cover
 

@@ -21,8 +21,8 @@ from pursue_gen.solving.rules import DEFAULT, IDEAL
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits
-from tests.authoring.commands import pursue
 from tests.patrols import corridor
+from tests.tools.authoring.commands import pursue
 
 from .verdicts import is_won
 

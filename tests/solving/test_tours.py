@@ -13,10 +13,6 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.shares import names_of
-from pursue_gen.simulation.make import make_case
-from pursue_gen.simulation.mission import simulate_mission
-from pursue_gen.simulation.outcome import SAFE, Settings
-from pursue_gen.simulation.runs import MissionRunner
 from pursue_gen.solving.options import DEFAULT as OPTIONS
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import DEFAULT, Rules
@@ -28,6 +24,10 @@ from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import with_automata_of
 from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tools.simulation.make import make_case
+from pursue_gen.tools.simulation.mission import simulate_mission
+from pursue_gen.tools.simulation.outcome import SAFE, Settings
+from pursue_gen.tools.simulation.runs import MissionRunner
 from tests.patrols import corridor, game_of, small_patrols, tours_of
 
 LATE = Rules().reaction

@@ -8,7 +8,7 @@ import pytest
 
 from pursue_gen.solving.vacuity import check_assumed_alone
 from tests.assumptions import APART, AWAY, CAFE, GOODBYE, LEAVES, MUSEUM, ONCE, ROOMS, UNTOUCHED, scenario
-from tests.authoring.commands import pursue
+from tests.tools.authoring.commands import pursue
 
 NEVER = "assume: guest does call at_most 0 times"
 

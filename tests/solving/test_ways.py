@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 
 from pursue_gen.language import parse
-from pursue_gen.report.recording import simulated
-from pursue_gen.simulation.mission import simulate_mission
-from pursue_gen.simulation.outcome import GOAL, SAFE, Settings
-from pursue_gen.simulation.runs import case_of
-from pursue_gen.simulation.stage import stage_of
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.tools.report.recording import simulated
+from pursue_gen.tools.simulation.mission import simulate_mission
+from pursue_gen.tools.simulation.outcome import GOAL, SAFE, Settings
+from pursue_gen.tools.simulation.runs import case_of
+from pursue_gen.tools.simulation.stage import stage_of
 from pursue_gen.workspace import Options
 from tests.solving.verdicts import is_won, text
 

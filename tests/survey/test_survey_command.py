@@ -14,9 +14,9 @@ from typing import Any
 import pytest
 
 from pursue_gen.language import check, load
-from tests.authoring.commands import Outcome, pursue
 from tests.conftest import ROOT
 from tests.survey.maps import drawn, three_rooms, write
+from tests.tools.authoring.commands import Outcome, pursue
 
 TEXT = """// three rooms
 poi "desk" //[1.0, 1.0, 0, 0, 0, 0, 1] by the window

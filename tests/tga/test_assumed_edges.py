@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.scenario import NeverHolds
-from pursue_gen.simulation.meaning import holds
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.assumptions import without_broken
 from pursue_gen.tga.network import ClockBound, Network, Test
 from pursue_gen.tga.uppaal import read_network, write_network
+from pursue_gen.tools.simulation.meaning import holds
 from pursue_runtime.model import Position
 from pursue_runtime.zones import EPSILON
 from tests.assumptions import (

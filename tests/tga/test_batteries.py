@@ -14,11 +14,6 @@ from pursue_gen.explanation.ablations import without_each
 from pursue_gen.explanation.explain import explain
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.play.games import session_of
-from pursue_gen.play.session import opening
-from pursue_gen.simulation.outcome import SAFE, Settings
-from pursue_gen.simulation.promises import Promises
-from pursue_gen.simulation.runs import MissionRunner, case_of
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import Solution, solve_scenario
 from pursue_gen.synthesis.limits import Limits
@@ -26,6 +21,11 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.status_words import statuses
 from pursue_gen.tga.uppaal import read_network, write_network
+from pursue_gen.tools.play.games import session_of
+from pursue_gen.tools.play.session import opening
+from pursue_gen.tools.simulation.outcome import SAFE, Settings
+from pursue_gen.tools.simulation.promises import Promises
+from pursue_gen.tools.simulation.runs import MissionRunner, case_of
 from pursue_gen.workspace import Options
 from pursue_runtime.state import SystemState
 

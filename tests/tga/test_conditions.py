@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from pursue_gen.language import parse
 from pursue_gen.language.conditions import Condition, condition_text
 from pursue_gen.proof.moves import Arena, State
-from pursue_gen.simulation.meaning import broken_of, holds
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.uppaal import read_network, write_network
+from pursue_gen.tools.simulation.meaning import broken_of, holds
 from tests.conditions import CONDITIONS, SCENARIO, with_only_if
 
 OBJECTIVE = scenario_objective(parse(SCENARIO, "x.pur"))

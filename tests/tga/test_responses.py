@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from pursue_gen.language import network_names as names
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Ref, Respond, Scenario
-from pursue_gen.simulation.meaning import holds
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Edge, Guard, Sync, Test
 from pursue_gen.tga.uppaal import read_network, write_network
+from pursue_gen.tools.simulation.meaning import holds
 from pursue_gen.workspace.model_file import model_data
 from pursue_runtime.model import Model
 

@@ -183,7 +183,7 @@ def test_ports_are_open_on_loopback_only_and_missions_arrive_in_the_lab_only(
         services[name]["profiles"] == ["lab"] and services[name]["command"][1] == "communication_manager"
         for name in ports
     )
-    robots = pytest.importorskip("pursue_gen.transport.robots_file")
+    robots = pytest.importorskip("pursue_gen.tools.transport.robots_file")
     found = {
         robot.name: (robot.host, f"127.0.0.1:{robot.port}:13000")
         for robot in robots.read_robots(workspace / "docker/robots.yaml")

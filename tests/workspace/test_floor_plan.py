@@ -13,7 +13,7 @@ from pursue_gen.drawing import floor_picture as desk
 from pursue_runtime.data import DataError, read_data
 from pursue_runtime.poses import read_poses
 from pursue_runtime.ui.floor import read_floor
-from tests.authoring.commands import pursue
+from tests.tools.authoring.commands import pursue
 
 SCENARIO = """poi "a" //[1.0, 1.0, 0, 0, 0, 0, 1]
 poi "b" //[9.0, 9.0, 0, 0, 0, 0, 1]

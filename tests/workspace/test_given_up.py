@@ -11,14 +11,14 @@ import yaml
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load, parse
-from pursue_gen.play.games import session_of
-from pursue_gen.play.session import opening
-from pursue_gen.replanning import replan
-from pursue_gen.replay.game import Source, from_data, game_of
 from pursue_gen.solving.optional import Promised, promised_of
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import guaranteed
+from pursue_gen.tools.play.games import session_of
+from pursue_gen.tools.play.session import opening
+from pursue_gen.tools.replanning import replan
+from pursue_gen.tools.replay.game import Source, from_data, game_of
 from pursue_gen.workspace import Options, generate
 from pursue_gen.workspace.make import options_for
 from pursue_runtime.model import Model

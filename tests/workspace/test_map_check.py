@@ -14,7 +14,7 @@ from pursue_gen.drawing.ground import Ground, read_ground
 from pursue_gen.language import parse
 from pursue_gen.workspace.map_check import check_spots
 from pursue_gen.workspace.robot_size import RobotSize, Sizes, sizes_of
-from tests.authoring.commands import pursue
+from tests.tools.authoring.commands import pursue
 
 WALL, UNKNOWN, FREE = 0, 205, 254
 ROWS = [

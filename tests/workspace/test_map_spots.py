@@ -20,7 +20,7 @@ from pursue_gen.workspace.map_check import check_spots
 from pursue_gen.workspace.map_spots import SPARE_REACH, is_seen, spare_spots, with_spots
 from pursue_gen.workspace.robot_size import RobotSize, Sizes
 from pursue_gen.workspace.spots import placing
-from tests.authoring.commands import pursue
+from tests.tools.authoring.commands import pursue
 from tests.workspace.test_spots import scenario, spots_of
 
 SIZE = RobotSize(0.2, 0.1)

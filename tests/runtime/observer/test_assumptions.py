@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Tuple
 import pytest
 import yaml
 
-from pursue_gen.replanning import replan
+from pursue_gen.tools.replanning import replan
 from pursue_runtime.model import Model
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import HOLDING, RUNNING, STOPPED, SystemState, rewinds

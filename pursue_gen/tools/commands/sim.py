@@ -1,0 +1,144 @@
+"""The command `sim`."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import sys
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Dict, Optional
+
+import typer
+
+from pursue_gen.cli.console import guarded, info, show, suggest
+from pursue_gen.cli.options import JSON, REQUEST, SCENARIO, with_request
+from pursue_gen.diagnostics import counted, usage_error
+from pursue_gen.files import shell_quoted
+from pursue_gen.outcomes import NO
+
+if TYPE_CHECKING:
+    from pursue_gen.solving.request import SolveRequest
+    from pursue_gen.tools.simulation.runs import Case, Summary
+
+
+class OpponentKind(str, Enum):
+    """What uncontrollable agents do."""
+
+    RANDOM = "random"
+    WORST = "worst"
+    STILL = "still"
+    MIXED = "mixed"
+
+
+OPPONENT = typer.Option(
+    OpponentKind.MIXED, help="What uncontrollable agents do; mixed: one of the others in each mission."
+)
+
+PLAN = typer.Option(None, metavar="FILE", help="Use this plan instead of solving.")
+OPTIONS = ("controllers", "reach_obj", "ends", "reaction", "slack", "plan", "optimize", "within", "limit", "memory")
+
+
+@guarded
+@with_request(*OPTIONS, plan=PLAN)
+def sim(
+    scenario: Path = SCENARIO,
+    runs: int = typer.Option(1000, metavar="N", min=1, help="So many missions."),
+    seed: int = typer.Option(1, metavar="S", min=0, help="The first mission's number; the next has the next."),
+    faults: str = typer.Option(
+        "none", metavar="NAMES", help="What goes wrong: names with commas between them, all, none; help: what there is."
+    ),
+    opponent: OpponentKind = OPPONENT,
+    until: Optional[float] = typer.Option(
+        None, metavar="UNITS", help="When a mission is over, in time units; 1000 with a goal, else 200."
+    ),
+    jobs: int = typer.Option(1, metavar="N", min=1, help="So many processes; the outcome is the same."),
+    scheduler: Optional[str] = typer.Option(
+        None, metavar="ADDRESS", help="Play on the workers of this Dask scheduler, as tcp://HOST:8786, not here."
+    ),
+    request: SolveRequest = REQUEST,
+    timeline: Optional[Path] = typer.Option(
+        None, metavar="OUT", help="Draw one mission (--runs 1): a timeline OUT.svg, or OUT.html with an animation too."
+    ),
+    as_json_: bool = JSON,
+) -> None:
+    """Play many missions with the generated code in a simulated world, without ROS, and check each one.
+
+    The exit status is 1 where a mission failed: without faults it did not reach the goal (or did not
+    stay safe), with faults it neither did that nor stopped; or, ever, a robot got a wrong command. Its play is shown.
+    """
+    from pursue_gen.cli.inputs import with_periods
+    from pursue_gen.cli.progress import progress_line
+    from pursue_gen.cli.solution import naming_costs, show_promise
+    from pursue_gen.language import load
+    from pursue_gen.solving.optional import promised_of
+    from pursue_gen.tools.commands.mission_count import counting
+    from pursue_gen.tools.simulation.cluster import cluster, outcomes_on
+    from pursue_gen.tools.simulation.faults import FAULTS, read_faults
+    from pursue_gen.tools.simulation.make import check_until, make_case
+    from pursue_gen.tools.simulation.runs import simulate
+
+    if faults == "help":
+        print("\n".join(f"{name:10}  {what}" for name, what in FAULTS.items()))
+        return
+    kinds = read_faults(faults)
+    check_until(until)
+    if timeline is not None:
+        _check_timeline(timeline, runs, seed)
+    read = with_periods(load(scenario), request, as_json_)
+    with naming_costs(read, request, as_json_), progress_line(as_json_) as progress:
+        found = promised_of(read, request, progress)
+    read, won = found.scenario, found.solution
+    show(won.warnings)
+    show_promise(read, assumptions=False)
+    case, knows = make_case(read, won, request, opponent.value, kinds, until)
+    if not knows:
+        info("the worst opponent acts at random: the game is too large, or its strategy in stages, to look far ahead")
+    with counting(runs, as_json_) as count:
+        seeds = range(seed, seed + runs)
+        played = None if scheduler is None else outcomes_on(cluster(scheduler), case, seeds)
+        summary = simulate(case, seeds, jobs, count, played=played)
+    if timeline is not None:
+        _draw(case, seed, timeline)
+    facts = {"scenario": read.name, "seed": seed, "opponent": opponent.value, "faults": list(kinds)}
+    _print(case, summary, facts, as_json_)
+    if summary.failed:
+        raise typer.Exit(NO)
+    suggest(f"pursue-gen ws {shell_quoted(scenario)}")
+
+
+def _check_timeline(timeline: Path, runs: int, seed: int) -> None:
+    from pursue_gen.tools.report.animation import check_name
+
+    check_name(timeline)
+    if runs != 1:
+        raise usage_error("a timeline shows one mission", f"add --runs 1, and --seed {seed} or another")
+
+
+def _draw(case: Case, seed: int, timeline: Path) -> None:
+    from pursue_gen.tools.report.animation import write
+    from pursue_gen.tools.report.recording import simulated
+
+    write(simulated(case, seed), timeline)
+    info(f"{timeline} shows the mission")
+
+
+def _print(case: Case, summary: Summary, facts: Dict[str, Any], as_json_: bool) -> None:
+    from pursue_gen.tools.simulation.outcome_texts import as_json, failure, table
+
+    if as_json_:
+        print(json.dumps(as_json(summary, facts), indent=1))
+    else:
+        print(table(summary, case.won.guarantee.in_words() if case.won.guarantee else None))
+    if summary.failed:
+        info(f"{counted(summary.failed, 'mission')} of {summary.missions} failed; the first:")
+        for outcome in summary.failures:
+            info("\n".join(failure(outcome, _again(outcome.seed))))
+
+
+def _again(seed: int) -> str:
+    """The command line that plays this mission alone, with the same options."""
+    words = sys.argv[1:]
+    for option in ("--seed", "--runs", "--jobs"):
+        words = [w for k, w in enumerate(words) if w != option and words[k - 1] != option and w.split("=")[0] != option]
+    return shlex.join(["pursue-gen", *words, "--seed", str(seed), "--runs", "1"])

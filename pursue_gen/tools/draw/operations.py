@@ -1,0 +1,360 @@
+"""Changes that a person makes on the picture or in a form, as changes of the text.
+
+The text that comes out is what `pursue-gen fmt` would write, with all comments and in the person's order.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import count
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
+
+from pursue_gen.diagnostics import PursueError, Span, error
+from pursue_gen.language.formatter import format_text
+from pursue_gen.language.messages import RESERVED
+from pursue_gen.language.names import KINDS
+from pursue_gen.language.poses import read_poses
+from pursue_gen.language.usable import reserved
+from pursue_gen.tools.draw import fields
+from pursue_gen.tools.draw.fields import Values, refused
+from pursue_gen.tools.draw.places import lengths_per_metre, positions, with_all_positions
+from pursue_gen.tools.draw.poses import metres, with_position, with_spot
+from pursue_gen.tools.draw.statement_edits import (
+    PARTS,
+    added,
+    changed,
+    parts_of,
+    restated,
+    with_part,
+    without,
+    without_remark,
+)
+from pursue_gen.tools.lsp.completion import HOLE
+from pursue_gen.tools.lsp.document import Document
+from pursue_gen.tools.lsp.forms import FORMS, Form
+from pursue_gen.tools.lsp.navigation import rename
+from pursue_gen.tools.lsp.tokens import DECLARED, Statement
+
+ANYBODY = ("any robot", "no robot", "any agent", "no agent")
+"""What may stand in the place of an agent's name in some statements."""
+
+
+@dataclass(frozen=True)
+class Changed:
+    """The text after a change, and the number of the statement that it is about (None: of none)."""
+
+    text: str
+    statement: Optional[int] = None
+
+
+def change(text: str, operation: Any, file: str = "scenario.pur") -> Changed:
+    """The text after an operation of the page: {"do": its name, …}.
+
+    Raises PursueError where the text has a syntax error (DRW002), the operation makes no sense or would leave one
+    (DRW001), or a name is refused.
+    """
+    does = _OPERATIONS.get(str(operation.get("do"))) if isinstance(operation, Mapping) else None
+    if does is None:
+        raise refused("the page sent a change that is not known", "load the page again")
+    try:
+        document = Document.of(format_text(text, file), file)
+    except PursueError as problem:
+        first = problem.diagnostics[0]
+        where = f" in line {first.span.line}" if first.span else ""
+        message = f"the text has an error{where}: {first.message}"
+        hint = "correct the text first; until then it cannot be changed in the picture"
+        raise PursueError([error("DRW002", message, hint=hint)]) from None
+    after, statement = does(document, operation)
+    try:
+        return Changed(format_text(after.text, file), statement)
+    except PursueError as problem:
+        first = problem.diagnostics[0]
+        raise refused(f"this cannot be written: {first.message}", first.hint) from None
+
+
+Done = Tuple[Document, Optional[int]]
+
+
+# Places ---------------------------------------------------------------------------------------------------------------
+
+
+def _add_place(document: Document, values: Values) -> Done:
+    """{x, y, name?}: a place there; if others have computed positions, these are written down, too."""
+    x, y = fields.metres_of(values, "x"), fields.metres_of(values, "y")
+    name = _new_name(document, values, "place")
+    document = with_all_positions(document)
+    return added(document, f'poi "{name}" {with_position(None, x, y)}')
+
+
+def _move_place(document: Document, values: Values) -> Done:
+    """{name, x, y, yaw?}: the place is there; `yaw` in degrees."""
+    name = fields.name_of(values, "name")
+    x, y = fields.metres_of(values, "x"), fields.metres_of(values, "y")
+    yaw = fields.degrees_of(values, "yaw") if values.get("yaw") is not None else None
+    document = with_all_positions(document)
+    number = _declared(document, "POI", name)
+    pose = parts_of(document.statements[number]).get("POSE")
+    return with_part(document, number, "POSE", with_position(str(pose[0]) if pose else None, x, y, yaw)), number
+
+
+def _move_spot(document: Document, values: Values) -> Done:
+    """{name, robot, x, y}: the robot's own spot at the place is there."""
+    name, robot = fields.name_of(values, "name"), fields.name_of(values, "robot")
+    x, y = fields.metres_of(values, "x"), fields.metres_of(values, "y")
+    number = _declared(document, "POI", name)
+    pose = parts_of(document.statements[number]).get("POSE")
+    if pose is None or not read_poses(str(pose[0]), Span("", 1, 1, 1, 1)).spots:
+        raise refused(f"no robot has a spot of its own at {name}", "choose it again")
+    comment = with_spot(str(pose[0]), robot, x, y)
+    if comment is None:
+        raise refused(f"{robot} has no spot of its own at {name}", "choose it again")
+    return with_part(document, number, "POSE", comment), number
+
+
+def _connect(document: Document, values: Values) -> Done:
+    """{a, b, distance?, one_way?}: a way; without a distance it has the length of the line, in the scenario's unit."""
+    a, b = fields.name_of(values, "a"), fields.name_of(values, "b")
+    for name in (a, b):
+        _declared(document, "POI", name)
+    if a == b:
+        raise refused(f"a way from {a} to itself", "choose another place")
+    one_way = bool(values.get("one_way"))
+    for number, statement in enumerate(document.statements):
+        if statement.kind == "CONNECT" and _joins(statement, a, b, one_way):
+            return document, number
+    distance = fields.number_of(values, "distance") if values.get("distance") else _length(document, a, b)
+    return added(document, f"connect {a} and {b} distance {distance}{' one_way' if one_way else ''}")
+
+
+def _joins(statement: Statement, a: str, b: str, one_way: bool) -> bool:
+    """Is this the way already? One that goes both ways is."""
+    parts = parts_of(statement)
+    ends = tuple(str(parts[key][1]) for key in ("CONNECT", "AND") if len(parts.get(key, ())) > 1)
+    if one_way and "ONE_WAY" in parts:
+        return ends == (a, b)
+    return ends in ((a, b), (b, a))
+
+
+def _length(document: Document, a: str, b: str) -> str:
+    """How long the straight line is in the scenario's unit of distance, 0.1 at least."""
+    where, _ = positions(document.scenario)
+    (ax, ay), (bx, by) = ((where[name].x, where[name].y) for name in (a, b))
+    length = ((ax - bx) ** 2 + (ay - by) ** 2) ** 0.5 * lengths_per_metre(document.scenario)
+    return metres(max(round(length, 1), 0.1))
+
+
+# Agents and events ----------------------------------------------------------------------------------------------------
+
+
+def _add_agent(document: Document, values: Values) -> Done:
+    """{location, name?}: a robot there."""
+    location = fields.name_of(values, "location")
+    _declared(document, "POI", location)
+    name = _new_name(document, values, "bot")
+    return added(document, f'agent "{name}" controllable mobile 1 location {location}')
+
+
+def _add_event(document: Document, values: Values) -> Done:
+    """{location?, name?}: an event, anywhere or there."""
+    name = _new_name(document, values, "work")
+    location = f" location {fields.name_of(values, 'location')}" if values.get("location") else ""
+    return added(document, f'event "{name}"{location}')
+
+
+def _rename(document: Document, values: Values) -> Done:
+    """{kind, name, new}: another name, wherever it is used."""
+    kind, name, new = (fields.text_of(values, field) for field in ("kind", "name", "new"))
+    if kind not in KINDS or name not in document.declared[kind]:
+        raise refused(f"there is no {kind} {name}", "choose it again")
+    here = document.declared[kind][name]
+    return changed(document, *rename(document, here.start, new)), here.statement
+
+
+def _set(document: Document, values: Values) -> Done:
+    """{statement, fields: {…}}: parts of a place, a way, an event or an agent; see _FIELDS."""
+    number = fields.index_of(values, "statement", len(document.statements))
+    wanted, known = values.get("fields"), _FIELDS.get(document.statements[number].kind, {})
+    if not isinstance(wanted, Mapping) or not set(wanted) <= set(known):
+        raise refused("the page sent a change that is not known", "load the page again")
+    for field in wanted:
+        for part, words in known[field](wanted, field).items():
+            document = with_part(document, number, part, words)
+            if part in ("DISTANCE", "DURATION"):
+                document = without_remark(document, number)
+    return document, number
+
+
+Parts = Dict[str, Optional[str]]
+"""The word that begins a part of a statement → what stands behind it; None: it is left out."""
+
+
+def _text(part: str, read: Callable[[Values, str], str]) -> Callable[[Values, str], Parts]:
+    """A field that is left out where it is empty."""
+    return lambda values, field: {part: read(values, field) if values.get(field) else None}
+
+
+def _needed(part: str, read: Callable[[Values, str], str]) -> Callable[[Values, str], Parts]:
+    return lambda values, field: {part: read(values, field)}
+
+
+def _tick(part: str) -> Callable[[Values, str], Parts]:
+    return lambda values, field: {part: "" if fields.is_set(values, field) else None}
+
+
+def _list(part: str) -> Callable[[Values, str], Parts]:
+    return lambda values, field: {part: ", ".join(fields.names_of(values, field)) or None}
+
+
+def _kind(values: Values, field: str) -> Parts:
+    kinds: Dict[str, Parts] = {
+        "robot": {"HUMAN": None, "CONTROLLABLE": ""},
+        "person": {"HUMAN": "", "CONTROLLABLE": ""},
+        "free": {"HUMAN": None, "CONTROLLABLE": None},
+    }
+    value = fields.text_of(values, field)
+    if value not in kinds:
+        raise refused(f"{field} is '{value}'", f"expected {', '.join(kinds)}")
+    return kinds[value]
+
+
+def _times(values: Values, field: str) -> Parts:
+    return {"AT_MOST": f"{fields.number_of(values, field)} times" if values.get(field) else None}
+
+
+_FIELDS: Mapping[str, Mapping[str, Callable[[Values, str], Parts]]] = {
+    "POI": {"label": _text("LABEL", fields.label_of)},
+    "CONNECT": {
+        "distance": _needed("DISTANCE", fields.number_of),
+        "one_way": _tick("ONE_WAY"),
+        "only_if": _text("ONLY_IF", fields.text_of),
+    },
+    "EVENT": {
+        "label": _text("LABEL", fields.label_of),
+        "collaborative": _tick("COLLABORATIVE"),
+        "together": _tick("TOGETHER"),
+        "location": _text("LOCATION", fields.name_of),
+        "duration": _text("DURATION", fields.window_of),
+        "at_most": _times,
+        "only_if": _text("ONLY_IF", fields.text_of),
+    },
+    "AGENT": {
+        "label": _text("LABEL", fields.label_of),
+        "kind": _kind,
+        "mobile": _text("MOBILE", fields.number_of),
+        "location": _needed("LOCATION", fields.name_of),
+        "can_do": _list("CAN_DO"),
+        "reacts_to": _list("REACTS_TO"),
+    },
+}
+"""The fields of each kind of statement, and the parts that they are."""
+
+
+# All other statements -------------------------------------------------------------------------------------------------
+
+
+def _add_form(document: Document, values: Values) -> Done:
+    """{kind, form, values: […]}: a statement of FORMS, its holes filled in order."""
+    kind = fields.text_of(values, "kind")
+    if kind not in FORMS:
+        raise refused(f"there is no statement {kind}", "load the page again")
+    form = FORMS[kind][fields.index_of(values, "form", len(FORMS[kind]))]
+    return added(document, filled(form, values.get("values")))
+
+
+def filled(form: Form, given: Any) -> str:
+    """The words of a form with values in its holes. Raises PursueError where they do not fit."""
+    holes = HOLE.findall(form.words)
+    if not isinstance(given, list) or len(given) != len(holes):
+        raise refused("not everything is filled in", "choose something in each field")
+    words = form.words
+    for (example, what), value in zip(holes, given):
+        field = {"value": value}
+        is_number = bool(example) and what.replace(".", "").isdigit()
+        if is_number:
+            text = fields.number_of(field, "value")
+        elif what == "agent" and value in ANYBODY:
+            text = str(value)
+        else:
+            text = fields.name_of(field, "value")
+        words = HOLE.sub(text, words, count=1)  # names and numbers: nothing in them means something to sub
+    return words
+
+
+def _restate(document: Document, values: Values) -> Done:
+    """{statement, words}: other words for a statement."""
+    number = fields.index_of(values, "statement", len(document.statements))
+    words = fields.text_of(values, "words")
+    if document.statements[number].kind in PARTS:
+        raise refused("this statement has a form of its own", "load the page again")
+    alone = Document.of(words, document.file).statements
+    if len(alone) != 1 or not words:
+        raise refused("expected the words of one statement", "add others on their own")
+    return restated(document, number, words), number
+
+
+def _delete(document: Document, values: Values) -> Done:
+    """{statement}: without it; a place goes with its ways, an agent with its travel times and its battery."""
+    number = fields.index_of(values, "statement", len(document.statements))
+    statement = document.statements[number]
+    goes_along = {"POI": ("CONNECT", "TRAVEL"), "AGENT": ("TRAVEL", "BATTERY")}.get(statement.kind, ())
+    using = [use for use in _users(document, number) if document.statements[use].kind not in goes_along]
+    if using:
+        name = str(statement.name or "")[1:-1]
+        lines = [str(document.positions.line_of(document.statements[use].start) + 1) for use in using]
+        where = f"line{'s' if len(lines) > 1 else ''} {', '.join(lines)}"
+        raise refused(f"{name} is used in {where}", "change or delete what uses it first")
+    numbers = [number, *_users(document, number)]
+    following = number + 1
+    if following < len(document.statements) and document.statements[following].kind == "TAIL":
+        numbers.append(following)  # the query behind an objective
+    return without(document, sorted(set(numbers))), None
+
+
+def _users(document: Document, number: int) -> List[int]:
+    """The other statements that use the name which a statement declares."""
+    statement = document.statements[number]
+    kind, name = DECLARED.get(statement.kind), str(statement.name or "")[1:-1]
+    others = (use for use in document.occurrences if use.name == name and use.kind == kind and not use.declares)
+    return sorted({use.statement for use in others} - {number}) if name else []
+
+
+def _format(document: Document, _: Values) -> Done:
+    """{}: the layout alone."""
+    return document, None
+
+
+def _declared(document: Document, kind: str, name: str) -> int:
+    """The number of the statement that declares a name. Raises PursueError where none does."""
+    found = document.declared[kind].get(name)
+    if found is None:
+        raise refused(f"there is no {'place' if kind == 'POI' else kind} {name}", "choose it again")
+    return found.statement
+
+
+def _new_name(document: Document, values: Values, stem: str) -> str:
+    """The name that was typed, or else one that is free."""
+    taken = {name for kind in KINDS for name in document.declared[kind]}
+    if not values.get("name"):
+        return next(f"{stem}{number}" for number in count(1) if f"{stem}{number}" not in taken)
+    name = fields.name_of(values, "name")
+    why = reserved(name, RESERVED) or (f"{name} is taken" if name in taken else "")
+    if why:
+        raise refused(why, "choose another name")
+    return name
+
+
+_OPERATIONS: Mapping[str, Callable[[Document, Values], Done]] = {
+    "add place": _add_place,
+    "move place": _move_place,
+    "move spot": _move_spot,
+    "connect": _connect,
+    "add agent": _add_agent,
+    "add event": _add_event,
+    "rename": _rename,
+    "set": _set,
+    "add form": _add_form,
+    "restate": _restate,
+    "delete": _delete,
+    "format": _format,
+}
+"""What the page can send: the name of an operation → what makes it; their docstrings have the values."""

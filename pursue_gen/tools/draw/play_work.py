@@ -1,0 +1,58 @@
+"""What the process beside the page does while a person plays a scenario: the commands of `pursue-gen play`."""
+
+from __future__ import annotations
+
+from multiprocessing.connection import Connection
+from typing import Any, Dict, List, Sequence
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.solving.inputs import settled
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.request import SolveRequest
+from pursue_gen.solving.rules import Rules
+from pursue_gen.synthesis.limits import Limits
+from pursue_gen.tools.draw.solve_work import ERRORS, Progressing, Work, scenario_of, sentences, working
+from pursue_gen.tools.play.games import session_of
+from pursue_gen.tools.play.session import Session, answer, choices, opening
+
+_NOT_HERE = ("save", "quit", "exit")
+
+
+def play(given: Work, pipe: Connection) -> None:
+    """Sends {"game": …} for the beginning and after each line that comes; ends where nothing comes any more."""
+    with working(pipe):
+        try:
+            session = _begun(given, pipe)
+        except PursueError as problem:
+            pipe.send({"verdict": ERRORS, "lines": sentences(problem.diagnostics)})
+            return
+        lines: Sequence[str] = opening(session)
+        for turn in range(1, 1_000_000):
+            pipe.send({"game": _shown(session, lines, turn)})
+            line = str(pipe.recv())
+            if line.split()[:1] and line.split()[0].lower() in _NOT_HERE:
+                lines = ("A game on the page is not saved; End the game ends it.",)
+            else:
+                reply = answer(session, line)
+                session, lines = reply.session, reply.lines
+
+
+def _begun(given: Work, pipe: Connection) -> Session:
+    progress = Progressing(pipe)
+    limits = Limits(given.seconds, given.memory)
+    request = SolveRequest(options=SolveOptions(limits=limits, progress=progress))
+    scenario = settled(scenario_of(given), request, progress)
+    return session_of(scenario, Rules(), 1, limits, progress)
+
+
+def _shown(session: Session, lines: Sequence[str], turn: int) -> Dict[str, Any]:
+    """What the page shows: lines, what can be done, and where everybody is: [place], or [from, to] on a way."""
+    setup, play_ = session.setup, session.play
+    at: Dict[str, List[str]] = {}
+    for number, automaton in enumerate(setup.game.automata):
+        if automaton.name in setup.agents:
+            location = automaton.locations[play_.position.state.locations[number]]
+            kind, first, *rest = session.words.network.parts.get(location, ("at", location))
+            at[automaton.name] = [first, rest[0]] if kind == "way" else [first]
+    said = [] if play_.over else choices(session)
+    return {"turn": turn, "lines": list(lines), "choices": [list(one) for one in said], "over": play_.over, "at": at}

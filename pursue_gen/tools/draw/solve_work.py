@@ -1,0 +1,154 @@
+"""What the process beside the page does: solves a text, and sends the verdict, then a page about it."""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import threading
+import time
+from dataclasses import dataclass, field, replace
+from multiprocessing.connection import Connection, wait
+from pathlib import Path
+from typing import Iterable, Iterator, List, Optional
+
+from pursue_gen.diagnostics import Diagnostic, PursueError
+from pursue_gen.drawing.floor import Floor
+from pursue_gen.drawing.floor_picture import read_floor
+from pursue_gen.drawing.ground import read_ground
+from pursue_gen.language.checks import check_reading
+from pursue_gen.language.parser import read, without_errors
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.wording import condition_of_promise, objective_words, periods_found, promise_words
+from pursue_gen.outcomes import INTERRUPTED, LimitHit, Lost
+from pursue_gen.solving.answers import answers
+from pursue_gen.solving.inputs import game_of, settled
+from pursue_gen.solving.optional import Promised, promised_of
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.request import SolveRequest
+from pursue_gen.solving.rules import IDEAL
+from pursue_gen.solving.solvers import solved
+from pursue_gen.synthesis.limits import Limits, Progress
+from pursue_gen.tools.report.make import ReportOptions, lost_report, won_report
+from pursue_gen.tools.report.whole import report_page
+from pursue_gen.workspace.map_spots import with_spots
+from pursue_gen.workspace.robot_size import Told, sizes_of
+from pursue_gen.workspace.spots import SPOT_DISTANCE
+
+WON, LOST, UNDECIDED, ERRORS = "won", "lost", "undecided", "errors"
+_INTERVAL = 0.3
+"""Seconds from one word on the progress to the next."""
+
+
+@dataclass(frozen=True)
+class Work:
+    """A text to solve; `file`: what messages call it, `floor`: the map under pictures; limits in seconds and MiB;
+    `told`: what was told of the sizes of robots."""
+
+    text: str
+    file: str
+    floor: Optional[Path]
+    seconds: float
+    memory: int
+    told: Told = field(default_factory=dict)
+
+
+class Progressing:
+    """A listener that sends {"progress": …} now and then."""
+
+    def __init__(self, pipe: Connection) -> None:
+        self._pipe, self._last = pipe, 0.0
+
+    def __call__(self, far: Progress) -> None:
+        """As listeners are called."""
+        if time.monotonic() - self._last > _INTERVAL:
+            self._last = time.monotonic()
+            self._pipe.send({"progress": f"{far.phase}: {far.states} states, {far.waiting} waiting, {far.memory} MiB"})
+
+
+@contextlib.contextmanager
+def working(pipe: Connection) -> Iterator[None]:
+    """Ends this process with the server; an error of the program is sent, and never looks like a verdict."""
+    _end_with_parent()
+    try:
+        yield
+    except (BrokenPipeError, EOFError):  # the server has gone
+        pass
+    except Exception as problem:
+        pipe.send({"verdict": ERRORS, "lines": [f"internal error of pursue-gen: {type(problem).__name__}: {problem}"]})
+
+
+def solve(given: Work, pipe: Connection) -> None:
+    """Sends {"progress": …} now and then, {"verdict": …, "lines": […]} once, and {"page": …} where it can be made."""
+    with working(pipe):
+        try:
+            _solve(given, pipe)
+        except PursueError as problem:
+            pipe.send({"verdict": ERRORS, "lines": sentences(problem.diagnostics)})
+
+
+def scenario_of(given: Work) -> Scenario:
+    """The scenario in the text. Raises PursueError with its errors."""
+    reading = read(given.text, given.file)
+    return without_errors(reading.scenario, check_reading(reading))
+
+
+def _end_with_parent() -> None:
+    """Sees to it that this process ends when the server has ended, however that came."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+
+        def watch() -> None:
+            wait([parent.sentinel])
+            os._exit(INTERRUPTED)
+
+        threading.Thread(target=watch, daemon=True).start()
+
+
+def _solve(given: Work, pipe: Connection) -> None:
+    floor = None if given.floor is None else read_floor(given.floor)
+    limits = Limits(given.seconds, given.memory)
+    start = limits.now()
+    progress = Progressing(pipe)
+    request = SolveRequest(options=SolveOptions(limits=limits, progress=progress))
+    scenario = settled(scenario_of(given), request, progress)
+    request = request.since(start)
+    if given.floor is not None:
+        scenario = with_spots(scenario, read_ground(given.floor), SPOT_DISTANCE, sizes_of(scenario, given.told))
+    try:
+        found = promised_of(scenario, request, progress)
+    except (Lost, LimitHit) as problem:
+        verdict = LOST if isinstance(problem, Lost) else UNDECIDED
+        pipe.send({"verdict": verdict, "lines": sentences(problem.diagnostics)})
+        pipe.send({"progress": "looking for what would change that"})
+        lost = lost_report(scenario, problem, limits.since(start), progress, floor)
+        pipe.send({"page": report_page(lost)})
+        return
+    pipe.send({"verdict": WON, "lines": _promise(found)})
+    pipe.send({"progress": "making the pictures"})
+    pipe.send({"page": _won_page(found, request, floor)})
+
+
+def _won_page(found: Promised, request: SolveRequest, floor: Optional[Floor]) -> str:
+    """The report: the strategy, a mission in time and on the map, what each controller does."""
+    ideal = solved(*game_of(found.scenario), IDEAL, replace(request.options, progress=None))
+    both = found.solution, ideal
+    report = won_report(found.scenario, both, ReportOptions(floor=floor), request.options.limits)
+    return report_page(report)
+
+
+def _promise(found: Promised) -> List[str]:
+    """What is guaranteed, in sentences."""
+    scenario: Scenario = found.scenario
+    lines = objective_words(scenario)
+    if found.solution.guarantee is not None:
+        lines += [found.solution.guarantee.in_words()]
+    lines += [answer.in_words() for answer in answers(scenario, found.solution)]
+    lines += [*periods_found(scenario), *(f"{sentence}." for sentence in promise_words(scenario))]
+    assumed = condition_of_promise(scenario)
+    return [*lines, f"This holds {assumed}."] if assumed else lines
+
+
+def sentences(findings: Iterable[Diagnostic]) -> List[str]:
+    """A sentence for each finding, with what to do."""
+    return [f"{one.message} ({one.hint})" if one.hint else one.message for one in findings]

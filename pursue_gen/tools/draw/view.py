@@ -1,0 +1,189 @@
+"""What the page shows of a text, as plain data: places, ways, agents, events, the other statements, findings."""
+
+from __future__ import annotations
+
+from typing import Any, Collection, Dict, List, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import Diagnostic, Severity, as_json, in_order
+from pursue_gen.drawing.ground import Ground
+from pursue_gen.drawing.look import agent_looks, mark
+from pursue_gen.language.names import KINDS
+from pursue_gen.language.wording import objective_words
+from pursue_gen.solving.inputs import findings_of
+from pursue_gen.tools.draw.places import positions
+from pursue_gen.tools.draw.poses import heading
+from pursue_gen.tools.draw.statement_edits import names_behind, parts_of, words_behind
+from pursue_gen.tools.lsp.completion import HOLE
+from pursue_gen.tools.lsp.document import Document
+from pursue_gen.tools.lsp.forms import FORMS
+from pursue_gen.tools.lsp.map_preview import drawable
+from pursue_gen.tools.lsp.tokens import Statement
+from pursue_gen.workspace.map_check import but_for_ways, check_spots
+from pursue_gen.workspace.robot_size import NOTHING_TOLD, Told, sizes_of
+from pursue_gen.workspace.spots import SPOT_DISTANCE
+
+_MOST_FINDINGS = 200
+_OWN_FORMS = ("POI", "CONNECT", "EVENT", "AGENT")
+
+
+def view(
+    text: str, file: str = "scenario.pur", ground: Optional[Ground] = None, told: Told = NOTHING_TOLD
+) -> Dict[str, Any]:
+    """The picture's parts and the findings of a text, right or wrong, and what is wanted in sentences.
+
+    `ground`: whether robots have room where they stand on it is looked at, too; `told`: of their sizes.
+
+    Distances and times are texts as they are written, positions metres, headings degrees; `statement` is the number by
+    which `operations.change` knows a part, `from` and `to` are its first and last line, counted from 1.
+    """
+    document = Document.of(text, file)
+    found = _findings(document, ground, told)
+    places = _places(document)
+    return {
+        "places": places,
+        "computed": positions(document.scenario)[1],
+        "ways": _ways(document, {place["name"] for place in places}),
+        "agents": _agents(document),
+        "events": _events(document),
+        "others": [_other(document, k) for k, one in enumerate(document.statements) if one.kind not in _OWN_FORMS],
+        "names": {kind: list(document.declared[kind]) for kind in KINDS},
+        "findings": [_finding(document, one) for one in found[:_MOST_FINDINGS]],
+        "errors": sum(one.severity is Severity.ERROR for one in found),
+        "warnings": sum(one.severity is Severity.WARNING for one in found),
+        "wanted": _wanted(document, found),
+    }
+
+
+def forms() -> List[Dict[str, Any]]:
+    """The statements that can be chosen from lists: their words cut at their holes, and what belongs into each hole."""
+    found = []
+    for kind, several in FORMS.items():
+        for number, form in enumerate(several):
+            if kind in _OWN_FORMS:
+                continue
+            kinds = {"=": "example", "": "name"}
+            holes = [{"kind": kinds[example], "of": what} for example, what in HOLE.findall(form.words)]
+            words = HOLE.split(form.words)[::3]
+            found.append({"kind": kind, "form": number, "title": form.title, "words": words, "holes": holes})
+    return found
+
+
+def _findings(document: Document, ground: Optional[Ground], told: Told) -> Tuple[Diagnostic, ...]:
+    """What `pursue-gen check` reports, with --map where there is a map."""
+    found = findings_of(document.reading)
+    scenario = document.reading.scenario
+    wrong = but_for_ways(found)
+    if ground is None or scenario is None or any(one.severity is Severity.ERROR for one in wrong):
+        return found
+    return in_order((*found, *check_spots(scenario, ground, SPOT_DISTANCE, sizes_of(scenario, told))))
+
+
+def _wanted(document: Document, findings: Sequence[Diagnostic]) -> List[str]:
+    """The objectives in sentences; none as long as there are errors."""
+    wrong = any(one.severity is Severity.ERROR for one in findings)
+    return [] if wrong or document.reading.scenario is None else objective_words(document.reading.scenario)
+
+
+def _finding(document: Document, finding: Diagnostic) -> Dict[str, Any]:
+    """A finding with `start` and `end` as offsets that JavaScript counts; None where it is about the whole text."""
+    shown = as_json(finding)
+    if finding.span is not None:
+        start, end = document.positions.of_span(finding.span)
+        shown["start"], shown["end"] = (_in_utf_16(document.text, at) for at in (start, end))
+    return shown
+
+
+def _in_utf_16(text: str, offset: int) -> int:
+    before = text[:offset]
+    return offset if before.isascii() else len(before.encode("utf-16-le", "surrogatepass")) // 2
+
+
+def _placed(document: Document, number: int) -> Dict[str, Any]:
+    """The lines of a statement."""
+    statement = document.statements[number]
+    first, last = (document.positions.line_of(at) + 1 for at in (statement.start, statement.end))
+    return {"statement": number, "from": first, "to": last}
+
+
+def _whole(document: Document, kind: str) -> List[Tuple[int, Statement]]:
+    """The statements of a kind whose parts can be shown: those that name something begin with its name."""
+    found = []
+    for number, statement in enumerate(document.statements):
+        is_first = statement.name is None or _is_first(document, number)
+        if statement.kind == kind and statement.tokens[0].type == kind and is_first:
+            found.append((number, statement))
+    return found
+
+
+def _is_first(document: Document, number: int) -> bool:
+    """True where no statement above declares the same name."""
+    name = str(document.statements[number].name)[1:-1]
+    return any(kind.get(name) and kind[name].statement == number for kind in document.declared.values())
+
+
+def _places(document: Document) -> List[Dict[str, Any]]:
+    where, _ = positions(document.scenario)
+    found = []
+    for poi in drawable(document.scenario).pois:
+        here = document.declared["POI"].get(poi.name)
+        pose = where.get(poi.name)
+        if here is None or pose is None:
+            continue
+        place = {"name": poi.name, "label": poi.label or "", "x": pose.x, "y": pose.y, "yaw": heading(pose)}
+        spots = [{"robot": spot.robot.name, "x": spot.pose.x, "y": spot.pose.y} for spot in poi.spots]
+        found.append({**place, "given": poi.pose is not None, "spots": spots, **_placed(document, here.statement)})
+    return found
+
+
+def _ways(document: Document, known: Collection[str]) -> List[Dict[str, Any]]:
+    """The ways between places that are shown."""
+    found = []
+    for number, statement in _whole(document, "CONNECT"):
+        a, b = words_behind(statement, "CONNECT"), words_behind(statement, "AND")
+        if a in known and b in known and a != b:
+            way = {"a": a, "b": b, "distance": words_behind(statement, "DISTANCE")}
+            way["only_if"] = words_behind(statement, "ONLY_IF")
+            found.append({**way, "one_way": statement.has("ONE_WAY"), **_placed(document, number)})
+    return found
+
+
+def _agents(document: Document) -> List[Dict[str, Any]]:
+    statements = [(k, one) for k, one in _whole(document, "AGENT") if one.name is not None]
+    looks = agent_looks([str(one.name)[1:-1] for _, one in statements])
+    found = []
+    for number, one in statements:
+        name, parts = str(one.name)[1:-1], parts_of(one)
+        kind = "free" if "CONTROLLABLE" not in parts else "person" if "HUMAN" in parts else "robot"
+        agent = {"name": name, "label": words_behind(one, "LABEL")[1:-1], "kind": kind}
+        agent.update(mobile=words_behind(one, "MOBILE"), location=words_behind(one, "LOCATION"))
+        agent["mark"] = mark(looks[name], 0, 0, 6.0)
+        lists = {key: names_behind(one, key.upper()) for key in ("can_do", "reacts_to")}
+        found.append({**agent, **lists, **_placed(document, number)})
+    return found
+
+
+def _events(document: Document) -> List[Dict[str, Any]]:
+    found = []
+    for number, one in _whole(document, "EVENT"):
+        if one.name is None:
+            continue
+        parts = parts_of(one)
+        event = {"name": str(one.name)[1:-1], "label": words_behind(one, "LABEL")[1:-1]}
+        texts = {key: words_behind(one, key.upper()) for key in ("location", "duration", "only_if")}
+        at_most = words_behind(one, "AT_MOST").partition(" ")[0]
+        ticks = {key: key.upper() in parts for key in ("collaborative", "together")}
+        found.append({**event, **texts, "at_most": at_most, **ticks, **_placed(document, number)})
+    return found
+
+
+def _other(document: Document, number: int) -> Dict[str, Any]:
+    """A statement as its words."""
+    statement = document.statements[number]
+    words = " ".join(document.text[statement.start : statement.end].split())
+    plain = _is_plain(document, statement)
+    return {"kind": statement.kind, "words": words, "single": plain, **_placed(document, number)}
+
+
+def _is_plain(document: Document, statement: Statement) -> bool:
+    """True where no comment is in it: then its words can be changed as one line."""
+    return not any(statement.start < (token.start_pos or 0) < statement.end for token in document.comments)

@@ -1,0 +1,225 @@
+"""What may be written at a place of a text: words, names that fit there, whole statements to fill in."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Tuple
+
+from lark import Token
+
+from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES
+from pursue_gen.language.poses import robots_in
+from pursue_gen.tools.lsp.condition_names import SUBJECTS, condition_start
+from pursue_gen.tools.lsp.document import Document
+from pursue_gen.tools.lsp.forms import FORMS, MEANINGS
+from pursue_gen.tools.lsp.tokens import DECLARED, Statement, accepts, all_tokens, are_names, kinds_behind, statements
+
+_SIGNS = {"COLON": ":", "COMMA": ",", "LPAR": "(", "RPAR": ")"}
+_POSE = "//[0, 0, 0, 0, 0, 0, 1]"
+_WORD_BEFORE = re.compile(r"[\w-]*\Z")
+_BEHIND_POSE = re.compile(r"\][ \t]*,?[ \t]*(\w*)\Z")
+_WORD_AFTER = re.compile(r"\w*")
+HOLE = re.compile(r"\{(=?)([^}]*)\}")
+_SPECIAL = re.compile(r"[$},|\\]")
+_MOST_CHOICES = 50
+_EXAMPLES = {"POI": "a", "event": "work", "state": "open", "agent": "bot", "rule": "order"}
+
+
+@dataclass(frozen=True)
+class Completion:
+    """Something that may be written for text[start:end].
+
+    `token`: the kind of token that it begins with; `kind`: "name" (with `of` saying a name of what), "word", "sign",
+    "value" or "statement"; `insert`: in the form of editors' snippets where `snippet`.
+    """
+
+    label: str
+    insert: str
+    token: str
+    kind: str
+    start: int
+    end: int
+    detail: str = ""
+    about: str = ""
+    of: str = ""
+    snippet: bool = False
+
+
+def complete(document: Document, offset: int) -> Tuple[Completion, ...]:
+    """What may be written at an offset; the likeliest first."""
+    if document.in_comment(offset):
+        return tuple(_robots(document, offset))
+    place = _place(document, offset)
+    if place.quoted is not None:
+        return tuple(_missing(document, place, place.quoted))
+    expected = accepts(place.behind)
+    items = list(_names(document, place, expected)) + list(_words(place, expected))
+    if not place.behind or "$END" in expected or place.opens_line:
+        items += _statements(document, place)
+    return tuple(items)
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Where something is to be written: behind which tokens of its statement, in place of which stretch of text.
+
+    `opens_line`: nothing stands before it in its line; `quoted`: the statement that declares the name which is begun
+    here, if its opening quote stands already; `same_line`: it is on the line of the token before.
+    """
+
+    behind: Tuple[Token, ...]
+    start: int
+    end: int
+    opens_line: bool
+    same_line: bool
+    quoted: Optional[str] = None
+
+
+def _place(document: Document, offset: int) -> _Place:
+    text = document.text
+    before = [part.start for part in document.statements if part.start < offset]
+    begin = before[-2] if len(before) > 1 else 0  # the cutter has to see one statement that is complete
+    word = _WORD_BEFORE.search(text, begin, offset)
+    start = word.start() if word else offset
+    after = _WORD_AFTER.match(text, offset)
+    end = after.end() if after and start < offset else offset
+    tokens = all_tokens(text[begin:offset])
+    quoted = None
+    if tokens and tokens[-1].type == "UNCLOSED_NAME":
+        start, tokens = begin + (tokens[-1].start_pos or 0) + 1, tokens[:-1]
+        closing = text.find('"', offset, document.positions.line_end(document.positions.line_of(offset)))
+        end = closing if closing >= 0 else offset
+        quoted = ""
+    else:
+        tokens = tuple(token for token in tokens if begin + (token.start_pos or 0) < start)
+    parts: Sequence[Statement] = statements(tokens)
+    behind = parts[-1].tokens if parts else ()
+    if quoted is not None and len(behind) == 1:
+        quoted = behind[0].type
+    line = document.positions.line_start(document.positions.line_of(start))
+    same_line = bool(behind) and "\n" not in text[begin + (behind[-1].start_pos or 0) : start]
+    return _Place(behind, start, end, not text[line:start].strip(), same_line, quoted)
+
+
+def _missing(document: Document, place: _Place, opens: str) -> Iterator[Completion]:
+    """Names that are used as what this statement declares, but are declared nowhere."""
+    kind = DECLARED.get(opens, "")
+    known = document.declared.get(kind, {})
+    closed = document.text[place.end : place.end + 1] == '"'
+    for name in sorted({o.name for o in document.occurrences if o.kind == kind and o.name not in known}):
+        insert = name if closed else name + '"'
+        yield Completion(name, insert, "NAME", "name", place.start, place.end, f"{kind}, declared nowhere", of=kind)
+
+
+def _names(document: Document, place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
+    """Declared names that fit here."""
+    kinds = kinds_behind(place.behind) if "WORD" in expected else ()
+    in_condition = condition_start(place.behind) is not None
+    for kind in kinds:
+        yield from _names_of(document, place, kind, repeated=in_condition)
+
+
+def _names_of(document: Document, place: _Place, kind: str, repeated: bool) -> Iterator[Completion]:
+    """Declared names of a kind; without `repeated` only those that the statement does not use yet."""
+    used = {str(token) for token, is_name in zip(place.behind, are_names(place.behind)) if is_name}
+    known = document.declared[kind]
+    fitting = [name for name in known if repeated or name not in used]
+    if kind == "event" and place.behind[0].type == "AGENT" and _last_word(place) == "REACTS_TO":
+        together = [name for name in fitting if document.statements[known[name].statement].has("COLLABORATIVE")]
+        fitting = together or fitting
+    for name in fitting:
+        part = document.statements[known[name].statement]
+        about = " ".join(document.text[part.start : part.end].split())[:200]
+        token = next((kind for kind, word in MAY_BE_NAMES.items() if word == name), "WORD")
+        yield Completion(name, name, token, "name", place.start, place.end, kind, about, of=kind)
+
+
+def _robots(document: Document, offset: int) -> Iterator[Completion]:
+    """The robots that may get a pose behind the others in the comment of a place."""
+    for part in document.statements:
+        for token in part.tokens:
+            start = token.start_pos or 0
+            if token.type == "POSE" and start < offset <= start + len(token):
+                before = _BEHIND_POSE.search(document.text, start, offset)
+                after = _WORD_AFTER.match(document.text, offset)
+                if before is None or after is None:
+                    return
+                pose = str(token).partition("[")[2].partition("]")[0]
+                used = [name for name, *_ in robots_in(str(token))]
+                for agent in document.scenario.agents:
+                    if agent.is_robot and agent.name not in used:
+                        insert, span = f"{agent.name} [{pose}]", (before.start(1), after.end())
+                        yield Completion(agent.name, insert, "WORD", "name", *span, "its pose here", of="agent")
+
+
+def _last_word(place: _Place) -> str:
+    return next((token.type for token in reversed(place.behind) if token.type in KEYWORDS), "")
+
+
+def _words(place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
+    """Words and signs of the language, and values, that may come next within the statement."""
+    if not place.behind:
+        return
+    span = (place.start, place.end)
+    names_hide = set(MAY_BE_NAMES) if "WORD" in expected else set()
+    if set(SUBJECTS) <= set(kinds_behind(place.behind)):
+        names_hide -= {"ANY", "NO"}
+    if [token.type for token in place.behind[-2:]] == ["OBJECTIVE", "COLON"]:
+        names_hide -= {"ALWAYS", "PATROL"}
+    if "BY" in (token.type for token in place.behind):
+        names_hide.discard("ANY")
+    for token, word in KEYWORDS.items():
+        if token == "TOGETHER" and "COLLABORATIVE" in expected:
+            continue  # it says something behind collaborative only
+        # an agent may be called human: then its name is offered
+        if token in expected and token not in names_hide:
+            yield Completion(word, word, token, "word", *span, about=MEANINGS[token])
+    if "NUMBER" in expected:
+        yield Completion("1", "${1:1}", "NUMBER", "value", *span, "a number", snippet=True)
+    if "NAME" in expected and place.behind[-1].type == "LABEL":
+        yield Completion('"…"', '"${1:what people read}"', "NAME", "value", *span, "what people read", snippet=True)
+    elif "NAME" in expected and place.behind[0].type in DECLARED:
+        example = _EXAMPLES[DECLARED[place.behind[0].type]]
+        yield Completion(f'"{example}"', f'"${{1:{example}}}"', "NAME", "value", *span, "a new name", snippet=True)
+    if "POSE" in expected and place.same_line:
+        about = "x, y, z in metres on the robot's map, then the orientation as a unit quaternion qx, qy, qz, qw"
+        yield Completion(_POSE, _POSE, "POSE", "value", *span, "a pose", about)
+    for token, sign in _SIGNS.items():
+        if token in expected:
+            yield Completion(sign, sign, token, "sign", *span)
+
+
+def _statements(document: Document, place: _Place) -> List[Completion]:
+    """Whole statements, with choices of names where names belong."""
+    items = []
+    for token, forms in FORMS.items():
+        for form in forms:
+            label = f"{KEYWORDS[token]} … {form.title}"
+            insert = fill_in(form.words, {kind: list(names) for kind, names in document.declared.items()})
+            span = (place.start, place.end)
+            about = f"{MEANINGS[token]}\n\n    {fill_in(form.words, {}, plain=True)}"
+            items.append(Completion(label, insert, token, "statement", *span, form.title, about, snippet=True))
+    return items
+
+
+def fill_in(words: str, names: Dict[str, List[str]], plain: bool = False) -> str:
+    """A form as an editor's snippet, with choices of names; `plain`: as text, with examples in its holes."""
+    number = 0
+
+    def hole(match: re.Match[str]) -> str:
+        nonlocal number
+        number += 1
+        given, what = match.groups()
+        example = what if given else _EXAMPLES[what]
+        if plain:
+            return example
+        choices = [] if given else names.get(what, [])[:_MOST_CHOICES]
+        if not choices:
+            return f"${{{number}:{example}}}"
+        # where a name belongs twice, the second hole begins with another name than the first
+        turn = words[: match.start()].count(match.group()) % len(choices)
+        turned = choices[turn:] + choices[:turn]
+        return f"${{{number}|" + ",".join(_SPECIAL.sub(r"\\\g<0>", name) for name in turned) + "|}"
+
+    return HOLE.sub(hole, words)

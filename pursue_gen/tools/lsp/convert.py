@@ -1,0 +1,164 @@
+"""Answers in the terms of the language server protocol. Needs lsprotocol."""
+
+from __future__ import annotations
+
+from typing import Iterable, List, Optional, Sequence, Tuple
+
+from lsprotocol import types as lsp
+
+from pursue_gen.diagnostics import Diagnostic, Severity
+from pursue_gen.language.edits import Edit
+from pursue_gen.language.messages import KEYWORDS
+from pursue_gen.tools.lsp.completion import Completion
+from pursue_gen.tools.lsp.document import Document
+from pursue_gen.tools.lsp.fixes import Fix
+from pursue_gen.tools.lsp.outline import Fold, Symbol
+from pursue_gen.tools.lsp.tokens import Occurrence
+
+_COSTS = "discrete states of the game of this objective alone, which those of others multiply"
+"""What a number of states behind an objective means."""
+
+_ITEM_KINDS = {
+    "word": lsp.CompletionItemKind.Keyword,
+    "sign": lsp.CompletionItemKind.Operator,
+    "value": lsp.CompletionItemKind.Value,
+    "statement": lsp.CompletionItemKind.Snippet,
+}
+_NAME_KINDS = {
+    "POI": lsp.CompletionItemKind.Constant,
+    "event": lsp.CompletionItemKind.Event,
+    "rule": lsp.CompletionItemKind.Struct,
+    "state": lsp.CompletionItemKind.Variable,
+    "agent": lsp.CompletionItemKind.Class,
+}
+_SYMBOL_KINDS = {
+    "POI": lsp.SymbolKind.Constant,
+    "CONNECT": lsp.SymbolKind.Interface,
+    "EVENT": lsp.SymbolKind.Event,
+    "RULE": lsp.SymbolKind.Struct,
+    "STATE": lsp.SymbolKind.Boolean,
+    "STATEDEPENDENCY": lsp.SymbolKind.Operator,
+    "AGENT": lsp.SymbolKind.Class,
+    "OBJECTIVE": lsp.SymbolKind.Key,
+    "REACH_OBJECTIVE": lsp.SymbolKind.Key,
+}
+
+
+def range_of(document: Document, start: int, end: int) -> lsp.Range:
+    """text[start:end] as the editor counts."""
+    first, last = document.positions.position(start), document.positions.position(end)
+    return lsp.Range(lsp.Position(*first), lsp.Position(*last))
+
+
+def offset_of(document: Document, position: lsp.Position) -> int:
+    """The offset that an editor's position means."""
+    return document.positions.offset(position.line, position.character)
+
+
+def diagnostic(
+    document: Document, uri: str, finding: Diagnostic, pages: Optional[str], related: bool
+) -> lsp.Diagnostic:
+    """A finding; its hint as related text where the editor shows that, else in the message.
+
+    `pages`: the address of the folder with a page for each code.
+    """
+    start, end = document.positions.of_span(finding.span) if finding.span is not None else (0, 0)
+    place = range_of(document, start, end)
+    severity = lsp.DiagnosticSeverity.Error if finding.severity is Severity.ERROR else lsp.DiagnosticSeverity.Warning
+    message, more = finding.message, None
+    if finding.hint and related:
+        more = [lsp.DiagnosticRelatedInformation(lsp.Location(uri, place), finding.hint)]
+    elif finding.hint:
+        message = f"{message}\nhelp: {finding.hint}"
+    link = lsp.CodeDescription(f"{pages.rstrip('/')}/{finding.code}.md") if pages else None
+    return lsp.Diagnostic(place, message, severity, finding.code, link, source="PuRSUE-ML", related_information=more)
+
+
+def completion_items(document: Document, items: Iterable[Completion], snippets: bool) -> List[lsp.CompletionItem]:
+    """Completions in their order. An editor that knows no snippets gets words instead of them."""
+    found = []
+    for number, item in enumerate(items):
+        insert = item.insert
+        if item.snippet and not snippets:
+            insert = KEYWORDS[item.token] + " " if item.kind == "statement" else item.label
+        form = lsp.InsertTextFormat.Snippet if item.snippet and snippets else lsp.InsertTextFormat.PlainText
+        kind = _NAME_KINDS[item.of] if item.of in _NAME_KINDS else _ITEM_KINDS.get(item.kind)
+        about = lsp.MarkupContent(lsp.MarkupKind.Markdown, item.about) if item.about else None
+        found.append(
+            lsp.CompletionItem(
+                label=item.label,
+                kind=kind,
+                detail=item.detail or None,
+                documentation=about,
+                sort_text=f"{number:05}",
+                filter_text=KEYWORDS[item.token] if item.kind == "statement" else None,
+                insert_text_format=form,
+                text_edit=lsp.TextEdit(range_of(document, item.start, item.end), insert),
+            )
+        )
+    return found
+
+
+def locations(document: Document, uri: str, places: Iterable[Occurrence]) -> List[lsp.Location]:
+    """Where names stand."""
+    return [lsp.Location(uri, range_of(document, place.start, place.end)) for place in places]
+
+
+def highlights(document: Document, places: Iterable[Occurrence]) -> List[lsp.DocumentHighlight]:
+    """Where names stand, declarations marked as writing."""
+    kinds = lsp.DocumentHighlightKind
+    return [
+        lsp.DocumentHighlight(range_of(document, o.start, o.end), kinds.Write if o.declares else kinds.Read)
+        for o in places
+    ]
+
+
+def text_edits(document: Document, edits: Iterable[Edit]) -> List[lsp.TextEdit]:
+    """Edits of the text."""
+    return [lsp.TextEdit(range_of(document, edit.start, edit.end), edit.text) for edit in edits]
+
+
+def document_symbols(document: Document, symbols: Iterable[Symbol]) -> List[lsp.DocumentSymbol]:
+    """The outline."""
+    return [
+        lsp.DocumentSymbol(
+            name=symbol.name,
+            kind=_SYMBOL_KINDS[symbol.kind],
+            range=range_of(document, symbol.start, symbol.end),
+            selection_range=range_of(document, symbol.name_start, symbol.name_end),
+            detail=symbol.detail or None,
+        )
+        for symbol in symbols
+    ]
+
+
+def folding_ranges(folds: Iterable[Fold]) -> List[lsp.FoldingRange]:
+    """What can be folded away."""
+    kinds = lsp.FoldingRangeKind
+    return [lsp.FoldingRange(f.first, f.last, kind=kinds.Comment if f.comment else kinds.Region) for f in folds]
+
+
+def inlay_hints(document: Document, start: int, end: int) -> List[lsp.InlayHint]:
+    """What the objectives between these offsets cost, behind their statements."""
+    ends = ((document.positions.of_span(size.span)[1], size.in_words()) for size in document.sizes)
+    places = ((lsp.Position(*document.positions.position(at)), words) for at, words in ends if start <= at <= end)
+    return [lsp.InlayHint(place, words, tooltip=_COSTS, padding_left=True) for place, words in places]
+
+
+def code_actions(document: Document, uri: str, found: Sequence[Fix], pages: Optional[str]) -> List[lsp.CodeAction]:
+    """Quick fixes, each with the finding that it is about."""
+    return [
+        lsp.CodeAction(
+            title=fix.title,
+            kind=lsp.CodeActionKind.QuickFix,
+            diagnostics=[diagnostic(document, uri, fix.finding, pages, related=True)],
+            is_preferred=fix.preferred,
+            edit=lsp.WorkspaceEdit(changes={uri: text_edits(document, fix.edits)}),
+        )
+        for fix in found
+    ]
+
+
+def whole(document: Document) -> Tuple[int, int]:
+    """The stretch of the whole text."""
+    return 0, len(document.text)

@@ -1,0 +1,100 @@
+"""Quick fixes: what an editor can do at a click about a finding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, Dict, Iterator, Optional, Tuple
+
+from pursue_gen.diagnostics import Diagnostic
+from pursue_gen.language.edits import Edit
+from pursue_gen.tools.lsp import fixes_meaning as meaning
+from pursue_gen.tools.lsp import fixes_numbers as numbers
+from pursue_gen.tools.lsp import fixes_syntax as syntax
+from pursue_gen.tools.lsp.document import Document
+from pursue_gen.tools.lsp.tokens import Statement
+
+Proposal = Tuple[str, Tuple[Edit, ...]]
+"""What it would do, for the person, and the edits that do it; the likeliest proposal comes first."""
+
+_Proposer = Callable[[Document, Diagnostic, Optional[Statement], int], Iterator[Proposal]]
+
+_PROPOSERS: Dict[str, _Proposer] = {
+    "PML010": syntax.unexpected,
+    "PML011": syntax.did_you_mean,
+    "PML012": syntax.close_name,
+    "PML013": syntax.close_comment,
+    "PML015": syntax.visible_blank,
+    "PML017": syntax.delete_finding,
+    "PML022": meaning.delete_spot,
+    "PML101": meaning.fitting_name,
+    "PML102": meaning.fitting_name,
+    "PML103": meaning.delete_statement,
+    "PML110": meaning.unknown_name,
+    "PML122": meaning.delete_spot,
+    "PML130": meaning.add_agent,
+    "PML131": meaning.add_controllable,
+    "PML132": meaning.add_poi,
+    "PML140": meaning.one_instead_of_zero,
+    "PML141": meaning.one_instead_of_zero,
+    "PML142": meaning.one_instead_of_zero,
+    "PML143": meaning.one_instead_of_zero,
+    "PML145": meaning.delete_statement,
+    "PML146": meaning.delete_statement,
+    "PML147": meaning.connect_island,
+    "PML150": meaning.give_event,
+    "PML151": meaning.find_partner,
+    "PML152": meaning.make_collaborative,
+    "PML153": meaning.get_there,
+    "PML155": meaning.not_own_partner,
+    "PML156": meaning.delete_listed,
+    "PML157": meaning.use_event,
+    "PML158": meaning.do_together,
+    "PML159": meaning.without_together,
+    "PML171": meaning.add_objective,
+    "PML180": meaning.human_ally,
+    "PML190": meaning.sort_statements,
+    "PML200": numbers.later_end,
+    "PML201": numbers.possible_movement,
+    "PML202": meaning.delete_statement,
+    "PML204": numbers.fewer_times,
+    "PML205": numbers.bind_others,
+    "PML220": meaning.delete_statement,
+    "PML221": numbers.done_or_avoided,
+    "PML222": numbers.to_be_done_once,
+    "PML223": numbers.later_deadline,
+    "PML232": numbers.without_condition,
+    "PML250": meaning.delete_statement,
+    "PML251": numbers.possible_number,
+    "PML252": meaning.delete_statement,
+    "PML253": meaning.delete_statement,
+    "PML254": meaning.delete_statement,
+    "PML320": meaning.delete_listed,
+}
+
+
+@dataclass(frozen=True)
+class Fix:
+    """A quick fix for a finding: its title, and the edits; `preferred`: the one that an editor may do unasked."""
+
+    title: str
+    finding: Diagnostic
+    edits: Tuple[Edit, ...]
+    preferred: bool
+
+
+def fixes(document: Document, start: int, end: int) -> Tuple[Fix, ...]:
+    """The quick fixes for the findings whose statements touch text[start:end], in the order of the findings."""
+    found = []
+    for finding in document.findings:
+        proposer = _PROPOSERS.get(finding.code)
+        if proposer is None or finding.span is None:
+            continue
+        first, last = document.positions.of_span(finding.span)
+        part = document.statement_at(first)
+        if max(last, part.end if part else 0) < start or min(first, part.start if part else first) > end:
+            continue
+        proposals = list(proposer(document, finding, part, first))
+        for number, (title, edits) in enumerate(proposals):
+            if edits:
+                found.append(Fix(title, finding, edits, number == 0))
+    return tuple(found)

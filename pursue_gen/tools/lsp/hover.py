@@ -1,0 +1,326 @@
+"""What a name, a number or a word of a scenario means, in plain words, as Markdown."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, Dict, Iterable, List, Optional, Tuple
+
+from pursue_gen.language.batteries import MOST_CAPACITY, levels
+from pursue_gen.language.behaviour import predecessors
+from pursue_gen.language.conditions import condition_words, names_in
+from pursue_gen.language.labels import in_markdown, markdown
+from pursue_gen.language.messages import FORMS, KEYWORDS
+from pursue_gen.language.names import refs_of
+from pursue_gen.language.numbers import Number, exact, read_number
+from pursue_gen.language.parser import MOST
+from pursue_gen.language.scenario import (
+    Agent,
+    Always,
+    Assumption,
+    Avoid,
+    Both,
+    Choice,
+    Event,
+    NeverHolds,
+    NeverWith,
+    Poi,
+    Ref,
+    Respond,
+    Rule,
+    RuleBody,
+    Scenario,
+    Sequence,
+    State,
+    Window,
+)
+from pursue_gen.language.wording import answer_text, answered_text, assumption_words, battery_words, size_words
+from pursue_gen.tools.lsp.document import Document
+from pursue_gen.tools.lsp.forms import MEANINGS
+from pursue_gen.tools.lsp.tokens import Statement
+
+_MOST_LINES = 12
+
+
+@dataclass(frozen=True)
+class Hover:
+    """The explanation of text[start:end]."""
+
+    markdown: str
+    start: int
+    end: int
+
+
+def hover(document: Document, offset: int) -> Optional[Hover]:
+    """The explanation of what stands at an offset; None where there is none."""
+    occurrence = document.occurrence_at(offset)
+    if occurrence is not None:
+        text = _about(document.scenario, occurrence.kind, occurrence.name)
+        if text is None:
+            text = f"There is no {occurrence.kind} `{occurrence.name}`."
+        return Hover(text, occurrence.start, occurrence.end)
+    token = document.token_at(offset)
+    part = document.statement_at(offset)
+    if token is None:
+        return None
+    start = token.start_pos or 0
+    if token.type in KEYWORDS:
+        form = f"\n\n```pursue\n{FORMS[token.type]}\n```" if token.type in FORMS else ""
+        return Hover(f"**{token}**: {MEANINGS[token.type]}{form}", start, start + len(token))
+    number = read_number(token) if token.type == "NUMBER" else None
+    if number is not None and part is not None and number <= MOST:
+        text = _number(document.scenario, part, start, number)
+        return Hover(text, start, start + len(token)) if text else None
+    return None
+
+
+def units(number: Number) -> str:
+    """`1 unit`, `2 units`."""
+    return f"{number} unit{'' if number == 1 else 's'}"
+
+
+def lasts(window: Window) -> str:
+    """How long something takes."""
+    return f"{window[0]} to {window[1]} units of time"
+
+
+def _about(scenario: Scenario, kind: str, name: str) -> Optional[str]:
+    parts: Dict[str, Tuple[Tuple[object, ...], Callable[..., List[str]]]] = {
+        "POI": (scenario.pois, _poi),
+        "event": (scenario.events, _event),
+        "rule": (scenario.rules, _rule),
+        "state": (scenario.states, _state),
+        "agent": (scenario.agents, _agent),
+    }
+    found, explain = parts[kind]
+    part = next((part for part in found if getattr(part, "name", None) == name), None)
+    return None if part is None else "\n".join(explain(scenario, part))
+
+
+def _listed(lines: List[str]) -> List[str]:
+    more = len(lines) - _MOST_LINES
+    return lines if more <= 0 else [*lines[:_MOST_LINES], f"- … and {more} more"]
+
+
+def _poi(scenario: Scenario, poi: Poi) -> List[str]:
+    lines = [f"**{poi.name}**: a place{_read_as(poi.label)}", ""]
+    ways = [way for way in scenario.connections if poi.name in (way.a, way.b)]
+    for way in ways:
+        other = way.b if way.a == poi.name else way.a
+        there = (poi.name, other) in way.directions
+        words, direction = (f"to {other}", (poi.name, other)) if there else (f"from {other} only", (other, poi.name))
+        movers = [(agent.name, scenario.movements(agent).get(direction)) for agent in scenario.agents]
+        times = ", ".join(f"{name} {lasts(window)}" for name, window in movers if window is not None)
+        only = f", only while {in_markdown(scenario, condition_words(way.only_if))}" if way.only_if is not None else ""
+        lines.append(f"- {words}: distance {way.distance}" + (f" ({times})" if times else "") + only)
+    lines = [*lines[:2], *_listed(lines[2:])]
+    if not ways:
+        lines.append("- no way leads here")
+    lines += _if_any("starts here", [a.name for a in scenario.agents if a.location.name == poi.name])
+    here = [e.name for e in scenario.events if e.location is not None and e.location.name == poi.name]
+    lines += _if_any("happens here", here)
+    if poi.pose is not None:
+        lines.append(f"- on the robot's map at x = {poi.pose.x:g} m, y = {poi.pose.y:g} m")
+    for spot in poi.spots:
+        lines.append(f"- {spot.robot.name} stands at x = {spot.pose.x:g} m, y = {spot.pose.y:g} m")
+    return lines
+
+
+def _event(scenario: Scenario, event: Event) -> List[str]:
+    where = f"at {event.location.name}" if event.location else "wherever the agent is"
+    lines = [f"**{event.name}**: an event{_read_as(event.label)}", "", f"- happens {where}"]
+    lines.append(f"- takes {lasts(event.window)}" if event.window is not None else "- takes no time")
+    if event.at_most is not None:
+        lines.append(f"- happens at most {event.at_most} times")
+    lines.append("- done by " + (_all(a.name for a in scenario.agents if _in(event.name, a.can_do)) or "nobody"))
+    if event.collaborative:
+        partners = _all(a.name for a in scenario.agents if _in(event.name, a.reacts_to))
+        lines.append(f"- takes two at one place; the partner is {partners or 'nobody'}")
+        if event.duration is not None:
+            both = "both are busy until it ends" if event.together else "the partner may leave as soon as it has begun"
+            lines.append(f"- {both}")
+    for rule in scenario.rules:
+        turns = predecessors(rule)
+        if event.name in turns:
+            after = " and ".join(" or ".join(sorted(some)) for some in turns[event.name])
+            turn = f"its turn comes after {after}" if after else "its turn comes first in each round"
+            lines.append(f"- rule {rule.name}: {turn}")
+    for dependency in scenario.dependencies:
+        if dependency.event.name == event.name:
+            lines.append(f"- only while {dependency.state.name} is {str(dependency.value).lower()}")
+    if event.only_if is not None:
+        lines.append(f"- only while {in_markdown(scenario, condition_words(event.only_if))}")
+    for state in scenario.states:
+        for value, refs in (("true", state.true_if), ("false", state.false_if)):
+            if _in(event.name, refs):
+                lines.append(f"- makes {state.name} {value}")
+    return lines + _wanted(scenario, event)
+
+
+def _wanted(scenario: Scenario, event: Event) -> List[str]:
+    lines = []
+    for safety in scenario.safety:
+        if isinstance(safety, Respond) and answered_text(safety) == event.name:
+            lines.append(f"- must be answered by {answer_text(safety)} within {units(safety.deadline)} of time")
+        if isinstance(safety, Respond) and answer_text(safety) == event.name:
+            lines.append(f"- is the answer to {answered_text(safety)}, within {units(safety.deadline)} of time")
+        if isinstance(safety, Avoid) and safety.event.name == event.name:
+            lines.append("- must never happen")
+    for reach in scenario.reach:
+        if _in(event.name, reach.events):
+            after = f", later than {units(reach.after)} of time after the start" if reach.after else ""
+            within = "" if reach.within is None else f", {units(reach.within)} of time after the start at most"
+            lines.append(f"- is to be achieved once{after}{within}")
+    return lines
+
+
+def _rule(scenario: Scenario, rule: Rule) -> List[str]:
+    lines = [f"**{rule.name}**: a rule, round after round", "", f"- {_in_words(rule.body)}"]
+    if rule.each:
+        lines.append(f"- each of these has its own turn: {_all(a.name for a in scenario.bound_by(rule)) or 'nobody'}")
+    names = _all(ref.name for ref in refs_of(rule.body))
+    return [*lines, f"- {names} can happen only when it is their turn"]
+
+
+def _in_words(body: RuleBody) -> str:
+    if isinstance(body, Ref):
+        return body.name
+    if isinstance(body, Choice):
+        return " or ".join(_bracketed(side) for side in (body.first, body.second))
+    if isinstance(body, Both):
+        return " and ".join(_bracketed(side) for side in (body.first, body.second)) + ", in any order"
+    return ", then ".join(_bracketed(side) for side in _steps(body))
+
+
+def _steps(body: RuleBody) -> List[RuleBody]:
+    """What follows one another in a sequence, however it is bracketed."""
+    return _steps(body.first) + _steps(body.second) if isinstance(body, Sequence) else [body]
+
+
+def _bracketed(body: RuleBody) -> str:
+    return body.name if isinstance(body, Ref) else f"({_in_words(body)})"
+
+
+def _state(scenario: Scenario, state: State) -> List[str]:
+    lines = [f"**{state.name}**: a state, {'true' if state.initially else 'false'} at the start", ""]
+    lines.append("- made true by " + (_all(ref.name for ref in state.true_if) or "nothing"))
+    lines.append("- made false by " + (_all(ref.name for ref in state.false_if) or "nothing"))
+    for dependency in scenario.dependencies:
+        if dependency.state.name == state.name:
+            lines.append(f"- {dependency.event.name} can happen only while it is {str(dependency.value).lower()}")
+    for way in scenario.connections:
+        if way.only_if is not None and any(ref.name == state.name for _, ref in names_in(way.only_if)):
+            only_if = in_markdown(scenario, condition_words(way.only_if))
+            lines.append(f"- between {way.a} and {way.b} only while {only_if}")
+    for event in scenario.events:
+        if event.only_if is not None and any(ref.name == state.name for _, ref in names_in(event.only_if)):
+            lines.append(f"- {event.name} only while {in_markdown(scenario, condition_words(event.only_if))}")
+    for safety in scenario.safety:
+        if isinstance(safety, Always) and any(ref.name == state.name for _, ref in names_in(safety.condition)):
+            lines.append(f"- must never be: {in_markdown(scenario, condition_words(safety.broken_if))}")
+    return lines
+
+
+def _agent(scenario: Scenario, agent: Agent) -> List[str]:
+    what = "a robot: the program decides what it does" if agent.is_robot else "nobody controls it"
+    if agent.human and agent.controllable:
+        what = "a person who follows instructions"
+    lines = [f"**{agent.name}**: {what}{_read_as(agent.label)}", "", f"- starts at {agent.location.name}"]
+    if agent.mobile is None:
+        lines.append("- stays there")
+    else:
+        lines.append(f"- needs {units(agent.mobile)} of time for a unit of distance")
+        own = {travel.way for travel in scenario.travels if travel.agent.name == agent.name}
+        known = {(way.a, way.b) for way in scenario.connections} | own  # the other direction takes as long
+        movements = scenario.movements(agent).items()
+        lines += _listed([f"- {a} to {b}: {lasts(window)}" for (a, b), window in movements if (a, b) in known])
+    lines += [f"- {words} on a map" for words in [size_words(agent)] if words]
+    lines += _if_any("can do", [ref.name for ref in agent.can_do])
+    lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])
+    lines += [f"- {in_markdown(scenario, battery_words(b))}" for b in scenario.batteries if b.agent.name == agent.name]
+    assumed = (assumption_words(each) for each in scenario.assumptions if _is_about(each, agent.name))
+    lines += [f"- assumed: {in_markdown(scenario, words)}" for words in assumed]
+    for safety in scenario.safety:
+        if isinstance(safety, NeverWith) and agent.name in (safety.first.name, safety.second.name):
+            other = safety.second.name if safety.first.name == agent.name else safety.first.name
+            where = "be where" if safety.place is None else f"be at {safety.place.name} while"
+            lines.append(f"- must never {where} {other} is" + ("" if safety.place is None else " there"))
+        if isinstance(safety, Always) and any(ref.name == agent.name for _, ref in names_in(safety.condition)):
+            lines.append(f"- must never be: {in_markdown(scenario, condition_words(safety.broken_if))}")
+    return lines
+
+
+def _number(scenario: Scenario, part: Statement, start: int, number: Number) -> str:
+    """What the number at an offset of a statement means."""
+    words = [t.type for t in part.tokens if (t.start_pos or 0) < start and t.type in KEYWORDS]
+    word = words[-1] if words else ""
+    movers = [agent for agent in scenario.agents if agent.mobile is not None]
+    if word == "DISTANCE":
+        lines = [f"A way of {units(number)} of distance.", ""]
+        times = [(agent.name, exact(number * (agent.mobile or 0))) for agent in movers]
+        return "\n".join(lines + _listed([f"- {name} needs {lasts((time, exact(time + 1)))}" for name, time in times]))
+    if word in ("DURATION", "TAKES", "TO"):
+        begins = next((t.start_pos or 0) for t in part.tokens if t.type in ("DURATION", "TAKES"))
+        written = (t for t in part.tokens if t.type == "NUMBER" and (t.start_pos or 0) > begins)
+        numbers = [value for value in map(read_number, written) if value is not None]
+        return f"It takes {lasts((numbers[0], numbers[1] if len(numbers) > 1 else exact(numbers[0] + 1)))}."
+    if word == "MOBILE":
+        lines = [f"It needs {units(number)} of time for a unit of distance; a larger number is slower.", ""]
+        times = [(f"{way.a} to {way.b}", exact(way.distance * number)) for way in scenario.connections]
+        ways = [f"- {name}: {lasts((time, exact(time + 1)))}" for name, time in times]
+        return "\n".join(lines + _listed(ways))
+    if part.kind == "BATTERY":
+        return _battery(scenario, part)
+    if word == "OPTIONAL":
+        return "The first one to be given up is the one with the greatest number; those with one number go together."
+    if word == "WITHIN" and part.kind == "ASSUME":
+        return f"It has set off {units(number)} of time after it came, or after the start."
+    if word == "EVERY":
+        return f"Somebody is there again {units(number)} of time after the last one left, or after the start."
+    if word == "WAITS":
+        return f"The next one begins {units(number)} of time after the end of the last, or later."
+    if word == "AT_MOST" and part.kind == "ASSUME":
+        return f"It begins that {number} time{'' if number == 1 else 's'} at most in the whole mission."
+    if word == "AT_MOST":
+        return f"It can happen {'once' if number == 1 else f'{number} times'} in all."
+    if word == "WITHIN" and part.kind == "REACH_OBJECTIVE":
+        return f"It must have happened {units(number)} of time after the start at most."
+    if word == "WITHIN":
+        return f"The answer must have come {units(number)} of time later at most."
+    if word == "AFTER":
+        later = f"later than {units(number)} of time after the start" if number else "at any time"
+        return f"It counts when it happens {later}."
+    return ""
+
+
+def _read_as(label: Optional[str]) -> str:
+    return f"; people read \u201c{markdown(label)}\u201d" if label else ""
+
+
+def _battery(scenario: Scenario, part: Statement) -> str:
+    """At how many levels a battery can be."""
+    agents = {agent.name for agent in scenario.agents}
+    for battery in scenario.batteries:
+        here = battery.span.line == part.tokens[0].line and battery.agent.name in agents
+        if here and battery.capacity <= MOST_CAPACITY:
+            count = len(levels(scenario, battery))
+            return f"The battery can be at {count} levels; the game has up to {count} times as many states."
+    return ""
+
+
+def _is_about(assumption: Assumption, agent: str) -> bool:
+    """True if the assumption names the agent."""
+    if isinstance(assumption, NeverHolds):
+        return any(kind == "agent" and ref.name == agent for kind, ref in names_in(assumption.condition))
+    return assumption.agent.name == agent
+
+
+def _in(name: str, refs: Tuple[Ref, ...]) -> bool:
+    return any(ref.name == name for ref in refs)
+
+
+def _all(names: Iterable[str]) -> str:
+    return ", ".join(names)
+
+
+def _if_any(words: str, names: List[str]) -> List[str]:
+    return [f"- {words}: {', '.join(names)}"] if names else []

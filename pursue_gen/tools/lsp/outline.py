@@ -1,0 +1,100 @@
+"""What a text consists of: its statements for an outline, and stretches that can be folded away."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, List, Tuple
+
+from pursue_gen.language.messages import KEYWORDS
+from pursue_gen.tools.lsp.document import Document
+from pursue_gen.tools.lsp.tokens import Statement
+
+_SECTION = {"REACH_OBJECTIVE": "OBJECTIVE", "TAIL": "OBJECTIVE", "STATEDEPENDENCY": "STATE"}
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """A statement in the outline: text[start:end], of which text[name_start:name_end] names it.
+
+    `detail`: what it declares, and its label.
+    """
+
+    name: str
+    detail: str
+    kind: str
+    start: int
+    end: int
+    name_start: int
+    name_end: int
+
+
+@dataclass(frozen=True)
+class Fold:
+    """Lines that fold into their first one, counted from 0, both included."""
+
+    first: int
+    last: int
+    comment: bool
+
+
+def symbols(document: Document) -> Tuple[Symbol, ...]:
+    """The outline: a symbol for each statement that begins like one, in the order of the text."""
+    found = []
+    for part in document.statements:
+        if part.kind not in KEYWORDS:
+            continue
+        words = " ".join(document.text[part.start : part.end].split())
+        token = part.name
+        if token is not None and len(token) > 2:
+            start = (token.start_pos or 0) + 1
+            name, detail = str(token)[1:-1], KEYWORDS[part.kind]
+            behind = part.tokens[2:4]
+            if [one.type for one in behind] == ["LABEL", "NAME"]:
+                detail += f" {behind[1]}"
+            found.append(Symbol(name, detail, part.kind, part.start, part.end, start, start + len(token) - 2))
+        else:
+            name, end = words[:80], part.start + len(part.tokens[0])
+            found.append(Symbol(name, "", part.kind, part.start, part.end, part.start, end))
+    return tuple(found)
+
+
+def folds(document: Document) -> Tuple[Fold, ...]:
+    """Sections (neighbouring statements of one kind), statements over several lines, and comments over several."""
+    line_of = document.positions.line_of
+    found: Dict[Tuple[int, int], Fold] = {}
+
+    def add(first: int, last: int, comment: bool = False) -> None:
+        if last > first:
+            found.setdefault((first, last), Fold(first, last, comment))
+
+    section: List[Statement] = []
+    for part in document.statements:
+        add(line_of(part.start), line_of(part.end))
+        if section and _section(section[-1]) != _section(part):
+            add(line_of(section[0].start), line_of(section[-1].end))
+            section = []
+        section.append(part)
+    if section:
+        add(line_of(section[0].start), line_of(section[-1].end))
+    block: List[int] = []
+    for token in document.comments:
+        start = token.start_pos or 0
+        first, last = line_of(start), line_of(start + len(token))
+        alone = not document.text[document.positions.line_start(first) : start].strip()
+        if token.type == "LINE_COMMENT" and alone and block and first == block[-1] + 1:
+            block.append(first)
+            continue
+        add(*_ends(block), comment=True)
+        block = [first] if token.type == "LINE_COMMENT" and alone else []
+        if token.type != "LINE_COMMENT":
+            add(first, last, comment=True)
+    add(*_ends(block), comment=True)
+    return tuple(found[key] for key in sorted(found))
+
+
+def _section(part: Statement) -> str:
+    return _SECTION.get(part.kind, part.kind)
+
+
+def _ends(block: List[int]) -> Tuple[int, int]:
+    return (block[0], block[-1]) if block else (0, 0)

@@ -1,0 +1,225 @@
+"""A play in plain words: who is where, what is due, what may happen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+
+from pursue_gen.explanation import network_words
+from pursue_gen.explanation.policy import Window
+from pursue_gen.explanation.texts import time_text
+from pursue_gen.language import network_names as names
+from pursue_gen.language.conditions import condition_words
+from pursue_gen.language.scenario import Always, Avoid, Connection, NeverWith, Patrol, Reach, Respond, Scenario
+from pursue_gen.language.wording import answer_words, events_words, listed, missed_text, patroller, visited
+from pursue_gen.synthesis.game import Game, JointMove
+from pursue_gen.tga.counts import counted
+from pursue_gen.tga.network import Edge, Network
+from pursue_gen.tga.objectives import clock_of, events_done, stated
+from pursue_gen.tga.own_turns import own_turns
+from pursue_gen.tools.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
+
+
+@dataclass(frozen=True)
+class EventTexts:
+    """The words of one scenario: those of reports (`network`), and commands ("set off from a to b") by
+    (automaton, channel or "", location left by a step of its own)."""
+
+    network: network_words.Words
+    orders: Mapping[Tuple[str, str, str], str]
+
+    def order(self, owner: str, edge: Edge) -> str:
+        """The command for this edge of that automaton."""
+        key = (owner, edge.sync.channel, "") if edge.sync else (owner, "", edge.source)
+        return self.orders.get(key, self.network.move(owner, edge))
+
+
+def event_texts(scenario: Scenario, network: Network) -> EventTexts:
+    """The words of a scenario and its network."""
+    orders: Dict[Tuple[str, str, str], str] = {}
+    ways = [way for connection in scenario.connections for way in connection.directions]
+    for agent in scenario.agents:
+        for event in scenario.events:
+            orders[agent.name, event.name, ""] = f"{'do' if event.duration is None else 'begin'} {event.shown}"
+            orders[agent.name, names.done(event.name), ""] = f"finish {event.shown}"
+        for a, b in ways:
+            here, there = scenario.shown(a), scenario.shown(b)
+            orders[agent.name, names.movement(agent.name, a, b), ""] = f"set off from {here} to {there}"
+            orders[agent.name, "", names.going(a, b)] = f"arrive at {there}"
+    return EventTexts(network_words.words_of(scenario, network), orders)
+
+
+# What there is --------------------------------------------------------------------------------------------------------
+
+
+def situation(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]:
+    """Where the agents are, what lasts and until when, the states, the rules' turns, the deadline."""
+    where = {automaton.name: k for k, automaton in enumerate(setup.game.automata)}
+    shown = setup.scenario.shown
+    widest = max((len(shown(agent)) for agent in setup.agents), default=0)
+    for agent in setup.agents:
+        place = setup.game.automata[where[agent]].locations[play.position.state.locations[where[agent]]]
+        yield f"  {shown(agent):<{widest}}  {words.network.place(agent, place)}{_lasting(setup, play, where[agent])}"
+    values = dict(zip(setup.game.variables, play.position.state.values))
+    for state in setup.scenario.states:
+        value = values.get(names.state_value(state.name), int(state.initially))
+        yield f"  {state.name} is {'true' if value else 'false'}"
+    for battery in setup.scenario.batteries:
+        level = values.get(names.level(battery.agent.name), battery.capacity)
+        yield f"  battery of {battery.agent.shown}: {level} of {battery.capacity}"
+    for own in own_turns(setup.scenario):
+        place = own.order.locations[values.get(own.variable, 0)].name
+        yield f"  rule {own.name}: {words.network.place(own.name, place)}"
+    for rule in (rule for rule in setup.scenario.rules if not rule.each):
+        yield f"  rule {rule.name}: {_place(setup, words, play, rule.name)}"
+    for event, _ in counted(setup.scenario):
+        yield f"  so far {_place(setup, words, play, names.count(event.name))}"
+    yield from (f"  {line}" for line in _objective(setup, play, where))
+
+
+def _lasting(setup: Setup, play: PlayState, number: int) -> str:
+    """Between which moments a movement or an action ends."""
+    game, here = setup.game, play.position
+    place = here.state.locations[number]
+    bounds = game.automata[number].invariants[place]
+    if not bounds:
+        doer = _doer(game, here.state.locations, number)
+        return "" if doer is None else _lasting(setup, play, doer)
+    clock, high = bounds[0]
+    begun = play.now - here.clocks[clock - 1]
+    ends = (game.edges[k] for k in game.automata[number].edges)
+    lows = [Fraction(edge.duration, game.scale) for edge in ends if edge.source == place]
+    low = begun + max(lows, default=Fraction(0))
+    verb = "arrives" if names.is_going(game.automata[number].locations[place]) else "ends"
+    return f" since {time_text(begun)}; {verb} between {time_text(low)} and {time_text(begun + game.time(high))}"
+
+
+def _doer(game: Game, places: Sequence[int], number: int) -> Optional[int]:
+    """Who does what this agent takes part in until it ends; None where it does nothing together with others."""
+    location = game.automata[number].locations[places[number]]
+    if not names.is_doing(location):
+        return None
+    others = (k for k, automaton in enumerate(game.automata) if automaton.locations[places[k]] == location)
+    return next((k for k in others if game.automata[k].invariants[places[k]]), None)
+
+
+def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Iterator[str]:
+    clocks = dict(zip(setup.game.clocks, play.position.clocks))
+    for automaton, objective in stated(setup.scenario).items():
+        number = where[automaton]
+        place = setup.game.automata[number].locations[play.position.state.locations[number]]
+        if isinstance(objective, Respond) and place == names.AT_RISK:
+            due = play.now - clocks[clock_of(setup.scenario, automaton)] + objective.deadline
+            yield f"deadline: {answer_words(objective)} by {time_text(due)} at the latest"
+        if isinstance(objective, Patrol) and place == names.AT_RISK:
+            due = play.now - clocks[clock_of(setup.scenario, automaton)] + objective.period
+            yield f"deadline: {patroller(objective)} at {visited(objective)} by {time_text(due)} at the latest"
+        if isinstance(objective, Reach) and objective.after and play.now <= objective.after:
+            yield f"{events_words(objective)} counts after {objective.after}"
+        if isinstance(objective, Reach) and objective.within is not None and place != "win":
+            done = {objective.events[k].name for k in events_done(place)}
+            left = listed(ref.shown for ref in objective.events if ref.name not in done)
+            yield f"deadline: {left} by {time_text(Fraction(objective.within))} at the latest"
+
+
+def deed_text(setup: Setup, words: EventTexts, deed: PlayedMove) -> str:
+    """A step that was made."""
+    said = words.network.move(deed.agent, setup.game.origins[deed.edges[0]])
+    return said if deed.agent not in setup.agents else f"{setup.scenario.shown(deed.agent)} {said}"
+
+
+def move_text(setup: Setup, words: EventTexts, move: JointMove) -> str:
+    """A step that will be made: who, and what."""
+    owner = setup.owner(move)
+    said = words.network.move(owner, setup.game.origins[move.edges[0]])
+    return said if owner not in setup.agents else f"{setup.scenario.shown(owner)} {said}"
+
+
+def window_text(now: Fraction, open_: Window) -> str:
+    """When something can be done: `now`, `now, until 4`, `after 3`, `after 3, until 4`."""
+    high = "" if open_.high is None else f"{'before' if open_.high_open else 'until'} {time_text(now + open_.high)}"
+    if open_.holds(Fraction(0)):
+        return f"now, {high}" if high else "now or later"
+    low = f"{'after' if open_.low_open else 'from'} {time_text(now + open_.low)}{'' if open_.low_open else ' on'}"
+    return f"{low}, {high}" if high else low
+
+
+# The end --------------------------------------------------------------------------------------------------------------
+
+
+def ending(setup: Setup, words: EventTexts, play: PlayState) -> str:
+    """How a game ended, in a sentence."""
+    at = time_text(play.now)
+    if play.status == WON:
+        done = dict.fromkeys(ref.shown for reach in setup.scenario.reach for ref in reach.events)
+        what = f": {listed(done)}" if done else ""
+        return f"The robots have done it after {at} time units{what}."
+    if play.status == LOST:
+        return f"The robots have lost after {at} time units: {_lost(setup, words, play)}."
+    late = ", ".join(map(setup.scenario.shown, overdue(setup, play)))
+    return f"Nothing can go on after {at} time units: {late} ought to move and cannot. The robots have not lost."
+
+
+def _lost(setup: Setup, words: EventTexts, play: PlayState) -> str:
+    late, objectives = overdue(setup, play), stated(setup.scenario)
+    game, places = setup.game, play.position.state.locations
+    broken = [game.automata[k].name for k, place in game.bad if places[k] == place]
+    for name in (*late, *broken):
+        passed = objectives.get(name)
+        if isinstance(passed, Respond):
+            return missed_text(passed)
+        if isinstance(passed, Patrol):
+            return f"not {patroller(passed)} at {visited(passed)} for {passed.every}"
+        if isinstance(passed, Reach):
+            return f"{events_words(passed)} not done within {passed.within} of the start"
+    if late:
+        doing = ", ".join(f"{setup.scenario.shown(name)} ({_place(setup, words, play, name)})" for name in late)
+        return f"{doing} ought to be done by now and cannot be, so nothing goes on"
+    safety = objectives.get(next(iter(broken), ""))
+    if isinstance(safety, Avoid):
+        return f"{safety.event.shown} has happened, which was to be avoided"
+    if isinstance(safety, Always):
+        return f"{condition_words(safety.broken_if)}, which must never be"
+    if isinstance(safety, NeverWith):
+        place = _place(setup, words, play, safety.first.name)
+        return f"{safety.first.shown} and {safety.second.shown} are together, both {place}"
+    return "the objective is broken"
+
+
+def _place(setup: Setup, words: EventTexts, play: PlayState, name: str) -> str:
+    for automaton, location in zip(setup.game.automata, play.position.state.locations):
+        if automaton.name == name:
+            return words.network.place(name, automaton.locations[location])
+    return name
+
+
+def _only_while(way: Connection) -> str:
+    """Behind the length of a way: while what it is open; nothing where it always is."""
+    return "" if way.only_if is None else f", only while {condition_words(way.only_if)}"
+
+
+def overview(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]:
+    """The map in text: each POI with who is there, and its ways with their distances; then who is on the way."""
+    shown = setup.scenario.shown
+    at: Dict[str, List[str]] = {}
+    away: Dict[str, List[str]] = {}
+    for automaton, number in zip(setup.game.automata, play.position.state.locations):
+        if automaton.name not in setup.agents:
+            continue
+        location = automaton.locations[number]
+        part = words.network.parts.get(location, ("at", location))
+        group, key = (away, words.network.place(automaton.name, location)) if part[0] == "way" else (at, part[1])
+        group.setdefault(key, []).append(shown(automaton.name))
+    widest = max((len(poi.shown) for poi in setup.scenario.pois), default=0)
+    for poi in setup.scenario.pois:
+        ways = [
+            f"{shown(to)} ({c.distance}{_only_while(c)})"
+            for c in setup.scenario.connections
+            for a, to in c.directions
+            if a == poi.name
+        ]
+        here = f"   here: {', '.join(at[poi.name])}" if poi.name in at else ""
+        yield f"  {poi.shown:<{widest}}  to {', '.join(ways) or 'nowhere'}{here}"
+    for place, people in away.items():
+        yield f"  {place}: {', '.join(people)}"

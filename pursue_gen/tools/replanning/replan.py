@@ -1,0 +1,215 @@
+"""From a request to its answer: a proven plan from where a mission is, or why there is none."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from fractions import Fraction
+from math import ceil
+from typing import Any, Dict, Mapping, Optional, Sequence
+
+from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.scenario import Scenario, StatedObjective
+from pursue_gen.outcomes import LimitHit, NotProven
+from pursue_gen.partition import partition
+from pursue_gen.partition.split import UI
+from pursue_gen.partition.strategy_data import cover_data, strategy_data
+from pursue_gen.proof.checker import LIMIT
+from pursue_gen.proof.worst_case import counting_clock, worst_case
+from pursue_gen.solving.due_moves import patrols
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.proving import prove
+from pursue_gen.solving.rules import played
+from pursue_gen.solving.shares import can_be_shared, won_in_shares
+from pursue_gen.solving.tours import PATROL
+from pursue_gen.solving.tours_again import is_too_much
+from pursue_gen.solving.without_pauses import verdict_of, won_without_pauses
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.limits import Limits, careful_memory
+from pursue_gen.synthesis.solve import Verdict, solve
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.objectives import stated
+from pursue_gen.tga.pauses import pauses
+from pursue_gen.tools.replanning.request import Request, read_request
+from pursue_gen.tools.replanning.start import around, network_from, passed_bounds, start_clocks
+from pursue_gen.tools.replanning.tours import followers, tours_from_here
+from pursue_gen.tools.replanning.waiting import sooner
+from pursue_runtime.sentences import marked, quoted
+
+_LITTLE = 100_000_000
+"""The work of a search that is not for the game as it is alone: some five seconds."""
+
+
+_FEW = 2_000
+"""Where many places are patrolled only so many states are looked at if states are counted: each takes long."""
+
+
+_MOMENTS = ((1, 10), (1, 2), (0, 10), (0, 2), (0, Fraction(1, 2)))
+"""When a plan may come into force for its time to be known, tried in this order: as a share of `ahead` before it
+begins, and time units after that."""
+
+_STATES = 500
+"""Symbolic states of the checker that tell this time: some hundredths of a second."""
+
+
+def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
+    """The answer to a request, both as JSON holds them (see docs/run_time.md).
+
+    `states`: limits the work to so many discrete states for the solver and as many symbolic ones for each look of the
+    checker, in the place of time and memory, so that the answer does not depend on the machine; 0: it may depend.
+    Every plan in an answer has been proven by the checker. Raises PursueError (exit status 2) for a request that cannot
+    be used.
+    """
+    start = time.monotonic()
+    request = read_request(data)
+    limits = Limits(states=states) if states else Limits(request.seconds, careful_memory(), wall=True).since(start)
+    ideal, objective = translate(request.scenario), scenario_objective(request.scenario)
+    try:
+        game = played(ideal, request.rules)
+    except PursueError as problem:  # a slack that is none
+        raise PursueError(problem.diagnostics) from None
+    network = network_from(game, request, told_apart=bool(request.awaited))
+    reason = _reason_lost(network, objective, request.scenario)
+    if reason:
+        return _lost(reason)
+    own = followers(game, request)
+    start = limits.now()
+    options = SolveOptions(limits)
+    try:
+        on = tours_from_here(game, objective, own, request, options)
+        if on is not None:
+            return _won(*on, request, None)
+        clocks = start_clocks(network, request)
+        if is_too_much(network, objective, request.rules.reaction, clocks, request.excused):
+            return _lost(_cannot_be_met(game, request))
+        if _patrols_many(game, objective):  # nothing in between does better than tours
+            most = replace(limits, states=min(states, _FEW))
+            verdict = solve(network, objective, request.rules.reaction, limits=most.since(start))
+        else:
+            shared = _won_in_shares(network, objective, request.rules.reaction, options)
+            if shared is not None:
+                return _won(shared, network, request, None)
+            free = won_without_pauses(network, objective, request.rules.reaction, _LITTLE, options, states or LIMIT)
+            if free is not None:
+                return _won(free.strategy, network, request, None if states else objective)
+            verdict = _verdict(network, objective, request.rules.reaction, limits.since(start))
+        if verdict.strategy is None:
+            return _lost(_cannot_be_met(game, request))
+        left = SolveOptions(limits.since(start))
+        strategy = prove(
+            network, objective, verdict.strategy, request.rules.reaction, verdict.ranks, left, states=states or LIMIT,
+            otherwise=verdict.cautious,
+        )  # fmt: skip
+        if request.awaited:
+            strategy = sooner(strategy, network, objective, request.rules.reaction, limits.since(start))
+    except NotProven as problem:
+        return _lost(f"the plan that was found is not proven: {quoted(str(problem))}")
+    except PursueError as problem:
+        why = _at_limit(limits.since(start)) or f": {problem.diagnostics[0].message}"
+        return _lost(f"no plan was found{quoted(why)}")
+    return _won(strategy, network, request, None if states else objective)
+
+
+def _won_in_shares(
+    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
+) -> Optional[Strategy]:
+    """A proven strategy in shares that little work finds; None where it finds none."""
+    if not can_be_shared(network, objective):
+        return None
+    little = replace(options, limits=replace(options.limits, work=_LITTLE))
+    found = won_in_shares(network, objective, reaction, little)
+    return None if found is None else found.strategy
+
+
+def _patrols_many(game: Network, objective: Objective) -> bool:
+    """True where patrols of so many places are asked for, and nothing else, that tours are looked for first."""
+    names = {name for name, _ in objective.bad}
+    return objective.kind is Kind.SAFETY and len(names) >= PATROL and names <= patrols(game)
+
+
+def _verdict(network: Network, objective: Objective, reaction: Fraction, limits: Limits) -> Verdict:
+    """The verdict; where agents rest between calls, first with so much work in the ways that may be less."""
+    start = limits.now()
+    if pauses(network):
+        try:
+            return verdict_of(Budget(replace(limits, work=_LITTLE)), network, objective, reaction)
+        except LimitHit:
+            pass
+    return solve(network, objective, reaction, limits=limits.since(start))
+
+
+def _won(strategy: Strategy, network: Network, request: Request, timed: Optional[Objective]) -> Dict[str, Any]:
+    """The answer; `timed`: the objective whose time is to be found out, None: none is."""
+    subs = partition(strategy, network, request.scenario.agents, request.controllers, request.reach_obj)
+    data = {sub.controller: strategy_data(sub, request.rules.reaction) for sub in subs}
+    people = data.pop(UI, None)
+    answer = {"format": 1, "won": True, "strategies": data, "people": people, "cover": cover_data(strategy)}
+    takes = None if timed is None else _takes(strategy, network, timed, request)
+    answer = answer if takes is None else {**answer, "takes": takes}
+    return {**answer, "turning": sorted(request.turning)} if request.turning else answer
+
+
+def _takes(strategy: Strategy, network: Network, objective: Objective, request: Request) -> Optional[Dict[str, float]]:
+    """In how many time units at most the plan comes to the goal, from when it comes into force on: if that is not
+    `early` time units before its begin, nor `late` ones after. None where that is not quickly found out."""
+    if request.turning or request.awaited:  # their clocks begin with the plan; it takes as long as these are late
+        return None
+    clock = counting_clock(network)
+    for share, late in _MOMENTS:
+        early = share * request.ahead
+        there = replace(network, start=around(network.start, early, Fraction(late)))
+        most = worst_case(there, objective, strategy, request.rules.reaction, _STATES)
+        if most is not None:
+            begun = start_clocks(network, request)[clock] - early if clock is not None else Fraction(0)
+            return {"most": ceil((most - begun) * 1000) / 1000, "early": float(early), "late": float(late)}
+    return None
+
+
+def _at_limit(limits: Limits) -> str:
+    """Which limit of the request has ended the search; "" for others."""
+    if limits.states:
+        return f" within {limits.states} states"
+    return f" within {limits.seconds:g} s" if 0 < limits.seconds <= limits.spent else ""
+
+
+def _lost(why: str) -> Dict[str, Any]:
+    return {"format": 1, "won": False, "why": why}
+
+
+def _reason_lost(network: Network, objective: Objective, scenario: Scenario) -> str:
+    """Why the mission is lost already; "" if it is not."""
+    places = {(automaton.name, automaton.initial) for automaton in network.automata}
+    if objective.goal and set(objective.goal) <= places:
+        return ""
+    broken = next((place for place in objective.bad if place in places), None)
+    if broken is None:
+        return ""
+    missed = stated(scenario).get(broken[0])
+    return f"the mission is lost already: {_objectives(scenario, [missed] if missed else None)} is broken"
+
+
+def _cannot_be_met(game: Network, request: Request) -> str:
+    """One sentence: the objective that cannot be guaranteed from here, and the agents on which it depends."""
+    clocks = start_clocks(game, request)
+    agents = [agent.name for agent in request.scenario.agents]
+    over = [each.name for each in game.automata if passed_bounds(each, request.locations[each.name], clocks)]
+    for name in over:
+        if name not in agents:
+            missed = stated(request.scenario).get(name)
+            what = _objectives(request.scenario, [missed] if missed else None)
+            return f"{what} cannot be met any more: its time is over"
+    absent = [name for name in agents if name in request.excused or (name in over and name not in request.awaited)]
+    without = [f"without relying on {' and '.join(map(marked, absent))}"] if absent else []
+    for a, b, *alone in sorted(request.blocked):
+        for_whom = "".join(f" for {marked(name)}" for name in alone)
+        without.append(f"without the way between {marked(a)} and {marked(b)}{for_whom}")
+    return " ".join([f"{_objectives(request.scenario)} cannot be guaranteed from here", " and ".join(without)]).strip()
+
+
+def _objectives(scenario: Scenario, some: Optional[Sequence[StatedObjective]] = None) -> str:
+    """What is to be met, or these of it, in the author's words."""
+    lines = scenario.text.split("\n")
+    found = dict.fromkeys(part.span.line for part in some or (*scenario.reach, *scenario.safety))
+    return " and ".join(f"'{quoted(lines[line - 1].split('//')[0].strip())}'" for line in found)

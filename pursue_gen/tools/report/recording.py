@@ -1,0 +1,142 @@
+"""The steps of one mission: from a bag, from a journal, or from a simulation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Dict, Iterable, List, Mapping, Optional, Tuple
+
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.tga.network import Network
+from pursue_gen.tools.replay.record import MissionRecord
+from pursue_gen.tools.simulation.mission import SimulatedMission
+from pursue_gen.tools.simulation.outcome import Settings
+from pursue_gen.tools.simulation.remaining import Remaining
+from pursue_gen.tools.simulation.runs import Case
+from pursue_gen.tools.simulation.stage import Stage, stage_of
+from pursue_runtime.sentences import in_words
+from pursue_runtime.state import ENDED, HOLDING, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
+
+
+@dataclass(frozen=True)
+class Step:
+    """A state that the mission came to, `at` time units since its start; by an event of an agent ("": something else).
+
+    `locations` and `values` are those of the network's automata and variables; `plan` counts the plans in force.
+    """
+
+    at: float
+    locations: Mapping[str, str]
+    values: Mapping[str, int]
+    agent: str = ""
+    event: str = ""
+    status: str = RUNNING
+    reason: str = ""
+    plan: int = 0
+    lost: Tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A mission: `steps` by time, the first at 0; it was recorded until `end` (time units). `source`: where from."""
+
+    scenario: Scenario
+    network: Network
+    steps: Tuple[Step, ...]
+    end: float
+    source: str
+
+    @property
+    def status(self) -> str:
+        """The status at the end."""
+        return self.steps[-1].status if self.steps else WAITING
+
+    @property
+    def agents(self) -> Tuple[str, ...]:
+        """The agents, in order of declaration."""
+        return tuple(agent.name for agent in self.scenario.agents)
+
+
+@dataclass(frozen=True)
+class Stay:
+    """A value that lasted: from `start` to `end` (time units); `over`: it ended before the recording did."""
+
+    start: float
+    end: float
+    what: str
+    over: bool = True
+
+
+def ending_text(recording: Recording) -> str:
+    """How the mission ended, in a word or two."""
+    texts = {WON: "goal reached", LOST: "lost", STOPPED: "stopped", HOLDING: "holding"}
+    return texts.get(recording.status, "end of the recording")
+
+
+def stays(recording: Recording, automaton: str) -> Tuple[Stay, ...]:
+    """The locations of an automaton, in order of time."""
+    return lasting(recording, ((step.at, step.locations.get(automaton, "")) for step in recording.steps))
+
+
+def lasting(recording: Recording, changes: Iterable[Tuple[float, str]]) -> Tuple[Stay, ...]:
+    """The values and how long each lasted, from `changes` (time, value from then on); equal ones are joined."""
+    found: List[Stay] = []
+    for at, what in changes:
+        if found and found[-1].what == what:
+            continue
+        if found:
+            found[-1] = replace(found[-1], end=at, over=True)
+        found.append(Stay(at, recording.end, what, False))
+    return tuple(stay for stay in found if stay.end > stay.start or stay is found[-1])
+
+
+# Where recordings come from -------------------------------------------------------------------------------------------
+
+
+def from_record(record: MissionRecord, scenario: Scenario, network: Network, source: str) -> Optional[Recording]:
+    """The mission in a bag or a journal; None where it has not started."""
+    return from_states(record.states, scenario, network, source)
+
+
+def from_states(
+    states: Iterable[SystemState], scenario: Scenario, network: Network, source: str, until: float = 0.0
+) -> Optional[Recording]:
+    """The mission with these published states; its end is at least `until` (time units)."""
+    steps: List[Step] = []
+    started: Optional[float] = None
+    seen: Dict[int, str] = {}
+    for state in sorted(states, key=lambda state: state.seq):
+        if state.status == WAITING or seen.get(state.seq) == state.status:
+            continue
+        led_by = ("", "") if state.seq in seen else (state.agent, state.event)  # won once all is acknowledged
+        seen[state.seq] = state.status
+        started = state.stamp if started is None else started
+        at = max((state.stamp - started) / state.unit, steps[-1].at if steps else 0.0)
+        reason = in_words(state.reason, scenario.shown)
+        steps.append(Step(at, state.locations, state.values, *led_by, state.status, reason, state.plan, state.lost))
+    if not steps:
+        return None
+    end = steps[-1].at if steps[-1].status in ENDED else max(steps[-1].at, until)
+    return Recording(scenario, network, tuple(steps), end, source)
+
+
+def simulated(case: Case, seed: int) -> Recording:
+    """One simulated mission: the same as `simulation.runs` plays with this seed."""
+    stage = stage_of(case.scenario, case.won, case.options)
+    mission = _Recorded(stage, case.settings, seed, case.worst_times())
+    outcome = mission.run()
+    found = from_states(mission.states, case.scenario, case.won.network, f"simulated mission {seed}", outcome.time)
+    assert found is not None, "a simulated mission starts at once"
+    return found
+
+
+class _Recorded(SimulatedMission):
+    """A simulated mission that keeps what its observer publishes."""
+
+    def __init__(self, stage: Stage, settings: Settings, seed: int, remaining: Optional[Remaining]) -> None:
+        super().__init__(stage, settings, seed, remaining)
+        self.states: List[SystemState] = []
+
+    def publish(self, state: SystemState) -> None:
+        """A state of the mission."""
+        self.states.append(state)
+        super().publish(state)

@@ -1,0 +1,161 @@
+"""The thesis's tables for a scenario: commands and lines per controller and policy, and times to the goal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, List, Optional, Sequence, Tuple
+
+from pursue_gen.drawing.look import safe
+from pursue_gen.language.numbers import at_most
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.partition.split import ALL, CENTRALIZED, DEDICATED, DISTRIBUTED
+from pursue_gen.solving.solution import Solution
+from pursue_gen.tga.network import Kind
+from pursue_gen.tools.report.commands import CommandsTable, Game, commands_table
+from pursue_gen.tools.report.html import Section, table
+from pursue_gen.tools.report.thesis_figures import Times, thesis_times
+from pursue_gen.tools.simulation.outcome import Settings
+from pursue_gen.tools.simulation.outcome_texts import END_TEXTS, driven_words
+from pursue_gen.tools.simulation.runs import Case, Summary, case_of, simulate
+from pursue_gen.workspace import Options
+
+_UNTIL = {True: 1000.0, False: 200.0}
+"""How long a simulated mission may last, in time units: with a goal, and without one."""
+
+FIRST = 1
+"""The number of the first mission that is simulated."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Simulated missions with the controllers of one shape."""
+
+    controllers: str
+    summary: Summary
+
+
+def command_tables(
+    scenario: Scenario, game: Game, ideal: Game, reach_obj: Optional[str] = None
+) -> Tuple[CommandsTable, ...]:
+    """A table for each policy for the objective's commands, `reach_obj` first (None: the thesis's or `dedicated`); at
+    last one with the first policy and all controllers in the ideal game.
+    """
+    robots = [agent.name for agent in scenario.agents if agent.is_robot]
+    first = commands_table(scenario.name, scenario.agents, game, ideal, reach_obj)
+    policies = [DEDICATED, *([ALL, *robots] if robots and scenario.reach else [])]
+    others = [policy for policy in policies if policy != first.reach_obj]
+    more = [commands_table(scenario.name, scenario.agents, game, ideal, policy) for policy in others]
+    return (first, *more, commands_table(scenario.name, scenario.agents, ideal, reach_obj=first.reach_obj))
+
+
+def case_for(scenario: Scenario, won: Solution, reach_obj: str, shape: str = DISTRIBUTED) -> Case:
+    """What is simulated with controllers of that shape."""
+    options = Options(shape, reach_obj, won.reaction, won.rules.ends, won.rules.slack)
+    return case_of(scenario, won, options, Settings("mixed", (), _UNTIL[won.objective.kind is not Kind.SAFETY]))[0]
+
+
+def measured(
+    scenario: Scenario, won: Solution, reach_obj: str, runs: int, progress: Callable[[int], None] = lambda done: None
+) -> Tuple[Measured, ...]:
+    """So many simulated missions each with central and with distributed controllers; the same seeds each time.
+
+    The uncontrollable agents do in turn anything, the worst, and nothing. `progress` is called with how many are done.
+    """
+    result: List[Measured] = []
+    for shape in (CENTRALIZED, DISTRIBUTED):
+        before = len(result) * runs
+        case = case_for(scenario, won, reach_obj, shape)
+        result.append(Measured(shape, simulate(case, range(FIRST, FIRST + runs), progress=_from(before, progress))))
+    return tuple(result)
+
+
+def _from(before: int, progress: Callable[[int], None]) -> Callable[[int], None]:
+    return lambda done: progress(before + done)
+
+
+def section(
+    scenario: Scenario, won: Solution, tables: Sequence[CommandsTable], missions: Sequence[Measured]
+) -> Section:
+    """The tables on the page."""
+    parts = ["<h3>Commands and lines per controller</h3>", _policy(tables[0], True)]
+    folded = {"With other owners of the objective's commands": [one for one in tables[1:] if one.ends is None]}
+    folded["All controllers in the ideal game, as the thesis compares them"] = [one for one in tables[1:] if one.ends]
+    for summary, some in folded.items():
+        if some:
+            others = "".join(_policy(one, False) for one in some)
+            parts.append(f"<details><summary>{summary}</summary>{others}</details>")
+    parts.append(
+        "<p class='quiet'>General decides the ends of movements and actions itself, the others wait for reports of "
+        "them: two games with a strategy each. A command is a situation with what is done in it; lines are those "
+        "of the controller's strategy file (in the thesis: of its Python program). Percentages are of General.</p>"
+    )
+    robots = tuple(agent.name for agent in scenario.agents if agent.is_robot)
+    goal = won.objective.kind is not Kind.SAFETY
+    parts.append(f"<h3>{'Times to the goal' if goal else 'Simulated missions'}</h3>")
+    parts.append(_times(won, missions, thesis_times(scenario.name, robots)) if goal else _safety(missions))
+    parts += [f"<p>{safe(text)}</p>" for one in missions[-1:] for text in driven_words(one.summary)]
+    failed = sum(one.summary.failed for one in missions)
+    if failed:
+        parts.append(f"<p><strong>{failed} simulated missions failed.</strong></p>")
+    return Section("tables", "Commands and times", "\n".join(parts))
+
+
+def _policy(one: CommandsTable, first: bool) -> str:
+    owner = {DEDICATED: "a controller of their own has them", ALL: "every robot has them"}
+    policy = owner.get(one.reach_obj, f"{one.reach_obj} has them")
+    heads = ["controller", "commands", "%", "lines", "%"]
+    thesis = one.reach_obj == one.thesis_reach_obj
+    heads += ["thesis: commands", "%", "lines", "%"] if thesis else []
+    general = one.rows[0]
+    rows: List[List[object]] = []
+    for row in one.rows:
+        cells: List[object] = [row.controller, row.commands, _share(row.commands, general.commands)]
+        cells += [row.lines, _share(row.lines, general.lines)]
+        if thesis and general.thesis:
+            figure = row.thesis
+            cells += [figure.commands, _share(figure.commands, general.thesis.commands)] if figure else ["-", "-"]
+            cells += [figure.lines, _share(figure.lines, general.thesis.lines)] if figure else ["-", "-"]
+        rows.append(cells)
+    end = ", as in the thesis" if thesis and first else ""
+    return table(heads, rows, f"The objective's commands: {policy}{end}")
+
+
+def _times(won: Solution, missions: Sequence[Measured], thesis: Optional[Times]) -> str:
+    heads = ["", "least", "median", "worst", *(["thesis (seconds)"] if thesis else [])]
+    worst = won.guarantee.worst if won.guarantee else None
+    rows: List[List[object]] = [["guaranteed", "", "", "not found out" if worst is None else at_most(worst)]]
+    rows[0] += [""] if thesis else []
+    for one in missions:
+        reached = [row for row in one.summary.rows if row.end == "goal"]
+        label = f"simulated, {one.controllers} ({one.summary.missions} missions)"
+        found = [_number(v) for row in reached for v in (row.least, row.median, row.worst)] or ["not reached", "", ""]
+        if thesis:
+            seconds = thesis.centralized if one.controllers == CENTRALIZED else thesis.distributed
+            found.append("not reached" if seconds is None else _number(seconds))
+        rows.append([label, *found])
+    times = table(heads, rows, "In time units from the start")
+    note = "<p class='quiet'>Simulated without faults, with the code of the generated controllers; what nobody "
+    note += "controls does anything, the worst, or nothing."
+    if thesis:
+        note += " The thesis measured its own programs once, in seconds; its interface cut movements short."
+    return f"{times}{note}</p>" if missions else times
+
+
+def _safety(missions: Sequence[Measured]) -> str:
+    rows = [
+        [one.controllers, END_TEXTS[row.end], row.missions, _number(row.worst)]
+        for one in missions
+        for row in one.summary.rows
+    ]
+    if not rows:
+        return "<p>No missions were simulated.</p>"
+    heads = ["controllers", "outcome", "missions", "watched for (units)"]
+    return table(heads, rows, "Simulated missions, without faults")
+
+
+def _share(part: int, whole: int) -> str:
+    return f"{100 * part / whole:.1f}" if whole else "-"
+
+
+def _number(value: float) -> str:
+    return safe(f"{value:.2f}")

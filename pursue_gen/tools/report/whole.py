@@ -1,0 +1,102 @@
+"""The whole report of a scenario: what it is made of, its page, and its pictures as files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, Optional, Sequence, Tuple
+
+from pursue_gen.drawing import map_svg
+from pursue_gen.drawing.floor import Floor
+from pursue_gen.drawing.layout import poses
+from pursue_gen.drawing.look import safe
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.partition import partition
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import Solution
+from pursue_gen.tga.network import Network
+from pursue_gen.tools.report import animation, automata, graphviz, ros_graph, strategy, tables, timeline, verdict
+from pursue_gen.tools.report.commands import CommandsTable
+from pursue_gen.tools.report.html import Section, figure, page
+from pursue_gen.tools.report.recording import Recording
+from pursue_gen.tools.report.strategy_data import StrategyData, strategy_data_of
+from pursue_gen.tools.report.tables import Measured
+from pursue_gen.tools.report.verdict import Lost
+from pursue_gen.workspace.spots import SPOT_DISTANCE, placing
+
+
+@dataclass(frozen=True)
+class Report:
+    """The content of a report. `network` is the game as it is played under `rules`.
+
+    A scenario that is won has `won`, `margin` (sentences), `tables` and `missions` (empty: not simulated); one that is
+    not has `lost`. `reach_obj`: who gets the objective's commands. `floor`: what lies under the map. `recording`: the
+    mission that is shown as a timeline and as an animation.
+    """
+
+    scenario: Scenario
+    network: Network
+    rules: Rules
+    won: Optional[Solution] = None
+    lost: Optional[Lost] = None
+    margin: str = ""
+    reach_obj: str = "dedicated"
+    tables: Tuple[CommandsTable, ...] = ()
+    missions: Tuple[Measured, ...] = ()
+    floor: Optional[Floor] = None
+    recording: Optional[Recording] = None
+
+
+def report_page(report: Report) -> str:
+    """The page. Where graphviz is not installed there are tables instead of some pictures, and it says so."""
+    scenario, won = report.scenario, report.won
+    sections = [verdict.section(scenario, report.rules, won, report.margin, report.lost), _map(report)]
+    if report.recording is not None:
+        sections += [timeline.section(report.recording), animation.section(scenario, report.recording, report.floor)]
+    if won is not None:
+        sections.append(strategy.section(_strategy_data(report, won)))
+        sections.append(tables.section(scenario, won, report.tables, report.missions))
+    sections.append(automata.section(report.network, scenario))
+    if won is not None:
+        sections.append(ros_graph.section(_topics(report, won)))
+    sections.append(Section("scenario", "The scenario", f"<pre>{safe(scenario.text)}</pre>"))
+    return page(f"Report on {scenario.name}", sections)
+
+
+def pictures(report: Report) -> Dict[str, str]:
+    """Every picture as SVG, by the name of its file without its ending; empty texts: graphviz could not draw them."""
+    found = {"map": _map_svg(report)}
+    if report.recording is not None:
+        found["timeline"] = timeline.draw(report.recording, "timeline-picture")
+    graphs = {f"automaton_{a.name}": automata.graph(a) for a in report.network.automata}
+    if report.won is not None:
+        graphs["strategy"] = strategy.graph(_strategy_data(report, report.won))
+        graphs["ros_graph"] = ros_graph.graph(_topics(report, report.won))
+    for name, graph in graphs.items():
+        if graph is not None:
+            found[name] = graphviz.draw(graph) or ""
+    return found
+
+
+def _map(report: Report) -> Section:
+    _, computed = poses(report.scenario)
+    positions = f"Positions are {'computed from the distances' if computed else 'those of the scenario, in metres'}."
+    if report.floor is not None:
+        apart = f"{SPOT_DISTANCE:g} m apart unless the scenario says where"
+        positions += f" Small marks are where further robots stand, {apart}."
+    shown = figure(_map_svg(report, "map-picture"), f"{positions} Distances stand at the connections.")
+    return Section("map", "The map", shown)
+
+
+def _map_svg(report: Report, ident: str = "") -> str:
+    where = placing(report.scenario, SPOT_DISTANCE)
+    spots = where.spots if report.floor is not None else None
+    return map_svg.draw(report.scenario, where.places, where.computed, report.floor, ident, spots)
+
+
+def _strategy_data(report: Report, won: Solution) -> StrategyData:
+    return strategy_data_of(report.scenario, won, report.reach_obj)
+
+
+def _topics(report: Report, won: Solution) -> Sequence[ros_graph.Topic]:
+    subs = partition(won.strategy, won.network, report.scenario.agents, reach_obj=report.reach_obj)
+    return ros_graph.topics(report.scenario, subs)

@@ -1,0 +1,208 @@
+"""What the objectives of a scenario mean for the course of a mission, without the network: by its events and places.
+
+A mission may end as won only where everything to be reached has happened in time, and nothing was broken before; and as
+lost only where an objective is broken. The batteries of robots are never empty while they need them.
+"""
+
+from __future__ import annotations
+
+from typing import Dict, FrozenSet, List, NamedTuple, Optional, Set, Tuple, Union
+
+from pursue_gen.diagnostics import Span
+from pursue_gen.language import network_names as names
+from pursue_gen.language.conditions import At, Condition
+from pursue_gen.language.network_names import going, has_happened
+from pursue_gen.language.scenario import Always, Avoid, NeverHolds, NeverWith, Patrol, Ref, Respond, Safety, Scenario
+from pursue_gen.language.wording import assumption_words, objective_text
+from pursue_gen.tools.simulation.meaning import broken_of, holds
+from pursue_gen.tools.simulation.recorder import EPSILON
+from pursue_runtime.locations import is_action, is_under_way, place_of
+from pursue_runtime.state import LOST, WON, SystemState
+
+
+class Duty(NamedTuple):
+    """How often an objective was called upon in a mission, and how many time units its latest answer took; None where
+    there was none."""
+
+    calls: int = 0
+    latest: Optional[float] = None
+
+
+def duties_of(scenario: Scenario) -> Tuple[Tuple[int, Union[Respond, Patrol]], ...]:
+    """The objectives that are called upon, each time with a limit for the answer, with their numbers."""
+    return tuple((k, each) for k, each in enumerate(scenario.safety) if isinstance(each, (Respond, Patrol)))
+
+
+class Promises:
+    """The objectives of one mission. `problems`: what must never be; `duties`: those of `duties_of`, in their order."""
+
+    def __init__(self, scenario: Scenario, exact: bool = True) -> None:
+        """`exact`: nothing comes late, so that a deadline is either kept or missed; False where there are faults."""
+        self.problems: List[str] = []
+        self._scenario, self._exact = scenario, exact
+        self._events = {has_happened(event): event.name for event in scenario.events}
+        self._ways = {going(a, b): frozenset((a, b)) for way in scenario.connections for a, b in way.directions}
+        self._places = [poi.name for poi in scenario.pois]
+        self._done: List[Set[str]] = [set() for _ in scenario.reach]
+        self._since: Dict[int, float] = {}
+        self._held: Set[int] = set()  # whose conditions that are to be answered have held in the state before
+        self._turns: Dict[Span, int] = {}
+        self._where: Dict[str, str] = {}
+        self._broken: Dict[str, float] = {}
+        self._levels: Dict[str, float] = {each.agent.name: float(each.capacity) for each in scenario.batteries}
+        self._seen: Dict[str, Tuple[float, str]] = {}
+        self._begun: Optional[float] = None
+        self._seq = 0
+        self._called: Dict[int, float] = {}
+        self._condition, self._was_broken = broken_of(scenario), False
+        self._duties = {number: Duty() for number, _ in duties_of(scenario)}
+
+    @property
+    def duties(self) -> Tuple[Duty, ...]:
+        """How often each of `duties_of` was called upon so far, and how late it was answered at most."""
+        return tuple(self._duties.values())
+
+    def on_state(self, state: SystemState, now: float) -> None:
+        """The observer publishes a state, at this moment (seconds)."""
+        if state.seq > 0 and self._begun is None:
+            self._begun = now
+        if self._begun is None:
+            return
+        at = (now - self._begun) / state.unit
+        self._check_conditions(state)
+        # A deadline that ends now is missed where the mission is lost, and kept where it is not.
+        latest = at + EPSILON if state.status == LOST else at - EPSILON
+        event = self._events.get(state.event, "") if state.seq > self._seq else ""
+        self._seq = max(self._seq, state.seq)
+        visited = self._visited(state)
+        for number, safety in enumerate(self._scenario.safety):
+            if self._breaks(number, safety, event, latest, state):
+                self._broken.setdefault(objective_text(safety), at)
+            if number in visited:
+                self._since.pop(number, None)
+        self._count(at)
+        for reach, done in zip(self._scenario.reach, self._done):
+            in_time = reach.within is None or latest <= reach.within
+            if event in {ref.name for ref in reach.events} and at > reach.after - EPSILON and in_time:
+                done.add(event)
+            if not in_time and len(done) < len(reach.events):
+                self._broken.setdefault(objective_text(reach), at)
+        if self._exact:
+            self._check(state)
+            self._check_batteries(state, at)
+            self._check_assumed(state)
+
+    def _count(self, at: float) -> None:
+        """Counts what is called upon since this moment, and takes down how late it is answered."""
+        for number, (calls, latest) in self._duties.items():
+            if number in self._since and number not in self._called:
+                self._called[number] = at
+                self._duties[number] = Duty(calls + 1, latest)
+            elif number not in self._since and number in self._called:
+                self._duties[number] = Duty(calls, max(latest or 0.0, at - self._called.pop(number)))
+
+    def _check_batteries(self, state: SystemState, at: float) -> None:
+        """Takes from each battery what its robot has used since the state before, or adds what it has recharged."""
+        for battery in self._scenario.batteries:
+            name = battery.agent.name
+            here = state.locations.get(name, "")
+            before, was = self._seen.get(name, (at, here))
+            self._seen[name] = (at, here)
+            if not is_under_way(was):
+                continue
+            rate = -float(battery.uses)
+            if battery.dock is not None and is_action(was) and place_of(was, self._places) == battery.dock.name:
+                rate = float(battery.recharges)
+            level = min(float(battery.capacity), self._levels[name] + rate * (at - before))
+            if self._levels[name] >= 0 > level + EPSILON * float(battery.uses):
+                self.problems.append(f"the battery of {name} has run empty")
+            self._levels[name] = level
+
+    def _breaks(self, number: int, safety: Safety, event: str, latest: float, state: SystemState) -> bool:
+        """True if the objective is broken now."""
+        if isinstance(safety, Avoid):
+            return event == safety.event.name
+        if isinstance(safety, Always):
+            return state.status != WON and holds(safety.broken_if, self._scenario, state.locations, state.values)
+        if isinstance(safety, NeverWith):
+            spots = [self._spot(state.locations.get(agent.name, "")) for agent in (safety.first, safety.second)]
+            here = safety.place is None or spots[0] == {safety.place.name}
+            return state.status != WON and here and spots[0] == spots[1]
+        since = self._since.get(number)
+        if isinstance(safety, Patrol):
+            there = holds(At(safety.who, safety.place), self._scenario, state.locations, state.values)
+            if there and not safety.order:
+                self._since.pop(number, None)
+            elif not there:
+                self._since.setdefault(number, latest)
+            return since is not None and latest - since > safety.period
+        missed = since is not None and latest - since > safety.deadline
+        begun, before = self._is(safety.trigger, event, state), number in self._held
+        self._held.discard(number)
+        if begun and not isinstance(safety.trigger, Ref):
+            self._held.add(number)
+        if self._is(safety.response, event, state):
+            self._since.pop(number, None)
+        elif begun and not before:
+            self._since.setdefault(number, latest)
+        return missed
+
+    def _check_conditions(self, state: SystemState) -> None:
+        """A mission is lost if and only if a condition of an objective says so, in the next state at the latest."""
+        if self._condition is None:
+            return
+        broken = self._condition(state.locations, state.values)
+        lost = any(state.locations.get(name) == names.LOSE for name in self._condition.automata)
+        if lost and not broken:
+            self.problems.append(f"state {state.seq} counts as lost, but no condition of an objective is broken there")
+        elif self._was_broken and not lost:
+            self.problems.append(f"a condition is broken before state {state.seq}, which does not count as lost")
+        self._was_broken = broken and not lost
+
+    def _check_assumed(self, state: SystemState) -> None:
+        """What is assumed never to hold does not, until a mission has seen it broken."""
+        for number, assumption in enumerate(self._scenario.assumptions, start=1):
+            if not isinstance(assumption, NeverHolds) or not state.values.get(names.assumption(number), 0):
+                continue
+            if holds(assumption.condition, self._scenario, state.locations, state.values):
+                self.problems.append(f"state {state.seq}: not so that {assumption_words(assumption)}, but not broken")
+
+    def _is(self, what: Union[Ref, Condition], event: str, state: SystemState) -> bool:
+        """True if the event happens now, or the condition holds."""
+        if isinstance(what, Ref):
+            return event == what.name
+        return holds(what, self._scenario, state.locations, state.values)
+
+    def _visited(self, state: SystemState) -> Set[int]:
+        """The numbers of the places of patrols in order at which one of them arrives now, in its turn."""
+        first, before = not self._where, self._where
+        self._where = {name: place_of(location, self._places) for name, location in state.locations.items()}
+        found: Set[int] = set()
+        for number, patrol in enumerate(self._scenario.safety):
+            if not isinstance(patrol, Patrol) or patrol.place.name != "".join(patrol.order[:1]):
+                continue
+            names = [agent.name for agent in self._scenario.on_patrol(patrol)]
+            come = {self._where.get(name, "") for name in names if self._where.get(name) != before.get(name)}
+            turn, count = self._turns.get(patrol.span, 0), len(patrol.order)
+            for _ in range(count if first else 1):
+                if patrol.order[turn] in come:
+                    found.add(number + turn)
+                    turn = (turn + 1) % count
+            self._turns[patrol.span] = turn
+            if first:
+                self._since.update((other, 0.0) for other in range(number, number + count) if other not in found)
+        return found
+
+    def _check(self, state: SystemState) -> None:
+        if state.status == WON:
+            for reach, done in zip(self._scenario.reach, self._done):
+                if len(done) < len(reach.events):
+                    self.problems.append(f"the mission is won, but not '{objective_text(reach)}'")
+            for text in self._broken:
+                self.problems.append(f"the mission is won, but '{text}' was broken")
+        elif state.status == LOST and not self._broken:
+            self.problems.append("the mission is lost, but no objective is broken")
+
+    def _spot(self, location: str) -> FrozenSet[str]:
+        """Where an agent is: a place, or a way by its two ends."""
+        return self._ways.get(location) or frozenset((place_of(location, self._places),))
