@@ -48,8 +48,10 @@ class _Search:
         for automaton in self._others:
             self.need(e for e in automaton.edges if any(name in self._variables for name, _ in e.assign))
         for automaton in self._team:
-            ends = {edge.source for name, edge in self.found if name == automaton.name and is_action(edge.source)}
-            new = [edge for edge in automaton.edges if self._matters(edge, ends)]
+            own = [edge for name, edge in self.found if name == automaton.name]
+            ends = {edge.source for edge in own if is_action(edge.source)}
+            tested = {test.variable for edge in own for clause in edge.guard.integers for test in clause}
+            new = [edge for edge in automaton.edges if self._matters(edge, ends) or _charges(edge, tested)]
             self.found.update((automaton.name, edge) for edge in new)
             self._variables.update(t.variable for edge in new for clause in edge.guard.integers for t in clause)
         return before != (len(self._channels), len(self._variables), len(self.found))
@@ -59,3 +61,8 @@ class _Search:
         if edge.sync is not None and edge.sync.sends and edge.sync.channel in self._channels:
             return True
         return edge.source != edge.target and edge.target in begun
+
+
+def _charges(edge: Edge, tested: AbstractSet[str]) -> bool:
+    """True for the end of an action that sets what the agent's own edges test: the level of its battery."""
+    return is_action(edge.source) and any(name in tested for name, _ in edge.assign)
