@@ -8,6 +8,7 @@ from typing import Dict, Iterator, Mapping, Optional, Tuple
 from pursue_gen.language import network_names as names
 from pursue_gen.language.numbers import decimal_text
 from pursue_gen.language.scenario import Leaves, Patrol, Reach, Respond, Scenario, StatedObjective, Waits
+from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.language.wording import answer_words, answered_words, events_words, listed, objective_text, units
 from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Constraint, Zone
@@ -19,7 +20,8 @@ from pursue_gen.tga.passages import words_of as passage_words
 from pursue_gen.tga.status_words import turn_words
 from pursue_gen.tga.tours import words_of as tour_words
 
-_DUTIES = {names.IDLE: "kept", names.AT_RISK: "a deadline is running", names.LOSE: "broken"}
+_DUTIES = {Role.IDLE: "kept", Role.AT_RISK: "a deadline is running", Role.LOSE: "broken"}
+_GOALS = {Role.START: "not counting yet", Role.UNLOCKED: "to be reached", Role.WIN: "reached", Role.LATE: "too late"}
 
 
 @dataclass(frozen=True)
@@ -41,11 +43,10 @@ class Words:
         """Where it is, as in "at c", "on the way from c to b", "doing catch at b", "next: load or wait"."""
         objective = self.objectives.get(automaton)
         if isinstance(objective, Reach):
-            done = [objective.events[k].shown for k in events_done(location)]
-            found = f"{listed(done)} done" if done else "not counting yet"
-            return {"win": "reached", "unlocked": "to be reached", names.LATE: "too late"}.get(location, found)
+            done = [ref.shown for ref in events_done(objective, location)]
+            return f"{listed(done)} done" if done else _GOALS.get(role_of(location), location)
         if objective is not None:
-            return _DUTIES.get(location, location)
+            return _DUTIES.get(role_of(location), location)
         return self.turns.get((automaton, location)) or self.places.get(location) or f"at {location}"
 
     def move(self, automaton: str, edge: Edge) -> str:
@@ -104,7 +105,7 @@ class Words:
 
 def words_of(scenario: Scenario, network: Network) -> Words:
     """The words for a scenario and its network."""
-    clocks = {names.agent_clock(agent.name): f"{agent.shown}'s last step" for agent in scenario.agents}
+    clocks: Dict[str, str] = {names.agent_clock(each.name): f"{each.shown}'s last step" for each in scenario.agents}
     objectives = stated(scenario)
     for name, each in objectives.items():
         if isinstance(each, Respond):
@@ -164,7 +165,7 @@ def place_words(scenario: Scenario, location: str) -> str:
     for a, b in (way for connection in scenario.connections for way in connection.directions):
         if location == names.going(a, b):
             return f"on the way from {scenario.shown(a)} to {scenario.shown(b)}"
-    for event in scenario.events if names.is_doing(location) else ():
+    for event in scenario.events if role_of(location) is Role.WORK else ():
         for poi in scenario.pois:
             if location == names.doing(event.name, poi.name):
                 return f"doing {event.shown} at {poi.shown}"

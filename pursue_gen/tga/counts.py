@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Iterator, Tuple
 
-from pursue_gen.language.network_names import count, rule_turn
+from pursue_gen.language.network_names import count, times
 from pursue_gen.language.scenario import Event, Scenario
 from pursue_gen.tga.network import Automaton, Edge, Location, Sync
 from pursue_gen.tga.rules import Turns
@@ -20,7 +20,7 @@ def count_automaton(event: Event, most: int) -> Tuple[Automaton, Turns]:
     name = count(event.name)
     places = [f"{name}_{number}" for number in range(most + 1)]
     edges = tuple(
-        Edge(before, after, sync=Sync(event.name, sends=False), assign=((rule_turn(name), number),))
+        Edge(before, after, sync=Sync(event.name, sends=False), assign=((times(event.name), number),))
         for number, (before, after) in enumerate(zip(places, places[1:]), start=1)
     )
     locations = tuple(Location(place, named=False) for place in places)

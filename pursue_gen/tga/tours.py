@@ -9,14 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Iterable, List, Optional, Set, Tuple
 
-from pursue_gen.language.network_names import LOSE, is_going
+from pursue_gen.language.network_names import LOSE
+from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.tga.network import Automaton, Edge, Location, Network, Sync
 from pursue_gen.tga.part import beside
-
-OF = "_tour"
-"""Stands behind the robot in the name of its automaton."""
-
-_STOP = "stop_"
 
 
 @dataclass(frozen=True)
@@ -31,11 +27,11 @@ class Tour:
     @property
     def name(self) -> str:
         """Its automaton's name."""
-        return self.robot + OF
+        return Symbol(f"{self.robot}_tour", Role.TOUR, (self.robot,))
 
     def at(self, stop: int) -> str:
         """The location in which the robot is at this stop (from 0), or on its way there."""
-        return f"{_STOP}{stop + 1}"
+        return f"stop_{stop + 1}"
 
     def after(self, stop: int) -> Optional[int]:
         """The number of the stop behind this one; None where it stays."""
@@ -43,17 +39,11 @@ class Tour:
         return following if following < len(self.stops) else None
 
 
-def robot_of(automaton: str) -> str:
-    """The robot of a tour's automaton."""
-    return automaton[: -len(OF)]
-
-
 def words_of(network: Network) -> Dict[Tuple[str, str], str]:
     """What the locations of all tours in a network mean, in words, by automaton and location."""
-    agents = {automaton.name for automaton in network.automata}
     words: Dict[Tuple[str, str], str] = {}
     for automaton in network.automata:
-        if automaton.name.endswith(OF) and robot_of(automaton.name) in agents:
+        if role_of(automaton.name) is Role.TOUR:
             stops = [place.name for place in automaton.locations if place.name != LOSE]
             for number, name in enumerate(stops, start=1):
                 words[automaton.name, name] = f"stop {number} of {len(stops)}"
@@ -103,7 +93,7 @@ def ways_of(robot: Automaton) -> Dict[str, Dict[str, Edge]]:
     ways: Dict[str, Dict[str, Edge]] = {}
     several: Set[Tuple[str, str]] = set()
     for edge in robot.edges:
-        if edge.sync is None or not edge.sync.sends or not is_going(edge.target) or is_going(edge.source):
+        if edge.sync is None or not edge.sync.sends or edge.enters is not Role.WAY or edge.leaves is Role.WAY:
             continue
         for place in ends.get(edge.target, set()):
             if place in ways.setdefault(edge.source, {}) or len(ends[edge.target]) > 1:

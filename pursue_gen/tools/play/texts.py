@@ -12,6 +12,7 @@ from pursue_gen.explanation.texts import time_text
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.scenario import Always, Avoid, Connection, NeverWith, Patrol, Reach, Respond, Scenario
+from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.language.wording import answer_words, events_words, listed, missed_text, patroller, visited
 from pursue_gen.synthesis.game import Game, JointMove
 from pursue_gen.tga.counts import counted
@@ -91,14 +92,14 @@ def _lasting(setup: Setup, play: PlayState, number: int) -> str:
     ends = (game.edges[k] for k in game.automata[number].edges)
     lows = [Fraction(edge.duration, game.scale) for edge in ends if edge.source == place]
     low = begun + max(lows, default=Fraction(0))
-    verb = "arrives" if names.is_going(game.automata[number].locations[place]) else "ends"
+    verb = "arrives" if role_of(game.automata[number].locations[place]) is Role.WAY else "ends"
     return f" since {time_text(begun)}; {verb} between {time_text(low)} and {time_text(begun + game.time(high))}"
 
 
 def _doer(game: Game, places: Sequence[int], number: int) -> Optional[int]:
     """Who does what this agent takes part in until it ends; None where it does nothing together with others."""
     location = game.automata[number].locations[places[number]]
-    if not names.is_doing(location):
+    if role_of(location) is not Role.WORK:
         return None
     others = (k for k, automaton in enumerate(game.automata) if automaton.locations[places[k]] == location)
     return next((k for k in others if game.automata[k].invariants[places[k]]), None)
@@ -118,7 +119,7 @@ def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Itera
         if isinstance(objective, Reach) and objective.after and play.now <= objective.after:
             yield f"{events_words(objective)} counts after {objective.after}"
         if isinstance(objective, Reach) and objective.within is not None and place != "win":
-            done = {objective.events[k].name for k in events_done(place)}
+            done = {ref.name for ref in events_done(objective, place)}
             left = listed(ref.shown for ref in objective.events if ref.name not in done)
             yield f"deadline: {left} by {time_text(Fraction(objective.within))} at the latest"
 

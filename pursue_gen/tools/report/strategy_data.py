@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from string import ascii_letters
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.explanation.network_words import Words, words_of, zone_texts
 from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Reach, Scenario
+from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
 from pursue_gen.proof.relaxed_reachability import commanded
@@ -18,7 +18,6 @@ from pursue_gen.synthesis.game import Game, State, initial_state, is_goal, joint
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Place, Strategy, Zone
 from pursue_gen.tga.network import Objective
 from pursue_gen.tga.objectives import stated
-from pursue_gen.tga.watchers import FOR
 
 Key = Tuple[Tuple[str, str, str, str], ...]
 
@@ -372,11 +371,17 @@ def shown_name(name: str, kind: str) -> str:
     """The name of an automaton on the page; the second objective of a kind and the following have numbers."""
     if kind not in ("goal", "deadline"):
         return name
-    what, _, robots = name.partition(FOR)
-    number = what.lstrip(ascii_letters)
+    what, *robots = _watched(name)
+    (number,) = Symbol.of(what).parts
     word = "goal" if kind == "goal" else "objective"
-    shown = f"{word} {number}" if number else f"the {word}"
-    return f"{shown} for {robots.replace('_', ' and ')}" if robots else shown
+    shown = f"the {word}" if number == "1" else f"{word} {number}"
+    return f"{shown} for {' and '.join(robots)}" if robots else shown
+
+
+def _watched(automaton: str) -> Tuple[str, ...]:
+    """The objective's automaton that it is, or that it is for some robots, and these."""
+    symbol = Symbol.of(automaton)
+    return symbol.parts if symbol.role is Role.WATCHER else (symbol,)
 
 
 def _kind(scenario: Scenario, automaton: str) -> str:
@@ -384,7 +389,7 @@ def _kind(scenario: Scenario, automaton: str) -> str:
     for agent in scenario.agents:
         if agent.name == automaton:
             return "other" if not agent.controllable else "person" if agent.human else "robot"
-    objective = stated(scenario).get(automaton.split(FOR)[0])
+    objective = stated(scenario).get(_watched(automaton)[0])
     if objective is not None:
         return "goal" if isinstance(objective, Reach) else "deadline"
     return "states" if automaton == names.STATES else "rule"
