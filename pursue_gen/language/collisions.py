@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Dict, Iterable, Iterator, Sequence, Tuple
+from typing import Dict, Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language import network_names as names
@@ -57,18 +57,13 @@ def _numbered(scenario: Scenario) -> Iterator[_Stated]:
     """What is made for objectives and assumptions, which have numbers and no names."""
     for number, safety in enumerate(scenario.safety):
         automaton = names.safety_objective(number)
-        turn = [names.rule_turn(automaton)] if isinstance(safety, Patrol) and safety.order else []
-        yield safety.span, _all(Role.OF_OBJECTIVE, [automaton, names.safety_clock(number), *turn])
+        turn = [Role.SAFETY_TURN(automaton)] if isinstance(safety, Patrol) and safety.order else []
+        yield safety.span, [automaton, names.safety_clock(number), *turn]
     for number, reach in enumerate(scenario.reach):
-        made = [names.reach_objective(number), names.reach_clock(number), names.unlocking(number)]
-        yield reach.span, _all(Role.OF_OBJECTIVE, made)
+        yield reach.span, [names.reach_objective(number), names.reach_clock(number), names.unlocking(number)]
     for number, assumption in enumerate(scenario.assumptions, start=1):
         made = [names.assumption(number), names.assumption_count(number), names.assumption_clock(number)]
-        yield assumption.span, _all(Role.OF_ASSUMPTION, made)
-
-
-def _all(role: Role, made: Iterable[str]) -> Sequence[Symbol]:
-    return [Symbol(text, role) for text in made]
+        yield assumption.span, made
 
 
 def _among_locations(scenario: Scenario) -> Iterator[_Stated]:
@@ -81,6 +76,6 @@ def _among_locations(scenario: Scenario) -> Iterator[_Stated]:
 
 def _packages(scenario: Scenario) -> Iterator[_Stated]:
     for agent in scenario.agents:
-        yield agent.span, [Symbol(f"controller_{agent.name}", Role.PACKAGE, (agent.name,))]
+        yield agent.span, [Role.PACKAGE(agent.name)]
     for agent in scenario.agents[:1]:
-        yield agent.span, [Symbol(f"{scenario.name}_bringup", Role.BRINGUP)]
+        yield agent.span, [Role.BRINGUP(scenario.name)]

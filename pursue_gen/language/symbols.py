@@ -14,58 +14,77 @@ from typing import Any, Callable, NoReturn, Tuple
 from pursue_runtime import locations
 
 
+@enum.unique
 class Role(enum.Enum):
-    """What a name stands for, in words; `{}` are the parts of its symbol: names, and numbers from 1."""
+    """What a name stands for: the form of its text, and its meaning. `{}` are its parts: names, and numbers from 1.
 
-    NAME = "{}"  # nothing more is known of it
+    Called with the parts it makes the symbol.
+    """
 
-    AGENT = "the agent {}"
-    POSITION = "the position of {}"
-    CLOCK = "the clock of {}"
-    BUSY_WITH = "with what {} is busy"
-    LEVEL = "the level of {}'s battery"
-    AT = "the POI {}"
-    WAY = "the way from {} to {}"
-    WORK = "{} in {}"
-    SETTING_OFF = "{} leaving {} for {}"
-    ARRIVAL = "{0} arriving at {2} from {1}"
+    def __init__(self, form: str, meaning: str) -> None:
+        self.form, self.meaning = form, meaning
 
-    EVENT = "the event {}"
-    END = "the end of {}"
-    BUSY = "that {} goes on"
-    COUNT = "the count of {}"
-    TIMES = "how often {} has happened"
-    RULE = "the rule {}"
-    TURN = "the position of the rule {}"
-    RULE_CLOCK = "the clock of the rule {}"
-    OWN_TURN = "the turn of {1} in the rule {0}"
-    STATE = "the state {}"
-    VALUE = "the value of the state {}"
+    def __call__(self, *parts: object) -> Symbol:
+        return Symbol(self.form.format(*parts), self, tuple(map(str, parts)))
 
-    SAFETY = "the promise {}"
-    IDLE = "nothing is due"
-    AT_RISK = "a deadline is running"
-    LOSE = "the promise is broken"
-    REACH = "the goal {}"
-    START = "the goal does not count yet"
-    UNLOCKED = "the goal counts, and nothing of it is done"
-    DID = "some events of the goal are done, by their numbers"
-    WIN = "the goal is reached"
-    LATE = "the deadline of the goal has passed"
-    OF_OBJECTIVE = "a part of an objective"
-    ASSUMPTION = "the assumption {}"
-    OF_ASSUMPTION = "a part of an assumption"
+    NAME = "{}", "{}"  # nothing more is known of it
 
-    WATCHER = "a promise, watched for some robots"
-    PASSAGE = "the order of visits to {}"
-    AWAITS = "next is {}, visit {}"
-    HAS = "taken by {}, visit {}"
-    NOBODY = "nobody comes any more"
-    TOUR = "the tour of {}"
-    DUE = "whether the deadline of {} is running"
+    AGENT = "{}", "the agent {}"
+    POSITION = locations.position_variable("{}"), "the position of {}"
+    CLOCK = locations.automaton_clock("{}"), "the clock of {}"
+    BUSY_WITH = "W{}", "with what {} is busy"
+    LEVEL = "L{}", "the level of {}'s battery"
+    AT = "{}", "the POI {}"
+    WAY = locations.movement("{}", "{}"), "the way from {} to {}"
+    WORK = locations.action("{}", "{}"), "{} in {}"
+    SETTING_OFF = "{}_{}2{}", "{} leaving {} for {}"
+    ARRIVAL = f"{{0}}_{locations.movement('{1}', '{2}')}2{{2}}", "{0} arriving at {2} from {1}"
 
-    PACKAGE = "the package of {}"
-    BRINGUP = "the package that starts the mission"
+    EVENT = "{}", "the event {}"
+    END = "{}DONE", "the end of {}"
+    BUSY = "B{}", "that {} goes on"
+    COUNT = "{}_count", "the count of {}"
+    TIMES = "P{}_count", "how often {} has happened"
+    RULE = "{}", "the rule {}"
+    TURN = "P{}", "the position of the rule {}"
+    RULE_CLOCK = locations.automaton_clock("{}"), "the clock of the rule {}"
+    OWN_TURN = "P{}_{}", "the turn of {1} in the rule {0}"
+    STATES = "states", "the automaton of all states"
+    STATE = "{}", "the state {}"
+    VALUE = "S{}", "the value of the state {}"
+
+    SAFETY = "obj{}", "a part of an objective"
+    SAFETY_CLOCK = "Cobj{}", "a part of an objective"
+    SAFETY_TURN = "P{}", "a part of an objective"
+    IDLE = "idle", "nothing is due"
+    AT_RISK = "atRisk", "a deadline is running"
+    LOSE = "lose", "a promise is broken"
+    REACH = "reachObj{}", "a part of an objective"
+    REACH_CLOCK = "Creach{}", "a part of an objective"
+    UNLOCKING = "reachObj{}_going_initial_location2unlocked", "a part of an objective"
+    START = "initial_location", "a goal does not count yet"
+    UNLOCKED = "unlocked", "a goal counts, and nothing of it is done"
+    DID = "did_{}", "these events of a goal have happened: {}"
+    WIN = "win", "a goal is reached"
+    LATE = "late", "the deadline of a goal has passed"
+    ASSUMPTION = "assume{}", "a part of an assumption"
+    ASSUMED_TIMES = "assume{}count", "a part of an assumption"
+    ASSUMED_TIME = "Cassume{}", "a part of an assumption"
+
+    WATCHER = "{}_for_{}", "{}, watched for {}"
+    PASSAGE = "{}_passage{}", "the order of visits to {}"
+    AWAITS = "awaits_{}_{}", "next is {}, visit {}"
+    HAS = "has_{}_{}", "taken by {}, visit {}"
+    NOBODY = "awaits_nobody", "nobody comes any more"
+    TOUR = "{}_tour", "the tour of {}"
+    DUE = "@due_{}", "whether the deadline of {} is running"
+
+    PACKAGE = "controller_{}", "the package of {}"
+    BRINGUP = "{}_bringup", "the package that starts the mission"
+
+
+UNDER_WAY = (Role.WAY, Role.WORK)
+"""The locations that are left by the end of a movement or an action: it takes time to come."""
 
 
 class Symbol(str):
@@ -101,11 +120,7 @@ class Symbol(str):
     @property
     def meaning(self) -> str:
         """What it stands for, in words."""
-        return self.role.value.format(*self.parts)
-
-
-UNDER_WAY = (Role.WAY, Role.WORK)
-"""The locations that are left by the end of a movement or an action: it takes time to come."""
+        return self.role.meaning.format(*self.parts)
 
 
 def role_of(name: str) -> Role:
@@ -113,32 +128,23 @@ def role_of(name: str) -> Role:
     return Symbol.of(name).role
 
 
-_FORMS = tuple(
-    (role, re.compile(form))
-    for role, form in (
-        (Role.WAY, locations.movement("(.+?)", "(.+)")),
-        (Role.WORK, locations.action("(.+)", "(.+)")),
-        (Role.IDLE, "idle"),
-        (Role.AT_RISK, "atRisk"),
-        (Role.LOSE, "lose"),
-        (Role.START, "initial_location"),
-        (Role.UNLOCKED, "unlocked"),
-        (Role.DID, "did_([1-9][0-9_]*)"),
-        (Role.WIN, "win"),
-        (Role.LATE, "late"),
-        (Role.SAFETY, "obj([2-9]|[1-9][0-9]+)?"),
-        (Role.REACH, "reachObj([2-9]|[1-9][0-9]+)?"),
-        (Role.END, "(.+)DONE"),
-        (Role.ASSUMPTION, "assume([0-9]+)"),
-    )
-)
+def numbered(role: Role, number: int) -> Symbol:
+    """The symbol of the part of an objective with that number, from 0; the text of the first one has no number."""
+    return Symbol(role.form.format(number + 1 if number else ""), role, (str(number + 1),))
+
+
+_FURTHER = "([2-9]|[1-9][0-9]+)?"
+_READ = {role: "(.+)" for role in Role if "{" not in role.form or role in (*UNDER_WAY, Role.END)}
+_READ.update({Role.DID: "([1-9][0-9_]*)", Role.SAFETY: _FURTHER, Role.REACH: _FURTHER, Role.ASSUMPTION: "([0-9]+)"})
+_FORMS = {role: re.compile(role.form.replace("{}", part)) for role, part in _READ.items()}
+"""The forms of texts that are read; no name of a scenario is like one of those with parts, but for numbers."""
 
 
 @lru_cache(maxsize=1 << 14)
 def _read(text: str) -> Symbol:
-    for role, form in _FORMS:
+    for role, form in _FORMS.items():
         match = form.fullmatch(text)
         if match:
             parts = tuple(part or "1" for part in match.groups())
             return Symbol(text, role, parts if role is not Role.DID else tuple(parts[0].split("_")))
-    return Symbol(text, Role.NAME, (text,))
+    return Role.NAME(text)

@@ -16,7 +16,7 @@ from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Option
 
 from pursue_gen.language.network_names import AT_RISK, IDLE
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.symbols import Role, Symbol, role_of
+from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.solving.distances import times_to
 from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Network, Objective, Test
@@ -123,20 +123,15 @@ def only_due(
             edges += some
         automata.append(replace(automaton, edges=tuple(dict.fromkeys(edges))))
     at_risk = {automaton.name for automaton in automata if automaton.initial == AT_RISK}
-    variables = tuple((_due(duty.name), int(duty.name in at_risk)) for duty in called)
+    variables = tuple((Role.DUE(duty.name), int(duty.name in at_risk)) for duty in called)
     return DueMoves(replace(network, automata=tuple(automata), variables=(*network.variables, *variables)), before)
-
-
-def _due(automaton: str) -> Symbol:
-    """The variable that is 1 while an automaton's deadline is running."""
-    return Symbol(f"@due_{automaton}", Role.DUE, (automaton,))
 
 
 def _telling(name: str, edge: Edge) -> Edge:
     """The edge of a promise's automaton, with the variable that is 1 while its deadline is running."""
     if AT_RISK not in (edge.source, edge.target) or edge.source == edge.target:
         return edge
-    return replace(edge, assign=(*edge.assign, (_due(name), int(edge.target == AT_RISK))))
+    return replace(edge, assign=(*edge.assign, (Role.DUE(name), int(edge.target == AT_RISK))))
 
 
 def _sets_off(edge: Edge) -> bool:
@@ -153,7 +148,7 @@ def _for_duties(
     """The edge with which a robot sets off, once for each patrol to whose place it leads, and for each promise."""
     clocks, integers = edge.guard.clocks, edge.guard.integers
     ends = [other.target for other in automaton.edges if other.source == edge.target]
-    called = tuple(Test(_due(duty.name), 1) for duty in known if not duty.visits)
+    called = tuple(Test(Role.DUE(duty.name), 1) for duty in known if not duty.visits)
     if called:
         yield replace(edge, guard=Guard(clocks, (*integers, called)))
     for duty in known:

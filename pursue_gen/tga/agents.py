@@ -171,7 +171,7 @@ class _Shape:
         conditions = self._conditions(event, codes.at(poi), Value("at", poi))
         if conditions is None:
             return (ending,)
-        start = self._edge(poi, at_work, event.name, PAUSE, conditions, codes.doing(poi))
+        start = self._edge(poi, at_work, names.event(event.name), PAUSE, conditions, codes.doing(poi))
         start = replace(start, assign=(*start.assign, *working.begins(self.agent.name, event.name, poi)))
         if not self.around.is_contested(event):
             return start, ending
@@ -197,7 +197,8 @@ class _Shape:
             return Edge(source, target, guard, Sync(channel, sends=False), assign, (self.clock,))
 
         working, name = self.around.conditions, self.agent.name
-        start = edge(poi, at_work, event.name, here, codes.doing(poi), working.begins(name, event.name, poi))
+        begins = working.begins(name, event.name, poi)
+        start = edge(poi, at_work, names.event(event.name), here, codes.doing(poi), begins)
         return start, edge(at_work, poi, names.done(event.name), (), codes.at(poi), working.ends(name))
 
     def instantaneous(self, event: Event, ways: Iterable[Tuple[str, str]]) -> Iterator[Edge]:
@@ -206,14 +207,15 @@ class _Shape:
         for poi in self.places(event):
             conditions = self._conditions(event, codes.at(poi), Value("at", poi))
             if conditions is not None:
-                yield self._edge(poi, poi, event.name, PAUSE, conditions, None)
+                yield self._edge(poi, poi, names.event(event.name), PAUSE, conditions, None)
         if event.location is None:
             for a, b in ways:
                 here = names.going(a, b)
                 conditions = self._conditions(event, codes.going(b, a), Value("way", a, b))
                 if conditions is not None:
                     guard = Guard((ClockBound(self.clock, ">", 0),), conditions)
-                    yield Edge(here, here, guard, Sync(event.name, sends=True), controllable=self.agent.controllable)
+                    does = Sync(names.event(event.name), sends=True)
+                    yield Edge(here, here, guard, does, controllable=self.agent.controllable)
 
     def _conditions(self, event: Event, company_at: int, where: Value) -> Optional[Tuple[Clause, ...]]:
         """What has to hold when the agent, which is there, does the event; None: that it cannot."""

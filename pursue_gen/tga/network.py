@@ -11,7 +11,7 @@ import enum
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Dict, FrozenSet, Optional, Tuple
+from typing import Dict, FrozenSet, Mapping, Optional, Tuple
 
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
@@ -178,6 +178,11 @@ class Network:
         bounds = [bound for a in self.automata for place in a.locations for bound in place.invariant]
         bounds += [bound for a in self.automata for edge in a.edges for bound in edge.guard.clocks]
         return frozenset((*(bound.bound for bound in bounds), *(constraint.bound for constraint in self.start)))
+
+    @cached_property
+    def places(self) -> Mapping[Tuple[str, str], str]:
+        """By automaton and text the name of each location, which knows its role: for those who have the text alone."""
+        return {(a.name, place.name): place.name for a in self.automata for place in a.locations}
 
     def automaton(self, name: str) -> Automaton:
         """The automaton of that name. Raises KeyError."""

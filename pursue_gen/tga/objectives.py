@@ -53,12 +53,11 @@ def stated(scenario: Scenario) -> Dict[str, StatedObjective]:
     return found
 
 
-def clock_of(scenario: Scenario, automaton: str) -> str:
+def clock_of(automaton: str) -> Symbol:
     """The clock of an objective's automaton."""
-    order = list(stated(scenario))
-    number = order.index(automaton)
-    count = len(scenario.safety)
-    return names.safety_clock(number) if number < count else names.reach_clock(number - count)
+    symbol = Symbol.of(automaton)
+    clock = names.safety_clock if symbol.role is Role.SAFETY else names.reach_clock
+    return clock(int(symbol.parts[0]) - 1)
 
 
 def unlocking(scenario: Scenario) -> Tuple[Optional[Sync], ...]:

@@ -13,7 +13,7 @@ from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.tga.network import Automaton, Edge, Location, Network, Sync
 from pursue_gen.tga.part import beside
 
-_NOBODY = Symbol("awaits_nobody", Role.NOBODY)
+_NOBODY = Role.NOBODY()
 
 
 @dataclass(frozen=True)
@@ -30,20 +30,16 @@ class Passage:
     def name(self) -> str:
         """Its automaton's name."""
         alone = f"_of_{self.robots[0]}" if len(set(self.robots)) == 1 else ""
-        return Symbol(f"{self.place}_passage{alone}", Role.PASSAGE, (self.place,))
+        return Role.PASSAGE(self.place, alone)
 
     def awaits(self, visit: int) -> str:
         """The location in which the robot of this visit (from 0) may set off for the place; behind the last visit:
         nobody does."""
-        return self._visit("awaits", Role.AWAITS, visit) if visit < len(self.robots) else _NOBODY
+        return Role.AWAITS(self.robots[visit], visit + 1) if visit < len(self.robots) else _NOBODY
 
     def has(self, visit: int) -> str:
         """The location in which the robot of this visit is there, or on its way there."""
-        return self._visit("has", Role.HAS, visit)
-
-    def _visit(self, what: str, role: Role, visit: int) -> Symbol:
-        robot, number = self.robots[visit], str(visit + 1)
-        return Symbol(f"{what}_{robot}_{number}", role, (robot, number))
+        return Role.HAS(self.robots[visit], visit + 1)
 
 
 def words_of(network: Network) -> Dict[Tuple[str, str], str]:

@@ -107,11 +107,11 @@ class _Layout:
 
     def _event(self, event: str, way: str, source: str, target: str) -> None:
         if event not in self.lasting:
-            self.steps.append((source, target, event))
+            self.steps.append((source, target, names.event(event)))
             return
         while_doing = f"{self._leaf(way)}_doing_{event}"
         self.locations.append(while_doing)
-        self.steps += [(source, while_doing, event), (while_doing, target, names.done(event))]
+        self.steps += [(source, while_doing, names.event(event)), (while_doing, target, names.done(event))]
 
     def _part(self, way: str) -> str:
         return f"{self.rule}{len(way)}{way}"

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Dict, Iterable, List, Optional, Set, Tuple
 
 from pursue_gen.language.network_names import LOSE
-from pursue_gen.language.symbols import Role, Symbol, role_of
+from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.tga.network import Automaton, Edge, Location, Network, Sync
 from pursue_gen.tga.part import beside
 
@@ -27,7 +27,7 @@ class Tour:
     @property
     def name(self) -> str:
         """Its automaton's name."""
-        return Symbol(f"{self.robot}_tour", Role.TOUR, (self.robot,))
+        return Role.TOUR(self.robot)
 
     def at(self, stop: int) -> str:
         """The location in which the robot is at this stop (from 0), or on its way there."""

@@ -97,7 +97,7 @@ def _channels(scenario: Scenario) -> Tuple[str, ...]:
         for a, b in connection.directions
     ]
     for event in scenario.events:
-        channels += [event.name] if event.duration is None else [event.name, names.done(event.name)]
+        channels += [names.event(event.name), *([names.done(event.name)] if event.duration is not None else [])]
     unlocks = (sync.channel for sync in unlocking(scenario) if sync is not None and sync.sends)
     return (*channels, *arrivals(scenario), *unlocks)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+from typing import Dict, Iterator, List, Mapping, Optional, Sequence
 
 from pursue_gen.explanation import network_words
 from pursue_gen.explanation.policy import Window
@@ -12,7 +12,7 @@ from pursue_gen.explanation.texts import time_text
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.scenario import Always, Avoid, Connection, NeverWith, Patrol, Reach, Respond, Scenario
-from pursue_gen.language.symbols import Role, role_of
+from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.language.wording import answer_words, events_words, listed, missed_text, patroller, visited
 from pursue_gen.synthesis.game import Game, JointMove
 from pursue_gen.tga.counts import counted
@@ -21,34 +21,29 @@ from pursue_gen.tga.objectives import clock_of, events_done, stated
 from pursue_gen.tga.own_turns import own_turns
 from pursue_gen.tools.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
 
+_ORDERS = {
+    Role.SETTING_OFF: "set off from {1} to {2}",
+    Role.WAY: "arrive at {1}",
+    Role.EVENT: "do {}",
+    Role.WORK: "begin {}",
+    Role.END: "finish {}",
+}
+
 
 @dataclass(frozen=True)
 class EventTexts:
-    """The words of one scenario: those of reports (`network`), and commands ("set off from a to b") by
-    (automaton, channel or "", location left by a step of its own)."""
+    """The words of one scenario: those of reports (`network`), and commands ("set off from a to b")."""
 
     network: network_words.Words
-    orders: Mapping[Tuple[str, str, str], str]
 
     def order(self, owner: str, edge: Edge) -> str:
         """The command for this edge of that automaton."""
-        key = (owner, edge.sync.channel, "") if edge.sync else (owner, "", edge.source)
-        return self.orders.get(key, self.network.move(owner, edge))
+        return self.network.deed(owner, edge, _ORDERS) or self.network.move(owner, edge)
 
 
 def event_texts(scenario: Scenario, network: Network) -> EventTexts:
     """The words of a scenario and its network."""
-    orders: Dict[Tuple[str, str, str], str] = {}
-    ways = [way for connection in scenario.connections for way in connection.directions]
-    for agent in scenario.agents:
-        for event in scenario.events:
-            orders[agent.name, event.name, ""] = f"{'do' if event.duration is None else 'begin'} {event.shown}"
-            orders[agent.name, names.done(event.name), ""] = f"finish {event.shown}"
-        for a, b in ways:
-            here, there = scenario.shown(a), scenario.shown(b)
-            orders[agent.name, names.movement(agent.name, a, b), ""] = f"set off from {here} to {there}"
-            orders[agent.name, "", names.going(a, b)] = f"arrive at {there}"
-    return EventTexts(network_words.words_of(scenario, network), orders)
+    return EventTexts(network_words.words_of(scenario, network))
 
 
 # What there is --------------------------------------------------------------------------------------------------------
@@ -111,10 +106,10 @@ def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Itera
         number = where[automaton]
         place = setup.game.automata[number].locations[play.position.state.locations[number]]
         if isinstance(objective, Respond) and place == names.AT_RISK:
-            due = play.now - clocks[clock_of(setup.scenario, automaton)] + objective.deadline
+            due = play.now - clocks[clock_of(automaton)] + objective.deadline
             yield f"deadline: {answer_words(objective)} by {time_text(due)} at the latest"
         if isinstance(objective, Patrol) and place == names.AT_RISK:
-            due = play.now - clocks[clock_of(setup.scenario, automaton)] + objective.period
+            due = play.now - clocks[clock_of(automaton)] + objective.period
             yield f"deadline: {patroller(objective)} at {visited(objective)} by {time_text(due)} at the latest"
         if isinstance(objective, Reach) and objective.after and play.now <= objective.after:
             yield f"{events_words(objective)} counts after {objective.after}"
@@ -209,8 +204,9 @@ def overview(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]:
         if automaton.name not in setup.agents:
             continue
         location = automaton.locations[number]
-        part = words.network.parts.get(location, ("at", location))
-        group, key = (away, words.network.place(automaton.name, location)) if part[0] == "way" else (at, part[1])
+        symbol = Symbol.of(location)
+        is_away = symbol.role is Role.WAY
+        group, key = (away, words.network.place(automaton.name, location)) if is_away else (at, symbol.parts[-1])
         group.setdefault(key, []).append(shown(automaton.name))
     widest = max((len(poi.shown) for poi in setup.scenario.pois), default=0)
     for poi in setup.scenario.pois:
