@@ -16,9 +16,7 @@ from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.objectives import clock_of, events_done, stated
 from pursue_gen.tga.own_turns import own_turns
-from pursue_gen.tga.passages import words_of as passage_words
-from pursue_gen.tga.status_words import turn_words
-from pursue_gen.tga.tours import words_of as tour_words
+from pursue_gen.tga.status_words import own_words, turn_words
 
 _DUTIES = {Role.IDLE: "kept", Role.AT_RISK: "a deadline is running", Role.LOSE: "broken"}
 _GOALS = {Role.START: "not counting yet", Role.UNLOCKED: "to be reached", Role.WIN: "reached", Role.LATE: "too late"}
@@ -148,7 +146,7 @@ def words_of(scenario: Scenario, network: Network) -> Words:
         automaton = network.automaton(names.count(event.name))
         for number, location in enumerate(automaton.locations):
             turns[automaton.name, location.name] = f"{number} of {most} {scenario.shown(event.name)}"
-    turns.update({**passage_words(network), **tour_words(network)})
+    turns.update(((own, place), text) for own, texts in own_words(network).items() for place, text in texts.items())
     return Words(scenario, clocks, turns, objectives)
 
 

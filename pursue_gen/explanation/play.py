@@ -29,7 +29,7 @@ from pursue_gen.synthesis.game import (
     joint_moves,
 )
 from pursue_gen.synthesis.strategy import Strategy
-from pursue_gen.tga.network import Edge, Kind, Network, Objective
+from pursue_gen.tga.network import Edge, Network, Objective
 from pursue_gen.tga.pauses import pauses
 
 _MOST_STEPS, _MOST_BEGINNINGS = 60, 8
@@ -175,7 +175,7 @@ class _CounterPlayer:
         """The play from the start, cut off where the budget is used up. `first`: see `Play`."""
         self._oracle.budget = budget
         here = Position(initial_state(self._game), (Fraction(0),) * len(self._game.clocks))
-        if self._game.kind is Kind.SAFETY and self._horizon is None:
+        if not self._game.goal and self._horizon is None:
             self._horizon = self._least_horizon(here)
         self._controller = Controller(self._game, self._helpful)
         self._first, self._now = first, Fraction(0)

@@ -4,6 +4,8 @@ taken, and the translation, plans, the observer and the controllers all meet the
 
 from __future__ import annotations
 
+from functools import partial
+
 from pursue_gen.language.scenario import Event
 from pursue_gen.language.symbols import Role, Symbol, numbered
 from pursue_runtime import locations
@@ -51,33 +53,15 @@ assumption, assumption_count, assumption_clock = Role.ASSUMPTION, Role.ASSUMED_T
 """By the number of an assumption (the first has number 1): its variable, 1, or 0 in a mission in which it has been
 broken; the variable that counts what it limits; its clock, if it is about times."""
 
+safety_objective, safety_clock = partial(numbered, Role.SAFETY), partial(numbered, Role.SAFETY_CLOCK)
+"""By the number of a safety objective, from 0: its automaton, `obj`, `obj2`, …, and its clock, `Cobj`, `Cobj2`, …"""
 
-def safety_objective(number: int) -> Symbol:
-    """The automaton of a safety objective: `obj`, `obj2`, `obj3`, …; the number counts from 0."""
-    return numbered(Role.SAFETY, number)
+reach_objective, reach_clock = partial(numbered, Role.REACH), partial(numbered, Role.REACH_CLOCK)
+"""By the number of a reach objective, from 0: its automaton, `reachObj`, …, and its clock, `Creach`, …"""
 
-
-def reach_objective(number: int) -> Symbol:
-    """The automaton of a reach objective: `reachObj`, `reachObj2`, …; the number counts from 0."""
-    return numbered(Role.REACH, number)
-
-
-def safety_clock(number: int) -> Symbol:
-    """The clock of a safety objective: `Cobj`, `Cobj2`, …"""
-    return numbered(Role.SAFETY_CLOCK, number)
-
-
-def reach_clock(number: int) -> Symbol:
-    """The clock of a reach objective: `Creach`, `Creach2`, …"""
-    return numbered(Role.REACH_CLOCK, number)
-
-
-def unlocking(number: int) -> Symbol:
-    """The channel on which a reach objective is unlocked, where others are with it; else that edge has none.
-
-    It is the word that the edge has in any case.
-    """
-    return numbered(Role.UNLOCKING, number)
+unlocking = partial(numbered, Role.UNLOCKING)
+"""The channel on which a reach objective is unlocked, where others are with it; else that edge has none. It is the word
+that the edge has in any case."""
 
 
 def did(*events: int) -> Symbol:

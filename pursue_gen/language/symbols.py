@@ -77,6 +77,8 @@ class Role(enum.Enum):
     HAS = "has_{}_{}", "taken by {}, visit {}"
     NOBODY = "awaits_nobody", "nobody comes any more"
     TOUR = "{}_tour", "the tour of {}"
+    STOP = "stop_{0}", "stop {} of {}"
+    OFF = "lose", "off the tour"
     DUE = "@due_{}", "whether the deadline of {} is running"
 
     PACKAGE = "controller_{}", "the package of {}"

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Iterable, List, Optional, Set, Tuple
 
-from pursue_gen.language.symbols import Role, Symbol, role_of
+from pursue_gen.language.symbols import Role
 from pursue_gen.tga.network import Automaton, Edge, Location, Network, Sync
 from pursue_gen.tga.part import beside
 
@@ -40,12 +40,6 @@ class Passage:
     def has(self, visit: int) -> str:
         """The location in which the robot of this visit is there, or on its way there."""
         return Role.HAS(self.robots[visit], visit + 1)
-
-
-def words_of(network: Network) -> Dict[Tuple[str, str], str]:
-    """What the locations of all passages in a network mean, in words, by automaton and location."""
-    passages = (automaton for automaton in network.automata if role_of(automaton.name) is Role.PASSAGE)
-    return {(each.name, place.name): Symbol.of(place.name).meaning for each in passages for place in each.locations}
 
 
 def with_passages(network: Network, passages: Iterable[Passage]) -> Network:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Iterator, List, Mapping, Tuple
+from typing import Dict, Iterator, List, Mapping, Tuple
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.batteries import levels
@@ -14,8 +14,6 @@ from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Automaton, Network
 from pursue_gen.tga.objectives import events_done, stated
 from pursue_gen.tga.own_turns import own_turns
-from pursue_gen.tga.passages import words_of
-from pursue_gen.tga.tours import words_of as tour_words
 
 
 @dataclass(frozen=True)
@@ -49,11 +47,7 @@ def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
     for battery in scenario.batteries:
         texts = {str(level): f"{level} of {battery.capacity}" for level in levels(scenario, battery)}
         found.append(Status(names.level(battery.agent.name), f"battery of {battery.agent.shown}", texts))
-    words = {**words_of(network), **tour_words(network)}
-    for automaton in network.automata:
-        if (automaton.name, automaton.initial) in words:
-            texts = {place.name: words[automaton.name, place.name] for place in automaton.locations}
-            found.append(Status(automaton.name, _shown_of(scenario, automaton.name), texts))
+    found += [Status(name, _shown_of(scenario, name), texts) for name, texts in own_words(network).items()]
     found += _assumptions(scenario)
     for name, objective in stated(scenario).items():
         if isinstance(objective, Patrol) and objective.order and names.rule_turn(name) in variables:
@@ -64,6 +58,12 @@ def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
         texts = {place: _duty(objective, place) for place in places}
         found.append(Status(name, objective_text(objective) + in_turn, texts))
     return tuple(found)
+
+
+def own_words(network: Network) -> Dict[str, Dict[str, str]]:
+    """What the locations of a strategy's own automata mean, orders of passage and tours, in words, by automaton."""
+    own = (each for each in network.automata if role_of(each.name) in (Role.PASSAGE, Role.TOUR))
+    return {each.name: {place.name: Symbol.of(place.name).meaning for place in each.locations} for each in own}
 
 
 def _shown_of(scenario: Scenario, automaton: str) -> str:

@@ -42,6 +42,7 @@ class Segment:
     end: float
     line: Tuple[Point, ...]
     description: str
+    is_work: bool
 
 
 def check_name(file: Path) -> None:
@@ -131,8 +132,7 @@ def _tracks(scenario: Scenario, recording: Recording, floor: Optional[Floor]) ->
             "name": agent.shown,
             "offset": [round(v, 1) for v in _offset(number, count)],
             "segments": [
-                [one.start, one.end, [[round(x, 1), round(y, 1)] for x, y in one.line], one.description,
-                 one.description.startswith("doing ")]
+                [one.start, one.end, [[round(x, 1), round(y, 1)] for x, y in one.line], one.description, one.is_work]
                 for one in segments[agent.name]
             ],
         }
@@ -188,10 +188,10 @@ def _segments_of(
     for stay in stays(recording, agent.name):
         here = Symbol.of(stay.what)
         is_way = here.role is Role.WAY
-        description = words.place(agent.name, stay.what)
         points = line(*here.parts) if is_way else line(*here.parts[-1:] * 2)
         done = _part_done(recording, stay, agent, here.parts) if is_way else 0.0
-        segments.append(Segment(stay.start, stay.end, tuple(_first_part(points, done)), description))
+        description, is_work = words.place(agent.name, stay.what), here.role is Role.WORK
+        segments.append(Segment(stay.start, stay.end, tuple(_first_part(points, done)), description, is_work))
     return segments
 
 
