@@ -32,7 +32,7 @@ def check_collisions(scenario: Scenario) -> Iterator[Diagnostic]:
 
 
 def _in_network(scenario: Scenario) -> Iterator[_Stated]:
-    """Whatever shares the names of the network's declarations and of the system state; first what cannot be renamed."""
+    """Whatever shares the names of the network's declarations and of the system state."""
     ways = [way for connection in scenario.connections for way in connection.directions]
     for agent in (agent for agent in scenario.agents if agent.mobile is not None):
         yield agent.span, [make(agent.name, *way) for way in ways for make in (names.movement, names.arrival)]

@@ -101,7 +101,7 @@ def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Itera
             yield f"deadline: {patroller(objective)} at {visited(objective)} by {time_text(due)} at the latest"
         if isinstance(objective, Reach) and objective.after and play.now <= objective.after:
             yield f"{events_words(objective)} counts after {objective.after}"
-        if isinstance(objective, Reach) and objective.within is not None and place != "win":
+        if isinstance(objective, Reach) and objective.within is not None and place != names.WIN:
             done = {ref.name for ref in events_done(objective, place)}
             left = listed(ref.shown for ref in objective.events if ref.name not in done)
             yield f"deadline: {left} by {time_text(Fraction(objective.within))} at the latest"

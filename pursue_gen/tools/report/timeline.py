@@ -251,7 +251,7 @@ def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:
             there = tuple(_line(scale, stay, "there") for stay in found if stay.what == names.IDLE)
             yield Lane(name, there + _deadline(recording, scale, risks, f"a visit of {visited(objective)}".rstrip(",")))
         elif isinstance(objective, Reach) and objective.within is not None:
-            before = [stay for stay in found if stay.what not in ("win", names.LATE)]
+            before = [stay for stay in found if stay.what not in (names.WIN, names.LATE)]
             whole = [replace(before[0], end=before[-1].end, over=before[-1].over)] if before else []
             risks = [(stay, float(objective.within)) for stay in whole]
             yield Lane(name, _deadline(recording, scale, risks, events_words(objective)))
