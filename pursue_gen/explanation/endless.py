@@ -13,7 +13,7 @@ from typing import Dict, Sequence, Tuple
 
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.cone import cone_of_influence
-from pursue_gen.tga.network import Automaton, ClockBound, Edge, Kind, Network, Objective
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Objective
 
 PAUSE = 1
 """Time units that an agent waits at a place before it acts again (at least, and a little more)."""
@@ -35,7 +35,7 @@ def endless(network: Network, objective: Objective, reaction: Fraction, budget: 
     Raises LimitHit where that is not decided within the budget.
     """
     agents = _repeating(cone_of_influence(network, objective))
-    if objective.kind is Kind.SAFETY or not _won_with_pauses(network, objective, reaction, tuple(agents), budget):
+    if not objective.reaches or not _won_with_pauses(network, objective, reaction, tuple(agents), budget):
         return ()
     needed = tuple(agents)
     for name in agents:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Dict, Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.numbers import decimal_text
 from pursue_gen.language.scenario import Leaves, Patrol, Reach, Respond, Scenario, StatedObjective, Waits
+from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.language.wording import answer_words, answered_words, events_words, listed, objective_text, units
 from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Constraint, Zone
@@ -15,43 +16,49 @@ from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.objectives import clock_of, events_done, stated
 from pursue_gen.tga.own_turns import own_turns
-from pursue_gen.tga.passages import words_of as passage_words
-from pursue_gen.tga.status_words import turn_words
-from pursue_gen.tga.tours import words_of as tour_words
+from pursue_gen.tga.status_words import own_words, turn_words
 
-_DUTIES = {names.IDLE: "kept", names.AT_RISK: "a deadline is running", names.LOSE: "broken"}
+_DUTIES = {Role.IDLE: "kept", Role.AT_RISK: "a deadline is running", Role.LOSE: "broken"}
+_GOALS = {Role.START: "not counting yet", Role.UNLOCKED: "to be reached", Role.WIN: "reached", Role.LATE: "too late"}
+
+
+_PLACES = {Role.WAY: "on the way from {} to {}", Role.WORK: "doing {} at {}"}
+_MOVES = {
+    Role.SETTING_OFF: "sets off from {1} to {2}",
+    Role.ARRIVAL: "arrives at {2} from {1}",
+    Role.WAY: "arrives at {1} from {0}",
+    Role.EVENT: "does {}",
+    Role.WORK: "begins {}",
+    Role.END: "has finished {}",
+}
+"""What an agent does, by the role of its channel; of the location that it leaves or enters where that says more."""
 
 
 @dataclass(frozen=True)
 class Words:
     """What to call things. `clocks`: clock → the moment since which it counts; `turns`: (rule, location) → its words.
-
-    `places`: location of any agent → words; `moves`: (automaton, channel, location left by a step of its own) → words;
-    `parts`: location of any agent → (at, place), (way, from, to) or (doing, place, event), by their names.
     """
 
+    scenario: Scenario
     clocks: Dict[str, str]
     turns: Dict[Tuple[str, str], str]
-    places: Dict[str, str]
-    moves: Dict[Tuple[str, str, str], str]
-    parts: Dict[str, Tuple[str, ...]]
-    objectives: Mapping[str, StatedObjective] = field(default_factory=dict)
+    objectives: Mapping[str, StatedObjective]
 
     def place(self, automaton: str, location: str) -> str:
         """Where it is, as in "at c", "on the way from c to b", "doing catch at b", "next: load or wait"."""
         objective = self.objectives.get(automaton)
         if isinstance(objective, Reach):
-            done = [objective.events[k].shown for k in events_done(location)]
-            found = f"{listed(done)} done" if done else "not counting yet"
-            return {"win": "reached", "unlocked": "to be reached", names.LATE: "too late"}.get(location, found)
+            done = [ref.shown for ref in events_done(objective, location)]
+            return f"{listed(done)} done" if done else _GOALS.get(role_of(location), location)
         if objective is not None:
-            return _DUTIES.get(location, location)
-        return self.turns.get((automaton, location)) or self.places.get(location) or f"at {location}"
+            return _DUTIES.get(role_of(location), location)
+        return self.turns.get((automaton, location)) or place_words(self.scenario, location)
 
     def move(self, automaton: str, edge: Edge) -> str:
         """What it does by that edge, as in "sets off from c to b"."""
-        if edge.sync:
-            return self.moves.get((automaton, edge.sync.channel, ""), edge.sync.channel)
+        said = self.deed(automaton, edge, _MOVES) or (edge.sync and edge.sync.channel)
+        if said:
+            return said
         objective = self.objectives.get(automaton)
         if isinstance(objective, Reach) and edge.target == names.LATE:
             return f"the deadline of {events_words(objective)} has passed"
@@ -59,7 +66,16 @@ class Words:
             return "begins to count"
         if objective is not None and edge.target == names.LOSE:
             return "the objective is broken" if len(self.objectives) == 1 else f"broken: {objective_text(objective)}"
-        return self.moves.get((automaton, "", edge.source), f"goes from {edge.source} to {edge.target}")
+        return f"goes from {edge.source} to {edge.target}"
+
+    def deed(self, automaton: str, edge: Edge, words: Mapping[Role, str]) -> str:
+        """What an agent does by that edge, in these words for roles; "" where they have none, or it is no agent."""
+        if all(agent.name != automaton for agent in self.scenario.agents):
+            return ""
+        name = edge.sync.channel if edge.sync else edge.source
+        symbol = Symbol.of(name)
+        role = Role.WORK if symbol.role is Role.EVENT and edge.enters is Role.WORK else symbol.role
+        return words.get(role, "").format(*map(self.scenario.shown, symbol.parts))
 
     def when(self, zone: Zone) -> str:
         """The zone in words; "at any time" for the one without constraints."""
@@ -104,14 +120,14 @@ class Words:
 
 def words_of(scenario: Scenario, network: Network) -> Words:
     """The words for a scenario and its network."""
-    clocks = {names.agent_clock(agent.name): f"{agent.shown}'s last step" for agent in scenario.agents}
+    clocks: Dict[str, str] = {names.agent_clock(each.name): f"{each.shown}'s last step" for each in scenario.agents}
     objectives = stated(scenario)
     for name, each in objectives.items():
         if isinstance(each, Respond):
-            clocks[clock_of(scenario, name)] = f"the last {answered_words(each)} or {answer_words(each)}"
+            clocks[clock_of(name)] = f"the last {answered_words(each)} or {answer_words(each)}"
         elif isinstance(each, Patrol):
             in_turn = " in its turn" if each.order else ""
-            clocks[clock_of(scenario, name)] = f"the last visit of {each.place.shown}{in_turn}, or the start"
+            clocks[clock_of(name)] = f"the last visit of {each.place.shown}{in_turn}, or the start"
     for number, assumption in enumerate(scenario.assumptions, start=1):
         if isinstance(assumption, Waits):
             clocks[names.assumption_clock(number)] = f"{assumption.agent.shown}'s last {assumption.event.shown}"
@@ -130,28 +146,8 @@ def words_of(scenario: Scenario, network: Network) -> Words:
         automaton = network.automaton(names.count(event.name))
         for number, location in enumerate(automaton.locations):
             turns[automaton.name, location.name] = f"{number} of {most} {scenario.shown(event.name)}"
-    turns.update({**passage_words(network), **tour_words(network)})
-    places: Dict[str, str] = {}
-    moves: Dict[Tuple[str, str, str], str] = {}
-    parts: Dict[str, Tuple[str, ...]] = {poi.name: ("at", poi.name) for poi in scenario.pois}
-    places.update((poi.name, f"at {poi.label}") for poi in scenario.pois if poi.label)
-    for a, b in (way for connection in scenario.connections for way in connection.directions):
-        here, there = scenario.shown(a), scenario.shown(b)
-        places[names.going(a, b)] = f"on the way from {here} to {there}"
-        parts[names.going(a, b)] = ("way", a, b)
-        for agent in scenario.agents:
-            moves[agent.name, names.movement(agent.name, a, b), ""] = f"sets off from {here} to {there}"
-            moves[agent.name, "", names.going(a, b)] = f"arrives at {there} from {here}"
-            moves[agent.name, names.arrival(agent.name, a, b), ""] = f"arrives at {there} from {here}"
-    for event in scenario.events:
-        for poi in scenario.pois:
-            places[names.doing(event.name, poi.name)] = f"doing {event.shown} at {poi.shown}"
-            parts[names.doing(event.name, poi.name)] = ("doing", poi.name, event.name)
-        for agent in scenario.agents:
-            begins = f"does {event.shown}" if event.duration is None else f"begins {event.shown}"
-            moves[agent.name, event.name, ""] = begins
-            moves[agent.name, names.done(event.name), ""] = f"has finished {event.shown}"
-    return Words(clocks, turns, places, moves, parts, objectives)
+    turns.update(((own, place), text) for own, texts in own_words(network).items() for place, text in texts.items())
+    return Words(scenario, clocks, turns, objectives)
 
 
 def zone_texts(zone: Zone) -> str:
@@ -161,14 +157,9 @@ def zone_texts(zone: Zone) -> str:
 
 def place_words(scenario: Scenario, location: str) -> str:
     """Where an agent is, as in "at c", "on the way from c to b", "doing catch at b"."""
-    for a, b in (way for connection in scenario.connections for way in connection.directions):
-        if location == names.going(a, b):
-            return f"on the way from {scenario.shown(a)} to {scenario.shown(b)}"
-    for event in scenario.events if names.is_doing(location) else ():
-        for poi in scenario.pois:
-            if location == names.doing(event.name, poi.name):
-                return f"doing {event.shown} at {poi.shown}"
-    return f"at {scenario.shown(location)}"
+    symbol = Symbol.of(location)
+    words = _PLACES.get(symbol.role)
+    return words.format(*map(scenario.shown, symbol.parts)) if words else f"at {scenario.shown(location)}"
 
 
 def _span(lower: Optional[Constraint], upper: Optional[Constraint]) -> str:

@@ -14,7 +14,7 @@ from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Set, Tup
 from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.policy import COARSE, Choice, Controller, Window, longest, moments, window
 from pursue_gen.explanation.position import Position, PositionSolver, won_against_few
-from pursue_gen.language.network_names import is_going
+from pursue_gen.language.symbols import Role
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
@@ -29,7 +29,7 @@ from pursue_gen.synthesis.game import (
     joint_moves,
 )
 from pursue_gen.synthesis.strategy import Strategy
-from pursue_gen.tga.network import Edge, Kind, Network, Objective, is_end
+from pursue_gen.tga.network import Edge, Network, Objective
 from pursue_gen.tga.pauses import pauses
 
 _MOST_STEPS, _MOST_BEGINNINGS = 60, 8
@@ -132,7 +132,7 @@ def _spared(network: Network, objective: Objective, reaction: Fraction, budget: 
         bounded = {place.name for place in automaton.locations if place.invariant}
         sent = [e for e in automaton.edges if e.sync is not None and e.sync.sends]
         free = [e for e in sent if not e.controllable and e.source not in bounded]
-        starts = [e for e in free if is_going(e.target)]
+        starts = [e for e in free if e.enters is Role.WAY]
         groups = [starts] + [[e for e in free if e.sync == s] for s in {e.sync: 0 for e in free if e not in starts}]
         for group in groups:
             fewer = _without(network, automaton.name, group)
@@ -175,7 +175,7 @@ class _CounterPlayer:
         """The play from the start, cut off where the budget is used up. `first`: see `Play`."""
         self._oracle.budget = budget
         here = Position(initial_state(self._game), (Fraction(0),) * len(self._game.clocks))
-        if self._game.kind is Kind.SAFETY and self._horizon is None:
+        if not self._game.goal and self._horizon is None:
             self._horizon = self._least_horizon(here)
         self._controller = Controller(self._game, self._helpful)
         self._first, self._now = first, Fraction(0)
@@ -326,9 +326,8 @@ class _CounterPlayer:
                 yield delay, move
 
     def _is_driven(self, here: Position, move: JointMove) -> bool:
-        return bool(self._game.automata[move.owner].invariants[here.state.locations[move.owner]]) and is_end(
-            self._game.origins[move.edges[0]]
-        )
+        bounds = self._game.automata[move.owner].invariants[here.state.locations[move.owner]]
+        return bool(bounds) and self._game.origins[move.edges[0]].is_end
 
     def _at(self, here: Position, theirs: Sequence[Tuple[JointMove, Window]], delay: Fraction) -> Optional[Choice]:
         # What is new first, and nothing that takes no time and leads nowhere.

@@ -14,7 +14,6 @@ from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.scenario import Always, Avoid, NeverWith, Patrol, Reach, Respond, Scenario, StatedObjective
 from pursue_gen.language.wording import answer_words, events_words, listed, missed_text, patroller, visited
 from pursue_gen.synthesis.game import joint_moves
-from pursue_gen.tga.network import is_end
 from pursue_gen.tga.objectives import stated
 
 _MOST_OTHERS = 3
@@ -64,7 +63,7 @@ def attempt(scenario: Scenario, play: Play) -> Attempt:
     for step in play.steps:
         text = words.get(_key(play, step))
         owner = play.game.automata[step.owner].name
-        if owner in others and text is not None and not is_end(play.game.origins[step.edges[0]]):
+        if owner in others and text is not None and not play.game.origins[step.edges[0]].is_end:
             done.append(f"{scenario.shown(owner)} {text} at {time_text(step.at)}")
     ending = _ending(scenario, play)[0]
     return Attempt(first, "; ".join([*done[-_MOST_OTHERS:], f"{ending.text} ({time_text(ending.at)})"]))

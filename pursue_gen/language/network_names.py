@@ -1,159 +1,75 @@
 """The names of the network that a scenario becomes: one place, because the checks of the language ask which names are
-taken, and the translation, plans, the observer and the controllers all meet them.
+taken, and the translation, plans, the observer and the controllers all meet them. Roles make names of their parts.
 """
 
 from __future__ import annotations
 
-import re
+from functools import partial
 
 from pursue_gen.language.scenario import Event
+from pursue_gen.language.symbols import Role, Symbol, numbered
 from pursue_runtime import locations
 
-CLOCK_OBJECTIVE = "Cobj"
-CLOCK_REACH = "Creach"
-OBJECTIVE = "obj"
-REACH = "reachObj"
-STATES = "states"
+STATES = Role.STATES()
+"""The automaton of all states."""
 
-_SAFETY, _REACH = (re.compile(rf"{name}([2-9]|[1-9][0-9]+)?") for name in (OBJECTIVE, REACH))
-
-IDLE, AT_RISK, LOSE = "idle", "atRisk", "lose"
+IDLE, AT_RISK, LOSE = Role.IDLE(), Role.AT_RISK(), Role.LOSE()
 """The locations of a safety objective's automaton: no duty, a deadline is running, a duty was missed."""
 
-LATE = "late"
-"""The location of a reach objective's automaton in which its deadline has passed."""
-
-going, doing = locations.movement, locations.action
-"""The location on the way from one POI to another; the location at work, by event and POI."""
-
-is_going, is_doing, is_under_way = locations.is_movement, locations.is_action, locations.is_under_way
-"""True for a location on the way, for one at work, for either: its end takes time to come."""
+START, UNLOCKED, WIN, LATE = Role.START(), Role.UNLOCKED(), Role.WIN(), Role.LATE()
+"""Locations of a reach objective's automaton: it does not count yet, it does, it is reached, its time is over."""
 
 in_words = locations.in_words
 """Where an agent is, in English."""
 
-automaton_clock = agent_clock = locations.automaton_clock
-"""The clock of an automaton; of an agent's: how long since its last action or movement began or ended."""
+at, going, doing = Role.AT, Role.WAY, Role.WORK
+"""The location of an agent at a POI; on the way from one to another; at work, by event and POI."""
 
-agent_position = locations.position_variable
-"""The variable that holds where an agent is."""
+agent, agent_position, agent_clock = Role.AGENT, Role.POSITION, Role.CLOCK
+"""The automaton of an agent; where it is; how long since its last action or movement began or ended."""
 
+busy_with, level = Role.BUSY_WITH, Role.LEVEL
+"""The variables of an agent with which event it is busy, and where; and of the level of its battery."""
 
-def safety_objective(number: int) -> str:
-    """The automaton of a safety objective: `obj`, `obj2`, `obj3`, …; the number counts from 0."""
-    return _numbered(OBJECTIVE, number)
+movement, arrival = Role.SETTING_OFF, Role.ARRIVAL
+"""The channels on which an agent sets off from one POI to another, and arrives there, where somebody listens to that;
+else that edge has none. It is the word that the edge has in any case."""
 
+event, done, busy = Role.EVENT, Role.END, Role.BUSY
+"""The channels on which an event happens or begins, and on which one with a duration ends; the variable that is 1 while
+one goes on that several agents can do, and that its partners share."""
 
-def reach_objective(number: int) -> str:
-    """The automaton of a reach objective: `reachObj`, `reachObj2`, …; the number counts from 0."""
-    return _numbered(REACH, number)
+count, times = Role.COUNT, Role.TIMES
+"""The automaton that counts how often an event has begun that can happen so many times only, and its variable."""
 
+rule, rule_turn, rule_clock, own_turn = Role.RULE, Role.TURN, Role.RULE_CLOCK, Role.OWN_TURN
+"""The automaton of a rule, the variable with the number of its location, its clock in the observer; the variable with
+the number of an agent's own turn in a rule."""
 
-def safety_clock(number: int) -> str:
-    """The clock of a safety objective: `Cobj`, `Cobj2`, …"""
-    return _numbered(CLOCK_OBJECTIVE, number)
+state, state_value = Role.STATE, Role.VALUE
+"""A state, as people call it, and the variable that holds it, 0 or 1."""
 
+assumption, assumption_count, assumption_clock = Role.ASSUMPTION, Role.ASSUMED_TIMES, Role.ASSUMED_TIME
+"""By the number of an assumption (the first has number 1): its variable, 1, or 0 in a mission in which it has been
+broken; the variable that counts what it limits; its clock, if it is about times."""
 
-def reach_clock(number: int) -> str:
-    """The clock of a reach objective: `Creach`, `Creach2`, …"""
-    return _numbered(CLOCK_REACH, number)
+safety_objective, safety_clock = partial(numbered, Role.SAFETY), partial(numbered, Role.SAFETY_CLOCK)
+"""By the number of a safety objective, from 0: its automaton, `obj`, `obj2`, …, and its clock, `Cobj`, `Cobj2`, …"""
 
+reach_objective, reach_clock = partial(numbered, Role.REACH), partial(numbered, Role.REACH_CLOCK)
+"""By the number of a reach objective, from 0: its automaton, `reachObj`, …, and its clock, `Creach`, …"""
 
-def is_safety_objective(automaton: str) -> bool:
-    """True for the name of a safety objective's automaton. An agent may have it where there are not so many."""
-    return _SAFETY.fullmatch(automaton) is not None
-
-
-def is_reach_objective(automaton: str) -> bool:
-    """True for the name of a reach objective's automaton. An agent may have it where there are not so many."""
-    return _REACH.fullmatch(automaton) is not None
-
-
-def unlocking(number: int) -> str:
-    """The channel on which a reach objective is unlocked, where others are with it; else that edge has none.
-
-    It is the word that the edge has in any case.
-    """
-    return movement(reach_objective(number), "going_initial_location", "unlocked")
+unlocking = partial(numbered, Role.UNLOCKING)
+"""The channel on which a reach objective is unlocked, where others are with it; else that edge has none. It is the word
+that the edge has in any case."""
 
 
-def _numbered(name: str, number: int) -> str:
-    return name if number == 0 else f"{name}{number + 1}"
+def did(*events: int) -> Symbol:
+    """The location of a reach objective's automaton in which these of its events have happened, from 1."""
+    numbers = tuple(map(str, events))
+    return Symbol(Role.DID.form.format("_".join(numbers)), Role.DID, numbers)
 
 
-def rule_turn(rule: str) -> str:
-    """The variable that holds the number of a rule's location."""
-    return f"P{rule}"
-
-
-def own_turn(rule: str, agent: str) -> str:
-    """The variable that holds the number of an agent's own turn in a rule."""
-    return f"P{rule}_{agent}"
-
-
-def state_value(state: str) -> str:
-    """The variable that holds a state, 0 or 1."""
-    return f"S{state}"
-
-
-def movement(agent: str, a: str, b: str) -> str:
-    """The channel on which an agent sets off from a to b."""
-    return f"{agent}_{a}2{b}"
-
-
-def arrival(agent: str, a: str, b: str) -> str:
-    """The channel on which an agent arrives at b from a, where somebody listens to that; else that edge has none.
-
-    It is the word that the edge has in any case.
-    """
-    return f"{agent}_{going(a, b)}2{b}"
-
-
-def done(event: str) -> str:
-    """The channel on which an event with a duration ends."""
-    return f"{event}DONE"
-
-
-def busy(event: str) -> str:
-    """The variable that is 1 while an event goes on that several agents can do, and that its partners share."""
-    return f"B{event}"
-
-
-def assumption(number: int) -> str:
-    """The variable of an assumption (the first has number 1): 1, or 0 in a mission in which it has been broken."""
-    return f"assume{number}"
-
-
-def is_assumption(variable: str) -> bool:
-    """True for the variable of an assumption."""
-    return variable.startswith("assume") and variable[len("assume") :].isdigit()
-
-
-def assumption_count(number: int) -> str:
-    """The variable that counts what the assumption limits."""
-    return f"assume{number}count"
-
-
-def assumption_clock(number: int) -> str:
-    """The clock of an assumption about times."""
-    return f"Cassume{number}"
-
-
-def count(event: str) -> str:
-    """The automaton that counts how often an event has begun that can happen so many times only."""
-    return f"{event}_count"
-
-
-def busy_with(agent: str) -> str:
-    """The variable that says with which event an agent is busy, and where."""
-    return f"W{agent}"
-
-
-def level(agent: str) -> str:
-    """The variable that holds the level of an agent's battery."""
-    return f"L{agent}"
-
-
-def has_happened(event: Event) -> str:
+def has_happened(of: Event) -> Symbol:
     """The channel that says that an event has happened: its end where it lasts, the event itself where it does not."""
-    return event.name if event.duration is None else done(event.name)
+    return event(of.name) if of.duration is None else done(of.name)

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from typing import Dict, List, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.language.network_names import is_reach_objective, is_safety_objective
 from pursue_gen.language.scenario import Agent
+from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.outcomes import Invalid, NotProven
 from pursue_gen.synthesis.strategy import Command, DiscreteState, Strategy
-from pursue_gen.tga.network import Network, is_end
+from pursue_gen.tga.network import Network
 
 DISTRIBUTED, CENTRALIZED, GENERAL = "distributed", "centralized", "general"
 """One controller per robot; one for all; one for all that also decides the ends, as the original's does."""
@@ -72,9 +72,8 @@ def partition(
         message = "a counter-strategy cannot be given to controllers: its moves are the opponent's"
         raise NotProven([error("PAR003", message, hint="use a plan whose property is satisfied")])
     names = tuple(automaton.name for automaton in network.automata)
-    known = {agent.name for agent in agents}
-    reach = tuple(name for name in names if is_reach_objective(name) and name not in known)
-    safety = tuple(name for name in names if is_safety_objective(name) and name not in known)
+    reach = tuple(name for name in names if role_of(name) is Role.REACH)
+    safety = tuple(name for name in names if role_of(name) is Role.SAFETY)
     _check_senders(strategy, network, (*robots, *humans, *reach, *safety))
     senders = {command.moves[0].automaton for block in strategy.blocks for command in block.commands}
     objectives = tuple(n for n in names if n in reach or (n in safety and n in senders))
@@ -117,7 +116,7 @@ def _select(
         commands = tuple(
             command
             for command in block.commands
-            if command.moves[0].automaton in automata and (with_ends or not is_end(command.moves[0].edge))
+            if command.moves[0].automaton in automata and (with_ends or not command.moves[0].edge.is_end)
         )
         if commands:
             blocks.append((block.state, commands))

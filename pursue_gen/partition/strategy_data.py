@@ -8,8 +8,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any, Dict, Iterable, List, Sequence, Union
 
-from pursue_gen.language.network_names import OBJECTIVE, REACH, is_safety_objective, rule_turn
+from pursue_gen.language.network_names import reach_objective, rule_turn, safety_objective
 from pursue_gen.language.numbers import Number, decimal_text
+from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.partition.split import SubStrategy
 from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Command, DiscreteState, Strategy, Zone
@@ -21,7 +22,7 @@ def strategy_data(sub: SubStrategy, reaction: Fraction) -> Dict[str, Any]:
 
     Bounds of zones are in time units: decimals where that is exact, else fractions.
     """
-    named = not {REACH, OBJECTIVE}.issuperset(sub.objectives)
+    named = not {reach_objective(0), safety_objective(0)}.issuperset(sub.objectives)
     return {
         "format": 2 if named or sub.left_out_clocks else 1,
         "controller": sub.controller,
@@ -76,7 +77,7 @@ def _command(command: Command) -> Dict[str, Any]:
 def _state(state: DiscreteState) -> Dict[str, Union[str, int]]:
     """Where every automaton is, and the variables that do not follow from that: all but the `P<automaton>`. That of an
     objective does not, either: it says which place of a patrol comes next."""
-    follows = {rule_turn(automaton) for automaton, _ in state.locations if not is_safety_objective(automaton)}
+    follows = {rule_turn(automaton) for automaton, _ in state.locations if role_of(automaton) is not Role.SAFETY}
     parts: Dict[str, Union[str, int]] = dict(state.locations)
     parts.update((name, value) for name, value in state.values if name not in follows)
     return parts

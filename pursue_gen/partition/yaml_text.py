@@ -71,7 +71,7 @@ def _events(value: Any) -> Iterator[yaml.Event]:
 
 def _scalar(value: Union[str, int, float, bool, None]) -> yaml.Event:
     if isinstance(value, str):
-        return _text(value)
+        return _text(str(value))  # a symbol is one, which libyaml does not know
     node = yaml.representer.SafeRepresenter().represent_data(value)
     return yaml.ScalarEvent(None, None, (True, False), node.value)
 

@@ -14,7 +14,7 @@ from pursue_gen.proof.extrapolation import Described, MaxConstants
 from pursue_gen.proof.moves import Arena, JointMove, Situation, State
 from pursue_gen.proof.zones import without
 from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone, ZoneKey
-from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.scale import common_denominator, least_common_multiple
 from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict, raw
 
@@ -45,11 +45,11 @@ class ClosedLoop:
         scale = _scale(network, strategy, reaction)
         scale = least_common_multiple((scale, instant.denominator)) if instant else scale * INSTANTS
         self.arena, self.strategy = (arenas or Arena.kept(network))(scale), strategy
-        self.rules = Rules(int(reaction * scale), instant > 0, objective.kind is not Kind.SAFETY, int(instant * scale))
-        self.goal = () if objective.kind is Kind.SAFETY else _places(network, objective.goal)
-        self.bad = () if objective.kind is Kind.REACH else _places(network, objective.bad)
+        self.rules = Rules(int(reaction * scale), instant > 0, objective.reaches, int(instant * scale))
+        self.goal = _places(network, objective.goal) if objective.reaches else ()
+        self.bad = _places(network, objective.bad) if objective.avoids else ()
         self.used: Set[ZoneKey] = set()
-        self.ranks = None if objective.kind is Kind.SAFETY else ranks
+        self.ranks = ranks if objective.reaches else None
         self._advice: Dict[State, Advice] = {}
 
     @cached_property

@@ -21,7 +21,7 @@ from pursue_gen.proof.moves import Arena
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
-from pursue_gen.tga.network import Network, Objective, is_end
+from pursue_gen.tga.network import Network, Objective
 
 STEP = Fraction(1, 20)
 """The precision, in time units: the message of a busy robot takes about so long."""
@@ -143,7 +143,7 @@ def describe(margin: Margin, strategy: Strategy) -> str:
 
 def decides_ends(strategy: Strategy) -> bool:
     """True if it commands ends of movements or actions, as the original's do; a real robot reports them."""
-    return any(is_end(command.moves[0].edge) for block in strategy.blocks for command in block.commands)
+    return any(command.moves[0].edge.is_end for block in strategy.blocks for command in block.commands)
 
 
 def as_json(margin: Margin) -> Dict[str, Any]:

@@ -53,7 +53,7 @@ def played(network: Network, objective: Objective, strategy: Strategy, monitor: 
     """
     if _last and all(old is new for old, new in zip(_last[0], (network, objective, strategy))):
         return _last[0][3]
-    if objective.kind is Kind.SAFETY:
+    if not objective.reaches:
         raise Fault("an objective without a goal has no end")
     if strategy.stages or strategy.shares or strategy.left_out_clocks or network.start:
         raise Fault("it has stages, shares, clocks that it leaves out, or a start in the middle")

@@ -128,7 +128,7 @@ def _misplaced(network: Network, objective: Objective, strategy: Strategy) -> st
     """Why these shares cannot be those of a strategy for the objective; "" if they may."""
     if any(automaton.name.startswith(HIDDEN) for automaton in network.automata):
         return f"a name begins with {HIDDEN}"
-    if objective.kind is not Kind.SAFETY:
+    if objective.reaches:
         return "an objective with a goal has no shares"
     if strategy.stages:
         return "a strategy has stages or shares, not both"

@@ -69,7 +69,7 @@ def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iter
             starts = known.states(part)
             assert starts is not None
             fault = why_it_matters(alive, wanted, part, resting, from_start=stage == 0)
-            if wanted.kind is not Kind.REACH and len(milestones) > 1:
+            if wanted.avoids and len(milestones) > 1:
                 fault = "where one part has ended before the others, nobody guards against what is to be avoided"
             if fault:
                 yield Part(stage, part, wanted, strategy, (), fault)
@@ -87,7 +87,7 @@ def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iter
 
 def stage_objective(objective: Objective, goal: Place, extent: Extent) -> Objective:
     """What is wanted in a part of a stage: to come to its goal, and to avoid what may happen at all in the stage."""
-    if objective.kind is not Kind.REACH_WHILE_SAFE:
+    if not (objective.reaches and objective.avoids):
         return replace(objective, goal=(goal,))
     bad = tuple((name, location) for name, location in objective.bad if location in extent.places[name])
     return Objective(Kind.REACH_WHILE_SAFE if bad else Kind.REACH, (goal,), bad)
@@ -162,7 +162,7 @@ def _others(blocks: Mapping[Place, Sequence[Block]], place: Place) -> AbstractSe
 
 def _misplaced(network: Network, objective: Objective, strategy: Strategy) -> str:
     """Why these stages cannot be those of a strategy for the objective; "" if they may."""
-    if objective.kind is Kind.SAFETY:
+    if not objective.reaches:
         return "an objective without a goal has no stages"
     milestones = [place for stage in strategy.stages for place in stage]
     if len({name for name, _ in milestones}) != len(milestones):

@@ -21,7 +21,7 @@ from pursue_gen.proof.shares import shares_of
 from pursue_gen.proof.stages import parts_of
 from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor, Limits
 from pursue_gen.synthesis.strategy import Strategy, with_automata_of
-from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Kind, Location, Network, Objective
+from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Location, Network, Objective
 
 LIMIT = 20_000
 """So many symbolic states are explored."""
@@ -104,7 +104,7 @@ def worst_case(
     instant; a command takes effect up to `reaction` after its decision. None where that is not found out with `limit`
     symbolic states or within the limits, where there is no bound, or where the strategy fails when it is played so.
     """
-    if objective.kind is Kind.SAFETY:
+    if not objective.reaches:
         return None
     if strategy.passages:
         return _of_course(network, objective, strategy, reaction, limits)

@@ -24,7 +24,7 @@ from pursue_gen.solving.proving import prove
 from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Move, Strategy
-from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.network import Network, Objective
 
 _RESERVES = tuple(Fraction(tenths, 10) for tenths in (1, 2, 3, 4, 6, 10))
 """The parts of a period that a robot has to spare when it sets off for a visit; the first that wins counts."""
@@ -53,7 +53,7 @@ class _Game:
 def calm(won: Solution, options: SolveOptions) -> Solution:
     """The solution without moves that no promise needs, as far as little work finds one; the same where there is a
     goal. Within the limits; raises LimitHit at them."""
-    if won.objective.kind is not Kind.SAFETY or won.strategy.counter or won.strategy.tours:
+    if won.objective.reaches or won.strategy.counter or won.strategy.tours:
         return won
     start = options.limits.now()
     budget = Budget(replace(options.limits, work=_WORK, states=_STATES), options.progress, options.engine)

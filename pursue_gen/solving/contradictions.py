@@ -29,7 +29,7 @@ _Valuation = Mapping[str, int]
 def excluded_by_a_stay(network: Network, objective: Objective) -> Tuple[Objective, ...]:
     """The first two promises, places to be avoided, that cannot both be kept where one agent stays; () where none are
     found."""
-    if objective.kind is not Kind.SAFETY:
+    if objective.reaches:
         return ()
     for arrival in _arrivals(network):
         asking = [place for place in objective.bad if _asks(network.automaton(place[0]), arrival)]

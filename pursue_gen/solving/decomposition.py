@@ -27,7 +27,7 @@ from pursue_gen.synthesis.strategy import Block, Place, Strategy, with_edges
 from pursue_gen.tga.begin import BEGIN, beginning_in
 from pursue_gen.tga.ending import ending_at, owner_of
 from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective, is_end
+from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective
 from pursue_gen.tga.part import part_of
 
 _FIRST = 60_000_000
@@ -128,7 +128,7 @@ class _Search:
             yield before + together
         if first and together != one_by_one:
             yield before + one_by_one
-        if self._objective.kind is Kind.REACH and together != one_by_one:
+        if not self._objective.avoids and together != one_by_one:
             yield together
         if len(goals) > 1:
             yield one_by_one
@@ -173,7 +173,7 @@ class _Search:
             for automaton in self._network.automata
             if automaton.name in self._robots
             for edge in automaton.edges
-            if edge.source in known.extent.places[automaton.name] and is_end(edge) and is_controllers(edge, self._taken)
+            if edge.source in known.extent.places[automaton.name] and edge.is_end and is_controllers(edge, self._taken)
         )
 
     def _part(self, part: _Part, known: Known) -> Optional[List[Block]]:
@@ -188,7 +188,8 @@ class _Search:
         """The teams to try, the smallest first: some of those who can do it, and all who guard against what is bad."""
         guards: FrozenSet[str] = frozenset()
         alive, extent = self._alive(part, self._robots, known)
-        if part.goal is not None and stage_objective(self._objective, part.goal, extent).kind is Kind.REACH_WHILE_SAFE:
+        wanted = self._objective if part.goal is None else stage_objective(self._objective, part.goal, extent)
+        if part.goal is not None and wanted.reaches and wanted.avoids:
             safe = replace(self._objective, kind=Kind.SAFETY, goal=())
             matter = {automaton.name for automaton in cone_of_influence(alive, safe).automata}
             guards = frozenset(matter.intersection(self._robots))
@@ -259,7 +260,7 @@ class _Search:
             for automaton in self._network.automata
             for edge in automaton.edges
             if automaton.name in team
-            or (automaton.name in part.ending and is_end(edge))
+            or (automaton.name in part.ending and edge.is_end)
             or (is_last and not is_agent(automaton))
             if is_controllers(edge, self._taken)
             and (edge.sync is None or edge.sync.channel not in undoing)

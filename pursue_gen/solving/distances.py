@@ -7,9 +7,9 @@ import math
 from typing import Dict, Iterable, List, Mapping, Sequence, Tuple, TypeVar
 
 from pursue_gen.language.numbers import Number
+from pursue_gen.language.symbols import Role
 from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.network import Automaton, Network
-from pursue_runtime.locations import is_movement
 
 Far = TypeVar("Far", Number, float)
 
@@ -40,7 +40,7 @@ def times_to(places: Iterable[str], automaton: Automaton) -> Dict[str, Number]:
     back: Dict[str, List[Tuple[str, Number]]] = {}
     for edge in automaton.edges:
         takes = longest[edge.source]
-        if takes is None and not is_movement(edge.source):
+        if takes is None and edge.leaves is not Role.WAY:
             takes = max((bound.bound for bound in edge.guard.clocks if bound.op in (">", ">=")), default=0)
         if takes is not None:
             back.setdefault(edge.target, []).append((edge.source, takes))

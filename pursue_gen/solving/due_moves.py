@@ -16,14 +16,10 @@ from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Option
 
 from pursue_gen.language.network_names import AT_RISK, IDLE
 from pursue_gen.language.numbers import Number
+from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.solving.distances import times_to
 from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Network, Objective, Test
-from pursue_runtime.locations import is_movement
-
-_DUE = "@due_"
-"""With the name of an automaton, the variable that is 1 while its deadline is running."""
-
 
 _Senders = Mapping[str, Sequence[Tuple[str, Edge]]]
 
@@ -50,7 +46,7 @@ class DueMoves:
         return replace(strategy, blocks=tuple(map(self._block, strategy.blocks)))
 
     def _block(self, block: Block) -> Block:
-        values = tuple(pair for pair in block.state.values if not pair[0].startswith(_DUE))
+        values = tuple(pair for pair in block.state.values if role_of(pair[0]) is not Role.DUE)
         commands: Dict[Tuple[Move, ...], Tuple[Zone, ...]] = {}
         for command in block.commands:
             moves = tuple(replace(move, edge=self.before.get(move.edge, move.edge)) for move in command.moves)
@@ -68,7 +64,7 @@ def patrols(network: Network) -> FrozenSet[str]:
 def _is_patrol(senders: _Senders, automaton: Automaton) -> bool:
     begins = [edge for edge in automaton.edges if edge.source != AT_RISK and edge.target == AT_RISK]
     return bool(begins) and all(
-        sent.controllable and is_movement(sent.target)
+        sent.controllable and sent.enters is Role.WAY
         for edge in begins
         if edge.sync is not None
         for _, sent in senders.get(edge.sync.channel, ())
@@ -127,7 +123,7 @@ def only_due(
             edges += some
         automata.append(replace(automaton, edges=tuple(dict.fromkeys(edges))))
     at_risk = {automaton.name for automaton in automata if automaton.initial == AT_RISK}
-    variables = tuple((_DUE + duty.name, int(duty.name in at_risk)) for duty in called)
+    variables = tuple((Role.DUE(duty.name), int(duty.name in at_risk)) for duty in called)
     return DueMoves(replace(network, automata=tuple(automata), variables=(*network.variables, *variables)), before)
 
 
@@ -135,11 +131,11 @@ def _telling(name: str, edge: Edge) -> Edge:
     """The edge of a promise's automaton, with the variable that is 1 while its deadline is running."""
     if AT_RISK not in (edge.source, edge.target) or edge.source == edge.target:
         return edge
-    return replace(edge, assign=(*edge.assign, (_DUE + name, int(edge.target == AT_RISK))))
+    return replace(edge, assign=(*edge.assign, (Role.DUE(name), int(edge.target == AT_RISK))))
 
 
 def _sets_off(edge: Edge) -> bool:
-    return edge.controllable and is_movement(edge.target) and not is_movement(edge.source)
+    return edge.controllable and edge.enters is Role.WAY and edge.leaves is not Role.WAY
 
 
 def _for_duties(
@@ -152,7 +148,7 @@ def _for_duties(
     """The edge with which a robot sets off, once for each patrol to whose place it leads, and for each promise."""
     clocks, integers = edge.guard.clocks, edge.guard.integers
     ends = [other.target for other in automaton.edges if other.source == edge.target]
-    called = tuple(Test(_DUE + duty.name, 1) for duty in known if not duty.visits)
+    called = tuple(Test(Role.DUE(duty.name), 1) for duty in known if not duty.visits)
     if called:
         yield replace(edge, guard=Guard(clocks, (*integers, called)))
     for duty in known:

@@ -14,7 +14,7 @@ from pursue_gen.solving.distances import times_to
 from pursue_gen.solving.due_moves import Duty, duties, patrols
 from pursue_gen.solving.duties import Duties, at_home, begins
 from pursue_gen.solving.subgoals import commanded_agents
-from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective, is_end
+from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective
 
 _Patrols = Sequence[Tuple[str, Duty]]
 """The robots that alone visit places, each with the duty of one."""
@@ -24,8 +24,8 @@ def excluded_by_an_errand(network: Network, objective: Objective) -> Tuple[Objec
     """Promises, places to be avoided, that cannot all be kept as who does something comes back too late; () where none
     are found."""
     robots = commanded_agents(network)
-    ends = (edge for name in robots for edge in network.automaton(name).edges if is_end(edge))
-    if objective.kind is not Kind.SAFETY or any(edge.controllable for edge in ends):
+    ends = (edge for name in robots for edge in network.automaton(name).edges if edge.is_end)
+    if objective.reaches or any(edge.controllable for edge in ends):
         return ()
     visits = [
         (next(iter(duty.visits)), duty)

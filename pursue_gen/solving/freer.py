@@ -11,12 +11,12 @@ from dataclasses import replace
 from itertools import chain
 from typing import AbstractSet, Collection, Dict, Iterator, List, Sequence, Set, Tuple
 
+from pursue_gen.language.symbols import Role
 from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Network, Test, is_end
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Network, Test
 from pursue_gen.tga.part import part_of
 from pursue_gen.tga.pauses import pauses
-from pursue_runtime.locations import is_movement
 
 _MOMENTS = (1, 2)
 """So many time units after a robot has come to a place somebody calls: no sooner, as a robot rests for one itself."""
@@ -88,7 +88,7 @@ def _hurried(game: Network, name: str, way: Collection[Edge]) -> Network:
     for edge in way:
         enters = [each for each in agent.edges if each.target == edge.source]
         bounds = edge.guard.clocks
-        if is_movement(edge.target) and len(bounds) == 1 and bounds[0].op in (">", ">=") and not edge.guard.integers:
+        if edge.enters is Role.WAY and len(bounds) == 1 and bounds[0].op in (">", ">=") and not edge.guard.integers:
             starts = edge.source != agent.initial or not game.start
             if starts and all(bounds[0].clock in each.resets for each in enters):
                 until[edge.source] = ClockBound(bounds[0].clock, "<=", bounds[0].bound + 1)
@@ -150,7 +150,7 @@ def asking_only(game: Network, watching: Collection[str]) -> Network:
             if edge.source == edge.target:
                 return False
             doing = edge.target in bounded and edge.target in known
-            return edge.source in bounded or is_movement(edge.target) or doing
+            return edge.source in bounded or edge.enters is Role.WAY or doing
 
         edges = (edge for edge in automaton.edges if is_kept(edge))
         return replace(automaton, edges=tuple(edges))
@@ -170,7 +170,7 @@ def _standing(game: Network, kept: Collection[Edge]) -> Network:
         edges = (
             e
             for e in automaton.edges
-            if e.controllable or not is_movement(e.target) or e.source in bounded or e in kept
+            if e.controllable or e.enters is not Role.WAY or e.source in bounded or e in kept
         )
         return replace(automaton, edges=tuple(edges))
 
@@ -206,7 +206,7 @@ def _binds_commands_alone(rule: Automaton, testing: Sequence[Tuple[Automaton, Ed
     for automaton, edge in testing:
         if _is_command(edge):
             continue
-        if not is_end(edge) or edge.sync is None or not edge.sync.sends:
+        if not edge.is_end or edge.sync is None or not edge.sync.sends:
             return False
         begins = [begin for begin in automaton.edges if begin.target == edge.source]
         if not all(_is_command(begin) and _is_followed(rule, begin, edge.sync.channel, edge) for begin in begins):

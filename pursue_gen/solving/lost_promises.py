@@ -43,7 +43,7 @@ _QUICK, _QUICK_GAME, _FEW_STATES = 6_000_000, 1_000_000, 4000
 
 def promises(objective: Objective) -> Tuple[Objective, ...]:
     """What the objective asks for, each alone: a place to be avoided, or one to be reached, in its own time."""
-    if objective.kind is Kind.SAFETY:
+    if not objective.reaches:
         return tuple(Objective(Kind.SAFETY, bad=(place,)) for place in objective.bad)
     return tuple(_together([goal], [late for late in objective.bad if late[0] == goal[0]]) for goal in objective.goal)
 

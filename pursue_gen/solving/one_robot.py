@@ -61,7 +61,7 @@ def lost_for_one(
 
 def robot_alone(network: Network, objective: Objective) -> Optional[str]:
     """The robot of several that alone can do something about all of a safety objective; None where there is none."""
-    if objective.kind is not Kind.SAFETY or len(commanded_agents(network)) < 2:
+    if objective.reaches or len(commanded_agents(network)) < 2:
         return None
     return next((robot for robot, _ in _with_all(network, objective)), None)
 

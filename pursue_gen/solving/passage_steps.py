@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import AbstractSet, Dict, Iterable, List, Mapping, Optional, Sequence, Set, Tuple, Union
 
-from pursue_gen.language.network_names import is_going, is_under_way
+from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy
 from pursue_gen.tga.network import Edge, Guard, Network
 from pursue_gen.tga.passages import Passage, with_passages
@@ -53,7 +53,7 @@ class Play:
             for edge in automaton.edges:
                 if edge.sync is not None and not edge.sync.sends:
                     self._heard.setdefault(edge.sync.channel, []).append((automaton.name, edge))
-                elif is_under_way(edge.source) and edge.source != edge.target:
+                elif edge.is_end:
                     self._ends.setdefault((automaton.name, edge.source), []).append(edge)
 
     def holds(self, guard: Guard) -> bool:
@@ -76,9 +76,9 @@ class Play:
             self.now.update(one.assign)
         self.steps.append(step)
         for name in (sender, *receivers):
-            if is_under_way(str(self.now[name])):
+            if role_of(str(self.now[name])) in UNDER_WAY:
                 ends = self._ends.get((name, str(self.now[name])), [])
-                if not any(self.take(name, end) for end in ends) and is_under_way(str(self.now[name])):
+                if not any(self.take(name, end) for end in ends) and role_of(str(self.now[name])) in UNDER_WAY:
                     return False
         return True
 
@@ -92,14 +92,14 @@ def passages_of(network: Network, steps: Iterable[Step], single: AbstractSet[str
     def visit(place: str, robot: str) -> None:
         visits.setdefault((place, "" if place in single else robot), []).append(robot)
 
-    moving = {step.sender for step in steps if is_going(step.edge.target)}
+    moving = {step.sender for step in steps if step.edge.enters is Role.WAY}
     for automaton in network.automata:
         if automaton.name in moving:
             visit(automaton.initial, automaton.name)
     for step in steps:
-        if is_going(step.edge.source):
+        if step.edge.leaves is Role.WAY:
             visit(step.edge.target, step.sender)
-    entered = {step.edge.target for step in steps if is_going(step.edge.source)}
+    entered = {step.edge.target for step in steps if step.edge.leaves is Role.WAY}
     told_apart = (len(robots) > 1 or (place in entered and not robot) for (place, robot), robots in visits.items())
     return tuple(Passage(place, tuple(robots)) for ((place, _), robots), k in zip(visits.items(), told_apart) if k)
 
@@ -153,7 +153,7 @@ class _Blocks:
             step = self._steps[number]
             named[number] = {*step.concerned, *self._held(step)}
             for end in self._steps[number + 1 :]:  # what it is done for may come with its end
-                if not is_under_way(end.edge.source):
+                if end.edge.leaves not in UNDER_WAY:
                     break
                 named[number].update(end.concerned if end.sender == step.sender else ())
             others = alike.setdefault((step.sender, step.edge.source), [])

@@ -11,7 +11,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
-from pursue_gen.language.network_names import is_going, is_under_way
+from pursue_gen.language.symbols import UNDER_WAY, Role
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.relaxed_reachability import is_controllers, taken_over
 from pursue_gen.solving.options import SolveOptions
@@ -58,7 +58,7 @@ def won_by_passages(
 
 def crowd_of(network: Network, objective: Objective) -> Optional[Crowd]:
     """The robots, if two of them must never be at one place, on the way to a goal; else None."""
-    if objective.kind is not Kind.REACH_WHILE_SAFE or network.start:
+    if not (objective.reaches and objective.avoids) or network.start:
         return None
     robots = tuple(_robots(network))
     single = _single(network, objective, robots) if len(robots) > 1 else frozenset()
@@ -68,7 +68,7 @@ def crowd_of(network: Network, objective: Objective) -> Optional[Crowd]:
 def _robots(network: Network) -> List[Automaton]:
     """The agents that are commanded to go somewhere."""
     commanded = (network.automaton(name) for name in commanded_agents(network))
-    return [automaton for automaton in commanded if any(is_going(place.name) for place in automaton.locations)]
+    return [automaton for automaton in commanded if any(place.role is Role.WAY for place in automaton.locations)]
 
 
 def _single(network: Network, objective: Objective, robots: Sequence[Automaton]) -> FrozenSet[str]:
@@ -90,9 +90,9 @@ def _spots(robots: Sequence[Automaton]) -> Iterator[Tuple[str, Dict[int, str]]]:
     """For each variable that a robot sets where it arrives at a place, the places by its values."""
     for automaton in robots:
         for edge in automaton.edges:
-            if is_going(edge.source) and edge.assign:
+            if edge.leaves is Role.WAY and edge.assign:
                 yield edge.assign[0][0], {
-                    e.assign[0][1]: e.target for e in automaton.edges if is_going(e.source) and e.assign
+                    e.assign[0][1]: e.target for e in automaton.edges if e.leaves is Role.WAY and e.assign
                 }
                 break
 
@@ -126,7 +126,7 @@ class _Rounds:
         self._ends: Dict[str, List[Edge]] = {}
         for robot in robots:
             for edge in robot.edges:
-                if is_under_way(edge.source):
+                if edge.leaves in UNDER_WAY:
                     self._ends.setdefault(edge.source, []).append(edge)
         self._commands: List[Tuple[str, Edge]] = []
 
@@ -164,7 +164,7 @@ class _Rounds:
         numbers = sorted(self._planner.plan(state))
         plan = [(game.automata[game.edges[k].automaton].name, game.origins[k]) for k in numbers]
         for name, edge in plan:
-            is_way = is_going(edge.target) or is_under_way(edge.source)
+            is_way = edge.enters is Role.WAY or edge.leaves in UNDER_WAY
             if name in found or is_way or not is_controllers(edge, self._taken):
                 continue
             if not self._play.holds(edge.guard) or not self._is_heard(edge, plan):
@@ -200,6 +200,6 @@ class _Rounds:
 
 def _legs(robot: Automaton) -> Dict[Tuple[str, str], Edge]:
     """The edges by which a robot sets off, by the places from and to which it goes."""
-    ends = {edge.source: edge.target for edge in robot.edges if is_going(edge.source) and edge.target != edge.source}
-    setting_off = (edge for edge in robot.edges if is_going(edge.target) and edge.source != edge.target)
+    ends = {edge.source: edge.target for edge in robot.edges if edge.leaves is Role.WAY and edge.is_end}
+    setting_off = (edge for edge in robot.edges if edge.sets_off)
     return {(edge.source, ends[edge.target]): edge for edge in setting_off if edge.target in ends}

@@ -21,7 +21,7 @@ from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.network import Edge, Kind, Network, Objective, is_end
+from pursue_gen.tga.network import Edge, Kind, Network, Objective
 
 _Pins = Dict[Tuple[str, Edge], Tuple[Duty, ...]]
 """What robots cannot begin, each with duties that nobody else can cover meanwhile."""
@@ -33,8 +33,8 @@ def lost_to_pins(
     """Promises, places to be avoided, that are lost as robots have to stay near others; () where so much work for all
     games of one robot, and for one of them, finds none."""
     robots = commanded_agents(network)
-    ends = (edge for name in robots for edge in network.automaton(name).edges if is_end(edge))
-    if objective.kind is not Kind.SAFETY or any(edge.controllable for edge in ends):
+    ends = (edge for name in robots for edge in network.automaton(name).edges if edge.is_end)
+    if objective.reaches or any(edge.controllable for edge in ends):
         return ()
     everywhere = {robot: places_of(network.automaton(robot)) for robot in robots}
     all_duties = Duties(network, objective.bad, robots)
@@ -83,7 +83,7 @@ def _starts(game: Network, robot: str) -> Iterator[Network]:
         return
     heard = {e.sync.channel for a in watching for e in a.edges if e.sync is not None}
     for end in automaton.edges:
-        if is_end(end) and end.sync is not None and end.sync.channel in heard:
+        if end.is_end and end.sync is not None and end.sync.channel in heard:
             there = replace(automaton, initial=end.target)
             automata = tuple(there if a is automaton else a for a in game.automata)
             yield replace(game, automata=automata, variables=_with(game, end))

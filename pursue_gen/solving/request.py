@@ -15,7 +15,7 @@ from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import NO_LIMITS, Listener
-from pursue_gen.tga.network import Network, Objective, is_end
+from pursue_gen.tga.network import Network, Objective
 from pursue_runtime.bounded import DIGITS, exact
 
 _GENERAL = "general"
@@ -110,6 +110,6 @@ def _slack(network: Network, texts: Sequence[str]) -> Dict[str, int]:
         agent, named, number = text.rpartition("=")
         if not (number.isascii() and number.isdigit() and len(number) <= DIGITS) or (named and not agent):
             raise usage_error(f"the slack is '{text}'", "a number of time units such as 2, or for one agent bot1=2")
-        controlled = [a.name for a in network.automata if any(is_end(edge) and edge.controllable for edge in a.edges)]
+        controlled = [a.name for a in network.automata if any(edge.is_end and edge.controllable for edge in a.edges)]
         slack.update((name, int(number)) for name in ([agent] if named else controlled))
     return slack

@@ -73,7 +73,7 @@ class Known:
 
 def can_be_shared(network: Network, objective: Objective) -> bool:
     """True for a safety objective, places to be avoided, that several robots may keep."""
-    return objective.kind is Kind.SAFETY and len(commanded_agents(network)) > 1
+    return not objective.reaches and len(commanded_agents(network)) > 1
 
 
 def won_in_shares(

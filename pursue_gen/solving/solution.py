@@ -159,7 +159,7 @@ def _proven(
     try:
         return prove(game, objective, verdict.strategy, reaction, verdict.ranks, options, otherwise=verdict.cautious)
     except NotProven as problem:
-        if objective.kind is Kind.SAFETY:
+        if not objective.reaches:
             raise
         refused = problem
     how = options.engine, options.since(start).in_one_piece, options.progress
@@ -259,7 +259,7 @@ def fastest_solution(network: Network, objective: Objective, rules: Rules, optio
 
 def check_goal(objective: Objective, option: str) -> None:
     """Raises PursueError (exit status 2) for an objective without a goal, where an option is about the time to it."""
-    if objective.kind is Kind.SAFETY:
+    if not objective.reaches:
         hint = f"leave {option} out; it is for objectives with a goal: reach_objective: do ..."
         raise PursueError([error("SYN022", "a safety objective has no time to the goal", hint=hint)])
 

@@ -20,7 +20,7 @@ from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solution import Solution, check_goal, fastest_solution, guaranteed, solution
 from pursue_gen.synthesis.enforced import enforced
 from pursue_gen.synthesis.limits import Limits
-from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.network import Network, Objective
 
 _FASTEST, _FIRST = "time", "none"
 """What `optimize` may be; None: a quick strategy."""
@@ -67,13 +67,13 @@ def _built_in(network: Network, objective: Objective, rules: Rules, options: Sol
     if options.optimize == _FIRST:
         return _timed(won, left.limits)
     with suppress(LimitHit), enforced(left.limits.chosen):
-        return calm(won, left) if objective.kind is Kind.SAFETY else quick(won, left)
+        return quick(won, left) if objective.reaches else calm(won, left)
     return won  # what is proven stays so
 
 
 def _timed(won: Solution, limits: Limits) -> Solution:
     """With the worst-case time of the strategy, where that is quickly computed."""
-    return won if won.objective.kind is Kind.SAFETY else replace(won, guarantee=guaranteed(won, limits=limits))
+    return replace(won, guarantee=guaranteed(won, limits=limits)) if won.objective.reaches else won
 
 
 def keep_counter(problem: PursueError, network: Network, objective: Objective, plan: Optional[Path]) -> Optional[Path]:

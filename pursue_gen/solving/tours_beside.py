@@ -34,7 +34,7 @@ def won_beside_tours(
     """A proven strategy in which robots that no other promise needs go round the places of all patrols; None where
     there are no such robots, or few places, or none is found with little work."""
     start = options.limits.now()
-    known = patrols(network) if objective.kind is Kind.SAFETY and not network.start else frozenset()
+    known = patrols(network) if not objective.reaches and not network.start else frozenset()
     visited = tuple(place for place in objective.bad if place[0] in known)
     rest = Objective(Kind.SAFETY, bad=tuple(place for place in objective.bad if place[0] not in known))
     if len(visited) < PATROL or not rest.bad:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import AbstractSet, Iterable, List, Set, Tuple
 
+from pursue_gen.language.symbols import Role
 from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Automaton, Edge, Network
-from pursue_runtime.locations import is_action, is_movement
 
 
 def useful(network: Network, team: AbstractSet[str], places: Iterable[Place]) -> Set[Tuple[str, Edge]]:
@@ -31,7 +31,7 @@ class _Search:
         self.found = {(automaton.name, edge) for automaton in others for edge in automaton.edges}
         for automaton in team:
             for edge in automaton.edges:
-                if is_movement(edge.target) or is_movement(edge.source):
+                if edge.enters is Role.WAY or edge.leaves is Role.WAY:
                     self.found.add((automaton.name, edge))
                     self._variables.update(test.variable for clause in edge.guard.integers for test in clause)
 
@@ -49,7 +49,7 @@ class _Search:
             self.need(e for e in automaton.edges if any(name in self._variables for name, _ in e.assign))
         for automaton in self._team:
             own = [edge for name, edge in self.found if name == automaton.name]
-            ends = {edge.source for edge in own if is_action(edge.source)}
+            ends = {edge.source for edge in own if edge.leaves is Role.WORK}
             tested = {test.variable for edge in own for clause in edge.guard.integers for test in clause}
             new = [edge for edge in automaton.edges if self._matters(edge, ends) or _charges(edge, tested)]
             self.found.update((automaton.name, edge) for edge in new)
@@ -65,4 +65,4 @@ class _Search:
 
 def _charges(edge: Edge, tested: AbstractSet[str]) -> bool:
     """True for the end of an action that sets what the agent's own edges test: the level of its battery."""
-    return is_action(edge.source) and any(name in tested for name, _ in edge.assign)
+    return edge.leaves is Role.WORK and any(name in tested for name, _ in edge.assign)

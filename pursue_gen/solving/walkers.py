@@ -11,7 +11,7 @@ from pursue_gen.solving.distances import distances_to
 from pursue_gen.solving.due_moves import Duty, duties, patrols
 from pursue_gen.solving.rounds import Robot, Visit
 from pursue_gen.solving.subgoals import commanded_agents
-from pursue_gen.tga.network import Automaton, Edge, Guard, Kind, Network, Objective
+from pursue_gen.tga.network import Automaton, Edge, Guard, Network, Objective
 from pursue_gen.tga.scale import common_denominator, least_common_multiple
 from pursue_gen.tga.tours import ways_of
 
@@ -75,7 +75,7 @@ def patrol_of(
     """The patrol that an objective asks for; None where it asks for something else, or a robot does not move as it is
     told, at any time. `prompt`: commands are given at the first instant; `excused`: robots that are not relied on."""
     bad = dict.fromkeys(name for name, _ in objective.bad)
-    known = duties(network, objective, patrols(network)) if objective.kind is Kind.SAFETY else ()
+    known = () if objective.reaches else duties(network, objective, patrols(network))
     if not known or len(known) != len(bad) or any(place != LOSE for _, place in objective.bad):
         return None
     if any(len(places) != 1 for duty in known for places in duty.visits.values()) or _in_order(network, known):

@@ -8,7 +8,7 @@ from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 from pursue_gen.diagnostics import Diagnostic, error
 from pursue_gen.outcomes import Invalid
 from pursue_gen.synthesis.game import NO_CHANNEL, Bound, Clause, Game, GameAutomaton, GameEdge
-from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Network, Objective
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Network, Objective
 from pursue_gen.tga.scale import common_denominator
 from pursue_gen.zones.dbm import Dbm, constant, raw
 
@@ -29,9 +29,9 @@ def compile_game(
     scale = common_denominator([reaction, *network.times])
     tables = _Tables(network, scale, problems)
     goal, bad = tables.positions(objective.goal), tables.positions(objective.bad)
-    if objective.kind is not Kind.SAFETY and not objective.goal:
+    if objective.reaches and not objective.goal:
         problems.append(error("SYN002", "the objective names no location to reach"))
-    if objective.kind is not Kind.REACH and not objective.bad:
+    if objective.avoids and not objective.bad:
         problems.append(error("SYN003", "the objective names no location to avoid"))
     automata: List[GameAutomaton] = []
     edges: List[GameEdge] = []
@@ -44,8 +44,8 @@ def compile_game(
         raise Invalid(problems)
     return Game(
         kind=objective.kind,
-        goal=goal if objective.kind is not Kind.SAFETY else (),
-        bad=bad if objective.kind is not Kind.REACH else (),
+        goal=goal if objective.reaches else (),
+        bad=bad if objective.avoids else (),
         scale=tables.scale,
         delta=int(reaction * tables.scale),
         clocks=network.clocks,

@@ -31,7 +31,7 @@ from pursue_gen.synthesis.plan_parts import (
 from pursue_gen.synthesis.plan_reader import RUN_AGAIN, Names, Reader, printed_location
 from pursue_gen.synthesis.plan_text import assign_text, guard_text, sync_text, zones_text
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Move, Strategy, Zone, with_automata_of
-from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.passages import with_passages
 from pursue_gen.tga.tours import with_tours
 from pursue_gen.tga.uppaal_words import with_own_names
@@ -180,7 +180,7 @@ def _no_strategy(text: str, file: str) -> PursueError:
 
 def _title(strategy: Strategy, objective: Objective) -> str:
     """The line that TIGA puts above such a strategy."""
-    if objective.kind is Kind.SAFETY:
+    if not objective.reaches:
         return "Counter strategy to lose:" if strategy.counter else "Strategy to avoid losing:"
     return "Counter strategy to prevent from winning:" if strategy.counter else "Strategy to win:"
 

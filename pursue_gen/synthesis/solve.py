@@ -19,7 +19,7 @@ from pursue_gen.synthesis.overtaking import ended_earlier, without_overtaking
 from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.synthesis.strategy_from import to_ranks, to_strategy
-from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.pauses import pauses, without_clocks
 
 
@@ -109,7 +109,7 @@ def solve(
         return Verdict(False, None, stats, None)
     blocks, ranks = outcome.blocks, outcome.ranks
     cautious: Callable[[], Optional[Strategy]] = _none
-    if game.delta and game.kind is not Kind.SAFETY:
+    if game.delta and game.goal:
         # Without ranks that hold across states: within one state, what was won later stands later.
         order = tuple(tuple(range(len(pieces))) for _, _, pieces in blocks) if ranks is None else ranks
         blocks, order = without_overtaking(game, blocks, order)

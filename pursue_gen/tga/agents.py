@@ -9,6 +9,7 @@ from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Value
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Agent, Event, Scenario, Window
+from pursue_gen.language.symbols import Symbol
 from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.positions import Positions
@@ -82,11 +83,10 @@ class Surroundings:
         """
         return event.is_shared and len(self.doers(event)) > 1
 
-    def pois(self, agent: Agent) -> Tuple[str, ...]:
-        """The POIs at which an agent can ever be, as far as being mobile goes."""
-        if agent.mobile is None:
-            return (agent.location.name,)
-        return tuple(poi.name for poi in self.scenario.pois)
+    def pois(self, agent: Agent) -> Tuple[Symbol, ...]:
+        """The locations at the POIs at which an agent can ever be, as far as being mobile goes."""
+        pois = self.scenario.pois if agent.mobile is not None else (agent.location,)
+        return tuple(names.at(poi.name) for poi in pois)
 
 
 def agent_automaton(agent: Agent, around: Surroundings) -> Automaton:
@@ -111,7 +111,7 @@ def agent_automaton(agent: Agent, around: Surroundings) -> Automaton:
         places = shape.shared_places(event) if event.is_shared else ()
         locations += [Location(names.doing(name, poi)) for poi in places]
         edges += [edge for poi in places for edge in shape.sharing(event, poi)]
-    return Automaton(agent.name, tuple(locations), agent.location.name, tuple(edges))
+    return Automaton(names.agent(agent.name), tuple(locations), names.at(agent.location.name), tuple(edges))
 
 
 def _reacts(agent: Agent, event: str) -> bool:
@@ -129,7 +129,7 @@ class _Shape:
     def clock(self) -> str:
         return names.agent_clock(self.agent.name)
 
-    def pois(self) -> Tuple[str, ...]:
+    def pois(self) -> Tuple[Symbol, ...]:
         """The POIs at which the agent can ever be."""
         return self.around.pois(self.agent)
 
@@ -137,11 +137,11 @@ class _Shape:
         """From and to of each movement, and when it may end."""
         return self.around.scenario.movements(self.agent)
 
-    def places(self, event: Event) -> Tuple[str, ...]:
+    def places(self, event: Event) -> Tuple[Symbol, ...]:
         """The POIs at which the agent can do an event, or take part in it."""
         return tuple(poi for poi in self.pois() if event.location is None or event.location.name == poi)
 
-    def shared_places(self, event: Event) -> Tuple[str, ...]:
+    def shared_places(self, event: Event) -> Tuple[Symbol, ...]:
         """The POIs at which the agent can take part in an event of another one."""
         others = [doer for doer in self.around.doers(event) if doer is not self.agent]
         theirs = {poi for doer in others for poi in self.around.pois(doer)}
@@ -155,11 +155,12 @@ class _Shape:
         """Setting off from a, as far as it ever can, and arriving at b."""
         codes, on_the_way, name = self.around.positions, names.going(a, b), self.agent.name
         channel = names.arrival(name, a, b) if (name, b) in self.around.awaited else None
-        end = self._edge(on_the_way, b, channel, window[0], (), codes.at(b))
+        end = self._edge(on_the_way, names.at(b), channel, window[0], (), codes.at(b))
         condition = self.around.conditions.setting_off(name, a, b)
         if condition is None:
             return (end,)
-        return self._edge(a, on_the_way, names.movement(name, a, b), PAUSE, condition, codes.going(a, b)), end
+        begin = self._edge(names.at(a), on_the_way, names.movement(name, a, b), PAUSE, condition, codes.going(a, b))
+        return begin, end
 
     def lasting(self, event: Event, window: Window, poi: str) -> Tuple[Edge, ...]:
         """Beginning an event at a POI, as far as the agent ever can, and ending it."""
@@ -170,7 +171,7 @@ class _Shape:
         conditions = self._conditions(event, codes.at(poi), Value("at", poi))
         if conditions is None:
             return (ending,)
-        start = self._edge(poi, at_work, event.name, PAUSE, conditions, codes.doing(poi))
+        start = self._edge(poi, at_work, names.event(event.name), PAUSE, conditions, codes.doing(poi))
         start = replace(start, assign=(*start.assign, *working.begins(self.agent.name, event.name, poi)))
         if not self.around.is_contested(event):
             return start, ending
@@ -196,7 +197,8 @@ class _Shape:
             return Edge(source, target, guard, Sync(channel, sends=False), assign, (self.clock,))
 
         working, name = self.around.conditions, self.agent.name
-        start = edge(poi, at_work, event.name, here, codes.doing(poi), working.begins(name, event.name, poi))
+        begins = working.begins(name, event.name, poi)
+        start = edge(poi, at_work, names.event(event.name), here, codes.doing(poi), begins)
         return start, edge(at_work, poi, names.done(event.name), (), codes.at(poi), working.ends(name))
 
     def instantaneous(self, event: Event, ways: Iterable[Tuple[str, str]]) -> Iterator[Edge]:
@@ -205,14 +207,15 @@ class _Shape:
         for poi in self.places(event):
             conditions = self._conditions(event, codes.at(poi), Value("at", poi))
             if conditions is not None:
-                yield self._edge(poi, poi, event.name, PAUSE, conditions, None)
+                yield self._edge(poi, poi, names.event(event.name), PAUSE, conditions, None)
         if event.location is None:
             for a, b in ways:
                 here = names.going(a, b)
                 conditions = self._conditions(event, codes.going(b, a), Value("way", a, b))
                 if conditions is not None:
                     guard = Guard((ClockBound(self.clock, ">", 0),), conditions)
-                    yield Edge(here, here, guard, Sync(event.name, sends=True), controllable=self.agent.controllable)
+                    does = Sync(names.event(event.name), sends=True)
+                    yield Edge(here, here, guard, does, controllable=self.agent.controllable)
 
     def _conditions(self, event: Event, company_at: int, where: Value) -> Optional[Tuple[Clause, ...]]:
         """What has to hold when the agent, which is there, does the event; None: that it cannot."""

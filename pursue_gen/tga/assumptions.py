@@ -7,12 +7,13 @@ A mission in which an assumption has been broken goes on with 0 in it, and plans
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Callable, List, Mapping, Optional, Tuple
+from typing import Callable, Dict, List, Mapping, Optional, Tuple
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Clauses, Value, clauses_of
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import AboutOne, AtMost, Leaves, NeverAt, NeverHolds, Scenario, Waits
+from pursue_gen.language.symbols import Role
 from pursue_gen.tga.agents import PAUSE
 from pursue_gen.tga.changes import Change, beginning, setting_off, states_set
 from pursue_gen.tga.conditions import Conditions
@@ -75,15 +76,16 @@ def _never_holds(
         {who: frozenset(value for value in values if _ahead(value) in values) for who, values in clause.items()}
         for clause in clauses_of(assumption.condition, domains, False)
     )
-    ways = {names.going(a, b): setting_off(name, a, b) for way in scenario.connections for a, b in way.directions}
-    works = {
+    directions = (way for connection in scenario.connections for way in connection.directions)
+    ways: Dict[str, Change] = {names.going(*way): setting_off(name, *way) for way in directions}
+    works: Dict[str, Change] = {
         names.doing(value.what, value.where): beginning(name, value.what, value.where, scenario, domains)
         for value in domains.of(name)
         if value.kind == "doing"
     }
 
     def edges(edge: Edge) -> List[Edge]:
-        if edge.sync is None or not edge.sync.sends or (names.is_under_way(edge.source) and edge.target != edge.source):
+        if edge.sync is None or not edge.sync.sends or edge.is_end:
             return [edge]
         change = Change(states_set(edge.sync.channel, scenario))
         if edge.source != edge.target:
@@ -163,12 +165,12 @@ def _leaves(automaton: Automaton, number: int, assumption: Leaves) -> Automaton:
     )
 
     def edges(edge: Edge) -> List[Edge]:
-        if edge.target == place and names.is_going(edge.source):
+        if edge.target == place and edge.leaves is Role.WAY:
             return [_with(edge, reset=clock)]
         if edge.sync is not None and not edge.sync.sends:
             # Whoever takes part in what another agent does is kept until that ends; its time begins anew then.
             return [_with(edge, reset=clock)] if edge.target == place else [edge]
-        if edge.source != place or names.is_going(edge.target):
+        if edge.source != place or edge.enters is Role.WAY:
             return [edge]
         lasts = 0 if edge.target == place else takes[edge.target]
         in_time = _with(edge, bound=ClockBound(clock, "<", exact(most - PAUSE - lasts)))
@@ -179,7 +181,7 @@ def _leaves(automaton: Automaton, number: int, assumption: Leaves) -> Automaton:
 
 def _never_at(automaton: Automaton, number: int, assumption: NeverAt) -> Automaton:
     place = assumption.place.name
-    ways = {edge.source for edge in automaton.edges if edge.target == place and names.is_going(edge.source)}
+    ways = {edge.source for edge in automaton.edges if edge.target == place and edge.leaves is Role.WAY}
     return _each(automaton, lambda edge: [_when_broken(edge, number) if edge.target in ways else edge])
 
 

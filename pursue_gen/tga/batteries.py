@@ -31,7 +31,7 @@ def powered(automaton: Automaton, scenario: Scenario) -> Automaton:
 def _with_battery(automaton: Automaton, scenario: Scenario, battery: Battery) -> Automaton:
     uses: Dict[str, int] = {names.going(*way): use for way, use in movements_use(scenario, battery).items()}
     uses.update((names.doing(*action), use) for action, use in actions_use(scenario, battery).items())
-    gains = {names.doing(*action): gain for action, gain in recharges(scenario, battery).items()}
+    gains: Dict[str, int] = {names.doing(*action): gain for action, gain in recharges(scenario, battery).items()}
     possible = levels(scenario, battery)
 
     def edges(edge: Edge) -> List[Edge]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Iterator, Tuple
 
-from pursue_gen.language.network_names import count, rule_turn
+from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Event, Scenario
 from pursue_gen.tga.network import Automaton, Edge, Location, Sync
 from pursue_gen.tga.rules import Turns
@@ -17,10 +17,11 @@ def counted(scenario: Scenario) -> Iterator[Tuple[Event, int]]:
 
 def count_automaton(event: Event, most: int) -> Tuple[Automaton, Turns]:
     """The automaton that counts an event, and at which counts it can happen; like a rule that has no next round."""
-    name = count(event.name)
+    name = names.count(event.name)
     places = [f"{name}_{number}" for number in range(most + 1)]
+    begins, times = Sync(names.event(event.name), sends=False), names.times(event.name)
     edges = tuple(
-        Edge(before, after, sync=Sync(event.name, sends=False), assign=((rule_turn(name), number),))
+        Edge(before, after, sync=begins, assign=((times, number),))
         for number, (before, after) in enumerate(zip(places, places[1:]), start=1)
     )
     locations = tuple(Location(place, named=False) for place in places)

@@ -6,10 +6,10 @@ from dataclasses import replace
 from typing import Dict, Mapping, Tuple
 
 from pursue_gen.diagnostics import error
-from pursue_gen.language.network_names import is_under_way
 from pursue_gen.language.numbers import exact
+from pursue_gen.language.symbols import UNDER_WAY
 from pursue_gen.outcomes import Invalid
-from pursue_gen.tga.network import Automaton, ClockBound, Location, Network, is_end, with_controllability
+from pursue_gen.tga.network import Automaton, ClockBound, Location, Network, with_controllability
 
 
 def ends_reported(network: Network, slack: Mapping[str, int]) -> Network:
@@ -49,7 +49,7 @@ def _sharing(network: Network) -> Mapping[str, Tuple[str, ...]]:
     sharing: Dict[str, Tuple[str, ...]] = {}
     for automaton in network.automata:
         for edge in automaton.edges:
-            if is_end(edge) and edge.sync is not None and not edge.sync.sends:
+            if edge.is_end and edge.sync is not None and not edge.sync.sends:
                 sharing[edge.source] = (*sharing.get(edge.source, ()), automaton.name)
     return sharing
 
@@ -57,7 +57,7 @@ def _sharing(network: Network) -> Mapping[str, Tuple[str, ...]]:
 def is_agent(automaton: Automaton) -> bool:
     """True for the automaton of an agent: it sends, or it can be on its way or at work."""
     return any(edge.sync is not None and edge.sync.sends for edge in automaton.edges) or any(
-        is_under_way(location.name) for location in automaton.locations
+        location.role in UNDER_WAY for location in automaton.locations
     )
 
 
@@ -65,13 +65,13 @@ def _reported(automaton: Automaton, slack: Mapping[str, int]) -> Automaton:
     """`slack`: by which each of its locations may be left later."""
     if not is_agent(automaton):
         return automaton
-    edges = tuple(with_controllability(edge, edge.controllable and not is_end(edge)) for edge in automaton.edges)
+    edges = tuple(with_controllability(edge, edge.controllable and not edge.is_end) for edge in automaton.edges)
     locations = tuple(_late(location, slack[location.name]) for location in automaton.locations)
     return replace(automaton, locations=locations, edges=edges)
 
 
 def _late(location: Location, slack: int) -> Location:
-    if not is_under_way(location.name):
+    if location.role not in UNDER_WAY:
         return location
     bounds = tuple(ClockBound(bound.clock, bound.op, exact(bound.bound + slack)) for bound in location.invariant)
     return replace(location, invariant=bounds)

@@ -11,10 +11,10 @@ import enum
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Dict, FrozenSet, Optional, Tuple
+from typing import Dict, FrozenSet, Mapping, Optional, Tuple
 
-from pursue_gen.language.network_names import is_under_way
 from pursue_gen.language.numbers import Number
+from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
 
 
 @dataclass(frozen=True)
@@ -95,6 +95,26 @@ class Edge:
     def _hash(self) -> int:
         return hash((self.source, self.target, self.guard, self.sync, self.assign, self.resets, self.controllable))
 
+    @property
+    def leaves(self) -> Role:
+        """The role of its source."""
+        return role_of(self.source)
+
+    @property
+    def enters(self) -> Role:
+        """The role of its target."""
+        return role_of(self.target)
+
+    @property
+    def is_end(self) -> bool:
+        """True for the end of a movement or an action."""
+        return self.leaves in UNDER_WAY and self.source != self.target
+
+    @property
+    def sets_off(self) -> bool:
+        """True for the beginning of a movement."""
+        return self.enters is Role.WAY and self.source != self.target
+
     @cached_property
     def variables(self) -> Tuple[str, ...]:
         """The variables that it tests or sets, each once."""
@@ -109,6 +129,11 @@ class Location:
     name: str
     invariant: Tuple[ClockBound, ...] = ()
     named: bool = True
+
+    @property
+    def role(self) -> Role:
+        """What being there means."""
+        return role_of(self.name)
 
 
 @dataclass(frozen=True)
@@ -154,6 +179,11 @@ class Network:
         bounds += [bound for a in self.automata for edge in a.edges for bound in edge.guard.clocks]
         return frozenset((*(bound.bound for bound in bounds), *(constraint.bound for constraint in self.start)))
 
+    @cached_property
+    def places(self) -> Mapping[Tuple[str, str], str]:
+        """By automaton and text the name of each location, which knows its role: for those who have the text alone."""
+        return {(a.name, place.name): place.name for a in self.automata for place in a.locations}
+
     def automaton(self, name: str) -> Automaton:
         """The automaton of that name. Raises KeyError."""
         for automaton in self.automata:
@@ -181,10 +211,15 @@ class Objective:
     goal: Tuple[Tuple[str, str], ...] = ()
     bad: Tuple[Tuple[str, str], ...] = ()
 
+    @property
+    def reaches(self) -> bool:
+        """True if there is a goal to reach; else what is bad is to be kept from for ever."""
+        return self.kind is not Kind.SAFETY
 
-def is_end(edge: Edge) -> bool:
-    """True for the end of a movement or an action: the edge leaves a `going_…` or `doing_…` location."""
-    return edge.source != edge.target and is_under_way(edge.source)
+    @property
+    def avoids(self) -> bool:
+        """True if there is something bad."""
+        return self.kind is not Kind.REACH
 
 
 def with_controllability(edge: Edge, controllable: bool) -> Edge:

@@ -14,11 +14,13 @@ from pursue_gen.language.scenario import (
     NeverWith,
     Patrol,
     Reach,
+    Ref,
     Respond,
     Safety,
     Scenario,
     StatedObjective,
 )
+from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Objective, Sync, Test
@@ -26,15 +28,13 @@ from pursue_gen.tga.patrols import patrol_automaton
 from pursue_gen.tga.positions import Positions
 from pursue_gen.tga.responses import respond_automaton
 
-_START, _UNLOCKED, _WIN = "initial_location", "unlocked", "win"
-
 Happened = Mapping[str, str]
 """From an event's name to the channel that says that it has happened."""
 
 
 def scenario_objective(scenario: Scenario) -> Objective:
     """What the scenario's controller wants. Raises PursueError where it has no objective."""
-    goal = tuple((names.reach_objective(k), _WIN) for k, _ in enumerate(scenario.reach))
+    goal = tuple((names.reach_objective(k), names.WIN) for k, _ in enumerate(scenario.reach))
     bad = [(names.safety_objective(k), names.LOSE) for k, _ in enumerate(scenario.safety)]
     bounded = (k for k, reach in enumerate(scenario.reach) if reach.within is not None)
     bad += [(names.reach_objective(k), names.LATE) for k in bounded]
@@ -53,12 +53,11 @@ def stated(scenario: Scenario) -> Dict[str, StatedObjective]:
     return found
 
 
-def clock_of(scenario: Scenario, automaton: str) -> str:
+def clock_of(automaton: str) -> Symbol:
     """The clock of an objective's automaton."""
-    order = list(stated(scenario))
-    number = order.index(automaton)
-    count = len(scenario.safety)
-    return names.safety_clock(number) if number < count else names.reach_clock(number - count)
+    symbol = Symbol.of(automaton)
+    clock = names.safety_clock if symbol.role is Role.SAFETY else names.reach_clock
+    return clock(int(symbol.parts[0]) - 1)
 
 
 def unlocking(scenario: Scenario) -> Tuple[Optional[Sync], ...]:
@@ -82,8 +81,8 @@ def reach_automaton(reach: Reach, happened: Happened, number: int = 0, unlocking
     passed = (ClockBound(clock, ">", reach.after),) if unlocking is None or unlocking.sends else ()
     limit = () if reach.within is None else (ClockBound(clock, "<=", reach.within),)
     count = len(reach.events)
-    places = [Location(_START, limit), Location(_UNLOCKED, limit, named=False)]
-    edges = [Edge(_START, _UNLOCKED, Guard(passed), unlocking)]
+    places = [Location(names.START, limit), Location(names.UNLOCKED, limit, named=False)]
+    edges = [Edge(names.START, names.UNLOCKED, Guard(passed), unlocking)]
     for size in range(count):
         for done in combinations(range(count), size):
             places += [Location(_done(done, count), limit)] if done else []
@@ -92,19 +91,20 @@ def reach_automaton(reach: Reach, happened: Happened, number: int = 0, unlocking
                 edges.append(Edge(_done(done, count), _done((*done, k), count), sync=sync))
     late = [] if reach.within is None else [Location(names.LATE)]
     edges += [Edge(place.name, names.LATE) for place in places for _ in late]
-    return Automaton(names.reach_objective(number), (*places, Location(_WIN), *late), _START, tuple(edges))
+    return Automaton(names.reach_objective(number), (*places, Location(names.WIN), *late), names.START, tuple(edges))
 
 
 def _done(events: Sequence[int], count: int) -> str:
     """The location in which so many of the events have happened, named by their numbers from 1."""
     if len(events) == count:
-        return _WIN
-    return "_".join(["did", *(str(k + 1) for k in sorted(events))]) if events else _UNLOCKED
+        return names.WIN
+    return names.did(*(k + 1 for k in sorted(events))) if events else names.UNLOCKED
 
 
-def events_done(location: str) -> Tuple[int, ...]:
-    """The numbers, from 0, of the events that have happened in a location of a reach objective's automaton."""
-    return tuple(int(k) - 1 for k in location.split("_")[1:]) if location.startswith("did_") else ()
+def events_done(reach: Reach, location: str) -> Tuple[Ref, ...]:
+    """The events that have happened in a location of a reach objective's automaton, some and not all."""
+    done = Symbol.of(location)
+    return tuple(reach.events[int(k) - 1] for k in done.parts) if done.role is Role.DID else ()
 
 
 def safety_automaton(

@@ -9,14 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Iterable, List, Optional, Set, Tuple
 
-from pursue_gen.language.network_names import is_going
+from pursue_gen.language.symbols import Role
 from pursue_gen.tga.network import Automaton, Edge, Location, Network, Sync
 from pursue_gen.tga.part import beside
 
-OF = "_passage"
-"""Stands behind the place in the name of its automaton."""
-
-_AWAITS, _HAS, _NOBODY = "awaits", "has", "awaits_nobody"
+_NOBODY = Role.NOBODY()
 
 
 @dataclass(frozen=True)
@@ -33,32 +30,16 @@ class Passage:
     def name(self) -> str:
         """Its automaton's name."""
         alone = f"_of_{self.robots[0]}" if len(set(self.robots)) == 1 else ""
-        return f"{self.place}{OF}{alone}"
+        return Role.PASSAGE(self.place, alone)
 
     def awaits(self, visit: int) -> str:
         """The location in which the robot of this visit (from 0) may set off for the place; behind the last visit:
         nobody does."""
-        return f"{_AWAITS}_{self.robots[visit]}_{visit + 1}" if visit < len(self.robots) else _NOBODY
+        return Role.AWAITS(self.robots[visit], visit + 1) if visit < len(self.robots) else _NOBODY
 
     def has(self, visit: int) -> str:
         """The location in which the robot of this visit is there, or on its way there."""
-        return f"{_HAS}_{self.robots[visit]}_{visit + 1}"
-
-
-def words_of(network: Network) -> Dict[Tuple[str, str], str]:
-    """What the locations of all passages in a network mean, in words, by automaton and location."""
-    words: Dict[Tuple[str, str], str] = {}
-    agents = {automaton.name for automaton in network.automata}
-    for automaton in network.automata:
-        for place in automaton.locations if OF in automaton.name else ():
-            what, _, rest = place.name.partition("_")
-            robot, _, visit = rest.rpartition("_")
-            if place.name == _NOBODY:
-                words[automaton.name, place.name] = "nobody comes any more"
-            elif robot in agents:
-                phrase = "next is" if what == _AWAITS else "taken by"
-                words[automaton.name, place.name] = f"{phrase} {robot}, visit {visit}"
-    return words
+        return Role.HAS(self.robots[visit], visit + 1)
 
 
 def with_passages(network: Network, passages: Iterable[Passage]) -> Network:
@@ -107,7 +88,7 @@ def _channels(robot: Automaton, place: str) -> Tuple[List[str], List[str]]:
     entering: Dict[str, None] = {}
     leaving: Dict[str, None] = {}
     for edge in robot.edges:
-        if edge.sync is not None and edge.sync.sends and is_going(edge.target) and edge.source != edge.target:
+        if edge.sync is not None and edge.sync.sends and edge.sets_off:
             if edge.source == place:
                 leaving[edge.sync.channel] = None
             elif ends.get(edge.target) == {place}:

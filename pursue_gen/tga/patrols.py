@@ -8,6 +8,7 @@ from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Domains
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.language.scenario import Agent, Patrol, Respond, Scenario
+from pursue_gen.language.symbols import Role
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.positions import Positions
 from pursue_gen.tga.responses import awaited_by
@@ -47,7 +48,7 @@ def turns(scenario: Scenario) -> Tuple[Tuple[str, int], ...]:
 def _turn(patrol: Patrol, scenario: Scenario) -> str:
     """The variable of a patrol in order: it has the name of the first automaton of its statement."""
     first = next(number for number, each in enumerate(scenario.safety) if each.span == patrol.span)
-    return names.rule_turn(names.safety_objective(first))
+    return Role.SAFETY_TURN(names.safety_objective(first))
 
 
 def _begun(patrol: Patrol, scenario: Scenario) -> int:

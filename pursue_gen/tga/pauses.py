@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import AbstractSet, Collection, List, Tuple
 
+from pursue_gen.language.symbols import Symbol
 from pursue_gen.tga.network import Automaton, Edge, Location, Network, Objective
 from pursue_gen.tga.part import start_of
 
@@ -77,7 +78,7 @@ def _counting(automaton: Automaton, clocks: AbstractSet[str], times: int) -> Aut
         return automaton
 
     def after(name: str, count: int) -> str:
-        return f"{name} {count}" if count else name
+        return Symbol.of(name).called(f"{name} {count}") if count else name
 
     locations: List[Location] = []
     edges: List[Edge] = []

@@ -72,8 +72,8 @@ def _moves(what: Union[Ref, Condition], scenario: Scenario, domains: Domains) ->
     events = {event.name: event for event in scenario.events}
     found: _Moves = {}
     if isinstance(what, Ref):
-        channel = names.has_happened(events[what.name])
-        return {channel: happening(channel, scenario, domains)}
+        happened = names.has_happened(events[what.name])
+        return {happened: happening(happened, scenario, domains)}
     for atom in atoms(what):
         if isinstance(atom, (At, OnWay)):
             for agent in (agent for agent in scenario.agents if agent.name in domains.among(atom.who)):
@@ -81,9 +81,9 @@ def _moves(what: Union[Ref, Condition], scenario: Scenario, domains: Domains) ->
         elif isinstance(atom, Holds):
             (state,) = (state for state in scenario.states if state.name == atom.state.name)
             for ref in (*state.true_if, *state.false_if):
-                found[ref.name] = happening(ref.name, scenario, domains)
+                found[names.event(ref.name)] = happening(ref.name, scenario, domains)
         else:
-            for channel in (atom.event.name, names.done(atom.event.name)):
+            for channel in (names.event(atom.event.name), names.done(atom.event.name)):
                 found[channel] = happening(channel, scenario, domains)
     return found
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import AbstractSet, Dict, List, Mapping, Tuple
 
-from pursue_gen.language.network_names import done, rule_turn
+from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Both, Choice, Ref, Rule, RuleBody, Sequence
 from pursue_gen.tga.network import Automaton, Edge, Location, Sync
 
@@ -34,7 +34,7 @@ def rule_automaton(rule: Rule, lasting: AbstractSet[str]) -> Tuple[Automaton, Tu
     layout.lay(rule.body, "", initial, initial)
     numbers = {name: number for number, name in enumerate(layout.locations)}
     edges = tuple(
-        Edge(source, target, sync=Sync(channel, sends=False), assign=((rule_turn(rule.name), numbers[target]),))
+        Edge(source, target, sync=Sync(channel, sends=False), assign=((names.rule_turn(rule.name), numbers[target]),))
         for source, target, channel in layout.steps
     )
     turns: Dict[str, List[int]] = {}
@@ -43,7 +43,7 @@ def rule_automaton(rule: Rule, lasting: AbstractSet[str]) -> Tuple[Automaton, Tu
         if numbers[source] not in numbers_of_turn:
             numbers_of_turn.append(numbers[source])
     locations = tuple(Location(name, named=False) for name in layout.locations)
-    automaton = Automaton(rule.name, locations, initial, edges)
+    automaton = Automaton(names.rule(rule.name), locations, initial, edges)
     return automaton, {channel: tuple(sorted(numbers)) for channel, numbers in turns.items()}
 
 
@@ -107,11 +107,11 @@ class _Layout:
 
     def _event(self, event: str, way: str, source: str, target: str) -> None:
         if event not in self.lasting:
-            self.steps.append((source, target, event))
+            self.steps.append((source, target, names.event(event)))
             return
         while_doing = f"{self._leaf(way)}_doing_{event}"
         self.locations.append(while_doing)
-        self.steps += [(source, while_doing, event), (while_doing, target, done(event))]
+        self.steps += [(source, while_doing, names.event(event)), (while_doing, target, names.done(event))]
 
     def _part(self, way: str) -> str:
         return f"{self.rule}{len(way)}{way}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Dict, Optional, Sequence
 
-from pursue_gen.language.network_names import STATES, state_value
+from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import State
 from pursue_gen.tga.network import Automaton, Edge, Location, Sync
 
@@ -20,9 +20,9 @@ def states_automaton(states: Sequence[State]) -> Optional[Automaton]:
     for state in states:
         for value, events in ((1, state.true_if), (0, state.false_if)):
             for event in events:
-                assigned.setdefault(event.name, {})[state_value(state.name)] = value
+                assigned.setdefault(event.name, {})[names.state_value(state.name)] = value
     edges = tuple(
-        Edge(_BASE, _BASE, sync=Sync(event, sends=False), assign=tuple(values.items()))
+        Edge(_BASE, _BASE, sync=Sync(names.event(event), sends=False), assign=tuple(values.items()))
         for event, values in assigned.items()
     )
-    return Automaton(STATES, (Location(_BASE),), _BASE, edges) if edges else None
+    return Automaton(names.STATES, (Location(_BASE),), _BASE, edges) if edges else None

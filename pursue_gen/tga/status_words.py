@@ -8,16 +8,12 @@ from typing import Dict, Iterator, List, Mapping, Tuple
 from pursue_gen.language import network_names as names
 from pursue_gen.language.batteries import levels
 from pursue_gen.language.scenario import AtMost, Patrol, Reach, Respond, Scenario, StatedObjective
+from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.language.wording import answer_words, assumption_words, events_words, listed, objective_text
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Automaton, Network
 from pursue_gen.tga.objectives import events_done, stated
 from pursue_gen.tga.own_turns import own_turns
-from pursue_gen.tga.passages import OF, words_of
-from pursue_gen.tga.tours import robot_of
-from pursue_gen.tga.tours import words_of as tour_words
-
-_END = names.done("")
 
 
 @dataclass(frozen=True)
@@ -51,11 +47,7 @@ def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
     for battery in scenario.batteries:
         texts = {str(level): f"{level} of {battery.capacity}" for level in levels(scenario, battery)}
         found.append(Status(names.level(battery.agent.name), f"battery of {battery.agent.shown}", texts))
-    words = {**words_of(network), **tour_words(network)}
-    for automaton in network.automata:
-        if (automaton.name, automaton.initial) in words:
-            texts = {place.name: words[automaton.name, place.name] for place in automaton.locations}
-            found.append(Status(automaton.name, _shown_of(scenario, automaton.name), texts))
+    found += [Status(name, _shown_of(scenario, name), texts) for name, texts in own_words(network).items()]
     found += _assumptions(scenario)
     for name, objective in stated(scenario).items():
         if isinstance(objective, Patrol) and objective.order and names.rule_turn(name) in variables:
@@ -68,23 +60,30 @@ def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
     return tuple(found)
 
 
+def own_words(network: Network) -> Dict[str, Dict[str, str]]:
+    """What the locations of a strategy's own automata mean, orders of passage and tours, in words, by automaton."""
+    own = (each for each in network.automata if role_of(each.name) in (Role.PASSAGE, Role.TOUR))
+    return {each.name: {place.name: Symbol.of(place.name).meaning for place in each.locations} for each in own}
+
+
 def _shown_of(scenario: Scenario, automaton: str) -> str:
     """What an automaton of a strategy's own is called: by the place of an order of passage, or the robot of a tour."""
-    place, found, _ = automaton.partition(OF)
-    return scenario.shown(place) if found else f"tour of {scenario.shown(robot_of(automaton))}"
+    symbol = Symbol.of(automaton)
+    return "tour of " * (symbol.role is Role.TOUR) + scenario.shown(symbol.parts[0])
 
 
 def turn_words(scenario: Scenario, automaton: Automaton, location: str) -> str:
     """What a rule waits for in a location, as in `next: load or wait`."""
     channels = _channels(automaton, location, leaving=True)
-    shown = (f"the end of {_event(scenario, c)}" if c.endswith(_END) else _event(scenario, c) for c in channels)
+    ends = (role_of(channel) is Role.END for channel in channels)
+    shown = ("the end of " * is_end + _event(scenario, channel) for channel, is_end in zip(channels, ends))
     return "next: " + " or ".join(shown)
 
 
 def _turn(scenario: Scenario, automaton: Automaton, location: str) -> str:
     """What has been done last, and what is next; or what goes on."""
     following = _channels(automaton, location, leaving=True)
-    if following and all(channel.endswith(_END) for channel in following):
+    if following and all(role_of(channel) is Role.END for channel in following):
         return " and ".join(f"{_event(scenario, channel)} goes on" for channel in following)
     before = [_event(scenario, channel) for channel in _channels(automaton, location, leaving=False)]
     done = f"{before[0]} done, " if len(before) == 1 and location != automaton.initial else ""
@@ -99,7 +98,7 @@ def _channels(automaton: Automaton, location: str, leaving: bool) -> List[str]:
 
 def _event(scenario: Scenario, channel: str) -> str:
     """What people read for the event of a channel."""
-    return scenario.shown(channel[: -len(_END)] if channel.endswith(_END) else channel)
+    return scenario.shown(Symbol.of(channel).parts[0])
 
 
 def _left(number: int) -> str:
@@ -120,15 +119,14 @@ def _assumptions(scenario: Scenario) -> Iterator[Status]:
 
 def _duty(objective: StatedObjective, location: str) -> str:
     """What an objective is at in a location of its automaton."""
-    texts: Dict[str, str] = {names.IDLE: "kept", names.AT_RISK: "a deadline is running", names.LOSE: "broken"}
+    texts = {Role.IDLE: "kept", Role.AT_RISK: "a deadline is running", Role.LOSE: "broken"}
     if isinstance(objective, Reach):
-        done = [objective.events[number].shown for number in events_done(location)]
-        found = f"{listed(done)} done" if done else "not counting yet"
-        texts = {"win": "reached", "unlocked": f"{events_words(objective)} to be done", names.LATE: "too late"}
-        return texts.get(location, found)
-    if isinstance(objective, Respond):
-        texts.update({names.IDLE: "nothing is due", names.AT_RISK: f"{answer_words(objective)} is due"})
+        done = [ref.shown for ref in events_done(objective, location)]
+        texts = {Role.START: "not counting yet", Role.UNLOCKED: f"{events_words(objective)} to be done"}
+        texts.update({Role.WIN: "reached", Role.LATE: "too late", Role.DID: f"{listed(done)} done" if done else ""})
+    elif isinstance(objective, Respond):
+        texts.update({Role.IDLE: "nothing is due", Role.AT_RISK: f"{answer_words(objective)} is due"})
     elif isinstance(objective, Patrol):
         who = "a robot" if objective.who.agent is None else objective.who.agent.shown
-        texts.update({names.IDLE: f"{who} is there", names.AT_RISK: "a visit is due"})
-    return texts.get(location, location)
+        texts.update({Role.IDLE: f"{who} is there", Role.AT_RISK: "a visit is due"})
+    return texts.get(role_of(location), location)

@@ -9,14 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Iterable, List, Optional, Set, Tuple
 
-from pursue_gen.language.network_names import LOSE, is_going
+from pursue_gen.language.symbols import Role
 from pursue_gen.tga.network import Automaton, Edge, Location, Network, Sync
 from pursue_gen.tga.part import beside
 
-OF = "_tour"
-"""Stands behind the robot in the name of its automaton."""
-
-_STOP = "stop_"
+OFF = Role.OFF()
+"""The location in which a robot has left its tour: it is one to avoid, as those where a promise is broken."""
 
 
 @dataclass(frozen=True)
@@ -31,34 +29,16 @@ class Tour:
     @property
     def name(self) -> str:
         """Its automaton's name."""
-        return self.robot + OF
+        return Role.TOUR(self.robot)
 
     def at(self, stop: int) -> str:
         """The location in which the robot is at this stop (from 0), or on its way there."""
-        return f"{_STOP}{stop + 1}"
+        return Role.STOP(stop + 1, len(self.stops))
 
     def after(self, stop: int) -> Optional[int]:
         """The number of the stop behind this one; None where it stays."""
         following = stop + 1 if stop + 1 < len(self.stops) else self.again
         return following if following < len(self.stops) else None
-
-
-def robot_of(automaton: str) -> str:
-    """The robot of a tour's automaton."""
-    return automaton[: -len(OF)]
-
-
-def words_of(network: Network) -> Dict[Tuple[str, str], str]:
-    """What the locations of all tours in a network mean, in words, by automaton and location."""
-    agents = {automaton.name for automaton in network.automata}
-    words: Dict[Tuple[str, str], str] = {}
-    for automaton in network.automata:
-        if automaton.name.endswith(OF) and robot_of(automaton.name) in agents:
-            stops = [place.name for place in automaton.locations if place.name != LOSE]
-            for number, name in enumerate(stops, start=1):
-                words[automaton.name, name] = f"stop {number} of {len(stops)}"
-            words[automaton.name, LOSE] = "off the tour"
-    return words
 
 
 def with_tours(network: Network, tours: Iterable[Tour]) -> Network:
@@ -87,10 +67,10 @@ def tour_automaton(network: Network, tour: Tour) -> Optional[Automaton]:
         if after is not None and following not in ways.get(place, {}):
             return None
         for other, edge in ways.get(place, {}).items():
-            target = LOSE if after is None or other != following else tour.at(after)
+            target = OFF if after is None or other != following else tour.at(after)
             edges.append(Edge(tour.at(stop), target, sync=Sync(_channel(edge), sends=False)))
     stops = tuple(Location(tour.at(stop)) for stop in range(len(tour.stops)))
-    return Automaton(tour.name, (*stops, Location(LOSE)), tour.at(0), tuple(edges))
+    return Automaton(tour.name, (*stops, Location(OFF)), tour.at(0), tuple(edges))
 
 
 def ways_of(robot: Automaton) -> Dict[str, Dict[str, Edge]]:
@@ -103,7 +83,7 @@ def ways_of(robot: Automaton) -> Dict[str, Dict[str, Edge]]:
     ways: Dict[str, Dict[str, Edge]] = {}
     several: Set[Tuple[str, str]] = set()
     for edge in robot.edges:
-        if edge.sync is None or not edge.sync.sends or not is_going(edge.target) or is_going(edge.source):
+        if edge.sync is None or not edge.sync.sends or edge.enters is not Role.WAY or edge.leaves is Role.WAY:
             continue
         for place in ends.get(edge.target, set()):
             if place in ways.setdefault(edge.source, {}) or len(ends[edge.target]) > 1:

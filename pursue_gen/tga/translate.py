@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import Mapping, Tuple
+from typing import List, Mapping, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, error, warning
 from pursue_gen.language import network_names as names
@@ -79,7 +79,7 @@ def _variables(scenario: Scenario, pois: Mapping[str, int]) -> Tuple[Tuple[str, 
     variables = [(names.rule_turn(rule.name), 0) for rule in scenario.rules if not rule.each]
     variables += [(names.agent_position(agent.name), pois[agent.location.name]) for agent in scenario.agents]
     variables += [(names.state_value(state.name), int(state.initially)) for state in scenario.states]
-    variables += [(names.rule_turn(names.count(event.name)), 0) for event, _ in counted(scenario)]
+    variables += [(names.times(event.name), 0) for event, _ in counted(scenario)]
     return tuple(variables)
 
 
@@ -89,7 +89,7 @@ def _busy(around: Surroundings) -> Tuple[Tuple[str, int], ...]:
 
 
 def _channels(scenario: Scenario) -> Tuple[str, ...]:
-    channels = [
+    channels: List[str] = [
         names.movement(agent.name, a, b)
         for agent in scenario.agents
         if agent.mobile is not None
@@ -97,7 +97,7 @@ def _channels(scenario: Scenario) -> Tuple[str, ...]:
         for a, b in connection.directions
     ]
     for event in scenario.events:
-        channels += [event.name] if event.duration is None else [event.name, names.done(event.name)]
+        channels += [names.event(event.name), *([names.done(event.name)] if event.duration is not None else [])]
     unlocks = (sync.channel for sync in unlocking(scenario) if sync is not None and sync.sends)
     return (*channels, *arrivals(scenario), *unlocks)
 

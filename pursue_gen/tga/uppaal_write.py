@@ -14,7 +14,7 @@ from xml.dom import minidom
 
 from pursue_gen.diagnostics import error
 from pursue_gen.outcomes import Invalid
-from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Network, Objective
+from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Network, Objective
 from pursue_gen.tga.scale import common_denominator, scaled
 from pursue_gen.tga.uppaal_words import renamed, uppaal_names
 
@@ -67,9 +67,9 @@ def _formula(objective: Objective) -> str:
     goal = " and ".join(map(".".join, objective.goal))
     goal = f"({goal})" if len(objective.goal) > 1 else goal
     bad = " or ".join(map(".".join, objective.bad))
-    if objective.kind is Kind.REACH:
+    if not objective.avoids:
         return f"control: A<> {goal}"
-    if objective.kind is Kind.SAFETY:
+    if not objective.reaches:
         return f"control: A[] not({bad})"
     return f"control: A[ not({bad}) U {goal} ]"
 

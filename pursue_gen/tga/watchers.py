@@ -11,11 +11,9 @@ from dataclasses import dataclass, replace
 from typing import AbstractSet, Iterable, Iterator, Optional, Set, Tuple
 
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
+from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Automaton, Clause, Edge, Guard, Location, Network
-
-FOR = "_for_"
-"""Stands between the objective and the robots in the name of a watcher."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +26,7 @@ class Watcher:
     @property
     def name(self) -> str:
         """Its automaton's name."""
-        return self.objective + FOR + "_".join(self.team)
+        return Symbol(f"{self.objective}_for_{'_'.join(self.team)}", Role.WATCHER, (self.objective, *self.team))
 
     @property
     def clock(self) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pursue_gen.language.network_names import is_reach_objective, is_under_way
+from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
 from pursue_gen.tga.network import Edge
 
 
@@ -14,6 +14,6 @@ def event_word(automaton: str, edge: Edge) -> str:
     """
     if edge.sync is not None:
         return edge.sync.channel
-    counts = is_reach_objective(automaton) and not is_under_way(edge.source)
+    counts = role_of(automaton) is Role.REACH and edge.leaves not in UNDER_WAY
     going = "going_" if counts else ""  # as the thesis writes it: no agent is on its way
     return f"{automaton}_{going}{edge.source}2{edge.target}"

@@ -29,7 +29,7 @@ from pursue_gen import __version__
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.partition import SubStrategy
-from pursue_gen.tga.network import Kind, Objective, is_end
+from pursue_gen.tga.network import Objective
 from pursue_gen.workspace.machines import ONE_MACHINE, Machines, nodes_of
 from pursue_gen.workspace.spots import SPOT_DISTANCE, Table
 
@@ -93,7 +93,7 @@ def common(
     """The values that every template of a workspace has (but for `package` and `summary`)."""
     agents = [{"name": agent.name, "kind": kind_of(agent)} for agent in scenario.agents]
     first_moves = [command.moves[0] for sub in controllers for _, block in sub.blocks for command in block]
-    decided = {move.automaton for move in first_moves if is_end(move.edge)}
+    decided = {move.automaton for move in first_moves if move.edge.is_end}
     return {
         "scenario": scenario.name,
         "generator": __version__,
@@ -106,7 +106,7 @@ def common(
         "free_agents": [agent.name for agent in scenario.agents if not agent.controllable],
         "controllers": [sub.controller for sub in controllers],
         "reported": [agent.name for agent in scenario.agents if agent.name not in decided],
-        "reaches": objective.kind is not Kind.SAFETY,
+        "reaches": objective.reaches,
         "bringup": bringup_of(scenario),
         "time_unit": options.time_unit,
         "machines": [(node, options.machines.of(node)) for node in nodes_of([sub.controller for sub in controllers])],

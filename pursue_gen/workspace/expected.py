@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
-from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective, is_end
+from pursue_gen.tga.network import Automaton, Edge, Network, Objective
 from pursue_gen.tga.words import event_word
 from pursue_gen.workspace.model_file import places_data
 
@@ -24,7 +24,7 @@ def expected(
     """
     commanded = {word for words in commands.values() for word in words}
     data: Dict[str, Any] = {
-        "reach": objective.kind is not Kind.SAFETY,
+        "reach": objective.reaches,
         "bad": places_data(objective.bad),
         "nodes": sorted(nodes),
         "robots": dict(robots),
@@ -36,7 +36,7 @@ def expected(
 
 
 def _ends(network: Network) -> List[str]:
-    ends = (event_word(a.name, edge) for a in network.automata for edge in a.edges if is_end(edge))
+    ends = (event_word(a.name, edge) for a in network.automata for edge in a.edges if edge.is_end)
     return list(dict.fromkeys(ends))
 
 
@@ -54,6 +54,6 @@ def first_report(network: Network) -> Optional[str]:
         for edge in automaton.edges:
             open_ = all(any(values[t.variable] == t.value for t in clause) for clause in edge.guard.integers)
             reported = edge.sync is not None and edge.sync.sends and not edge.controllable
-            if reported and open_ and edge.source == places[automaton.name] and not is_end(edge):
+            if reported and open_ and edge.source == places[automaton.name] and not edge.is_end:
                 return f"{automaton.name}:{event_word(automaton.name, edge)}"
     return None

@@ -15,7 +15,6 @@ from pursue_gen.solving.answers import STATES
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.verdict import margin_text, margins
-from pursue_gen.tga.network import Kind
 from pursue_gen.workspace import Options, machines_for, write_workspace
 from pursue_gen.workspace.spots import SPOT_DISTANCE, Table, spots_in_one
 
@@ -74,7 +73,7 @@ def _guarantee(won: Solution) -> Optional[Fraction]:
 
     The same on every machine: the search counts states, and no limit in seconds ends it.
     """
-    if won.objective.kind is Kind.SAFETY:
+    if not won.objective.reaches:
         return None
     known = won.guarantee.worst if won.guarantee is not None else None
     worst = worst_case(won.network, won.objective, won.strategy, won.reaction, _STATES) if known is None else known

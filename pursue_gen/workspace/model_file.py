@@ -6,12 +6,11 @@ from fractions import Fraction
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.network_names import STATES
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.language.wording import assumption_words, objective_text
 from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
-from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Objective
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.words import event_word
@@ -29,7 +28,7 @@ def render(network: Network, objective: Objective, scenario: Scenario, reaction:
 
 def model_data(network: Network, objective: Objective, scenario: Scenario, reaction: Fraction) -> Dict[str, Any]:
     """The data of model.yaml, see `render`."""
-    kinds, partners = _kinds(scenario, objective), _partners(scenario)
+    partners = _partners(scenario)
     goal, bad = places_data(objective.goal), places_data(objective.bad)
     says = {**_says(scenario, objective), **_given_up(scenario)}
     data: Dict[str, Any] = {
@@ -38,7 +37,7 @@ def model_data(network: Network, objective: Objective, scenario: Scenario, react
         "reaction": number(reaction),
         "clocks": inline(network.clocks),
         "variables": inline(dict(network.variables)),
-        "automata": [_automaton(each, kinds.get(each.name) or _own_kind(each), partners) for each in network.automata],
+        "automata": [_automaton(each, _kind(each.name, scenario), partners) for each in network.automata],
         "objective": inline({"kind": objective.kind.value, "goal": goal, "bad": bad, **says}),
     }
     if scenario.labels:
@@ -74,20 +73,16 @@ def _given_up(scenario: Scenario) -> Dict[str, Any]:
     return {"given_up": texts} if texts else {}
 
 
-def _kinds(scenario: Scenario, objective: Objective) -> Dict[str, str]:
-    """automaton → kind, for all but the safety objectives'."""
-    kinds = {STATES: "states", **{name: "reach" for name, _ in objective.goal}}
-    kinds.update((rule.name, "rule") for rule in scenario.rules)
-    kinds.update((names.count(event.name), "rule") for event, _ in counted(scenario))
-    for agent in scenario.agents:
-        kinds[agent.name] = "robot" if agent.is_robot else "human" if agent.controllable else "agent"
-    return kinds
+_WATCHING = dict.fromkeys((Role.SAFETY, Role.WATCHER, Role.TOUR), "safety")
+_KINDS = {Role.STATES: "states", Role.REACH: "reach", **_WATCHING}
+"""By the role of an automaton its kind; all others but agents follow events as a rule does."""
 
 
-def _own_kind(automaton: Automaton) -> str:
-    """The kind of a safety objective's automaton, or of one that the strategy has beside the network's own: who watches
-    an objective is one, an order of passage follows events as a rule does."""
-    return "safety" if any(location.name == names.LOSE for location in automaton.locations) else "rule"
+def _kind(automaton: str, scenario: Scenario) -> str:
+    agent = next((agent for agent in scenario.agents if agent.name == automaton), None)
+    if agent is None:
+        return _KINDS.get(role_of(automaton), "rule")
+    return "robot" if agent.is_robot else "human" if agent.controllable else "agent"
 
 
 def _partners(scenario: Scenario) -> Dict[str, List[str]]:

@@ -13,11 +13,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.language import network_names as names
 from pursue_gen.partition import SubStrategy, partition
 from pursue_gen.partition.strategy_data import strategy_data
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Strategy
-from pursue_gen.tga.network import is_end
 from pursue_gen.tga.uppaal import read_network
 from tests.partition.games import AGENTS, QUICK, agent, game, joint_moves, random_strategies
 
@@ -39,7 +39,7 @@ def all_of(strategy: Strategy, ends: bool) -> "Counter[Given]":
         (block.state, command)
         for block in strategy.blocks
         for command in block.commands
-        if ends or not is_end(command.moves[0].edge)
+        if ends or not command.moves[0].edge.is_end
     )
 
 
@@ -127,6 +127,8 @@ def test_the_automata_of_several_objectives_belong_together_and_an_agent_of_such
     assert (everywhere.agents, everywhere.objectives) == (("bot1", "reachObj", "reachObj2"), ("reachObj", "reachObj2"))
     data = strategy_data(everywhere, Fraction(0))
     assert (data["format"], data["objectives"]) == (2, ["reachObj", "reachObj2"])
+    so_called = replace(second, name=names.agent("reachObj2"))
+    network = replace(network, automata=(*network.automata[:-1], so_called))
     subs = by_name(partition(strategy, network, (*AGENTS, agent("reachObj2"))))
     assert subs["controllerObj"].agents == ("reachObj",) and subs["controller_reachObj2"].objectives == ()
     assert "objectives" not in strategy_data(subs["controllerObj"], Fraction(0))

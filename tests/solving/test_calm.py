@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 
 from benchmarks.lab_scenarios import Size, lab_scenario
 from pursue_gen.language import load, parse
-from pursue_gen.language.network_names import AT_RISK, is_going
+from pursue_gen.language.network_names import AT_RISK
 from pursue_gen.language.scenario import Patrol, Respond, Scenario
+from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.outcomes import LimitHit, Lost, NotProven
 from pursue_gen.proof.checker import verify
 from pursue_gen.solving.answers import answers
@@ -92,7 +93,7 @@ class Watched(SimulatedMission):
         super().publish(state)
         if before is not None:
             for name, place in state.locations.items():
-                if is_going(place) and not is_going(before.locations[name]):
+                if role_of(place) is Role.WAY and role_of(before.locations[name]) is not Role.WAY:
                     self.departures.append((before, name))
 
     departures: List[Tuple[SystemState, str]]

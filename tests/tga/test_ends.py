@@ -9,7 +9,7 @@ import pytest
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.tga import ends_reported, translate
-from pursue_gen.tga.network import Network, is_end, with_controllability
+from pursue_gen.tga.network import Network, with_controllability
 from tests.tga.networks import scenario
 
 TEXT = """
@@ -38,11 +38,11 @@ def test_only_ends_change_hands() -> None:
         assert new.locations == old.locations
         agent = old.name in ("bot", "nurse", "patient")
         assert new.edges == tuple(
-            with_controllability(edge, edge.controllable and not (agent and is_end(edge))) for edge in old.edges
+            with_controllability(edge, edge.controllable and not (agent and edge.is_end)) for edge in old.edges
         )
     assert any(edge.controllable for edge in after.automaton("bot").edges)
     assert any(edge.controllable for edge in after.automaton("obj").edges)
-    assert not any(edge.controllable and is_end(edge) for edge in after.automaton("nurse").edges)
+    assert not any(edge.controllable and edge.is_end for edge in after.automaton("nurse").edges)
 
 
 def test_slack_lets_the_named_agents_be_late() -> None:

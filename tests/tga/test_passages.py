@@ -9,7 +9,8 @@ import pytest
 from pursue_gen.language import parse
 from pursue_gen.tga import translate
 from pursue_gen.tga.network import Network
-from pursue_gen.tga.passages import Passage, passage_automaton, with_passages, words_of
+from pursue_gen.tga.passages import Passage, passage_automaton, with_passages
+from pursue_gen.tga.status_words import own_words
 
 TEXT = """
 poi "a"
@@ -86,7 +87,7 @@ def test_visits_of_one_robot_have_an_automaton_of_their_own() -> None:
 
 
 def test_words() -> None:
-    words = words_of(with_passages(network(), [Passage("b", ("bot1", "bot2"))]))
-    assert words["b_passage", "awaits_bot1_1"] == "next is bot1, visit 1"
-    assert words["b_passage", "has_bot2_2"] == "taken by bot2, visit 2"
-    assert words["b_passage", "awaits_nobody"] == "nobody comes any more"
+    words = own_words(with_passages(network(), [Passage("b", ("bot1", "bot2"))]))["b_passage"]
+    assert words["awaits_bot1_1"] == "next is bot1, visit 1"
+    assert words["has_bot2_2"] == "taken by bot2, visit 2"
+    assert words["awaits_nobody"] == "nobody comes any more"

@@ -9,8 +9,8 @@ import pytest
 from pursue_gen.language import parse
 from pursue_gen.tga import translate
 from pursue_gen.tga.network import Network
-from pursue_gen.tga.status_words import statuses
-from pursue_gen.tga.tours import Tour, tour_automaton, with_tours, words_of
+from pursue_gen.tga.status_words import own_words, statuses
+from pursue_gen.tga.tours import Tour, tour_automaton, with_tours
 
 TEXT = """
 poi "a"
@@ -84,7 +84,7 @@ def test_one_that_is_there_is_left_as_it_is() -> None:
 
 def test_its_locations_have_words() -> None:
     toured = with_tours(network(), [ROUND])
-    assert words_of(toured)["bot1_tour", "stop_2"] == "stop 2 of 4"
-    assert words_of(toured)["bot1_tour", "lose"] == "off the tour"
+    assert own_words(toured)["bot1_tour"]["stop_2"] == "stop 2 of 4"
+    assert own_words(toured)["bot1_tour"]["lose"] == "off the tour"
     (status,) = (each for each in statuses(parse(TEXT, "round.pur", "round"), toured) if each.of == "bot1_tour")
     assert status.label == "tour of bot1"

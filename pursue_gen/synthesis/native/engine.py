@@ -10,7 +10,6 @@ from typing import Any, Callable, ClassVar, Collection, Dict, List, Optional, Tu
 from pursue_gen.synthesis.engine import NOT_GUESSED, Counts, Engine, Outcome
 from pursue_gen.synthesis.game import Action, Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, NOTHING_YET, Limits, Listener, Progress, limit_reached
-from pursue_gen.tga.network import Kind
 from pursue_gen.zones.dbm import INF
 
 try:
@@ -65,7 +64,7 @@ class NativeEngine(Engine):
         self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None, late: Collection[str] = ()
     ) -> Outcome:
         """Try simple policies, see `Engine`."""
-        if game.kind is not Kind.SAFETY:
+        if game.goal:
             return NOT_GUESSED
         put_off = [k for k, automaton in enumerate(game.automata) if automaton.name in late]
         if late and not put_off:

@@ -27,7 +27,6 @@ from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor, Limits, Listene
 from pursue_gen.synthesis.reference.relaxed import RelaxedPlanner
 from pursue_gen.synthesis.reference.zone_graph import Node, Transition, ZoneGraph
 from pursue_gen.synthesis.strategy_from import followed
-from pursue_gen.tga.network import Kind
 from pursue_gen.zones.dbm import Dbm
 from pursue_gen.zones.federation import Federation, predt
 
@@ -58,7 +57,7 @@ class ReferenceEngine(Engine):
         try:
             with monitor:
                 fixpoint: _Fixpoint
-                if game.kind is Kind.SAFETY:
+                if not game.goal:
                     fixpoint = _Safety(game, monitor)
                 else:
                     fixpoint = _Soonest(game, monitor) if soonest else _Reach(game, monitor, self.directed)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple, Union
 
-from pursue_gen.language.network_names import agent_clock, going, is_doing, is_going
+from pursue_gen.language.network_names import agent_clock, going
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
 from pursue_gen.tools.replay.record import MissionRecord
 from pursue_runtime.drives.report import ARRIVED, Drive
 from pursue_runtime.locations import action_of, in_words
@@ -125,7 +126,7 @@ class _Names:
 
     def __init__(self, scenario: Scenario) -> None:
         self.agents = {agent.name for agent in scenario.agents}
-        self._ways = {
+        self._ways: Dict[Tuple[str, str], Way] = {
             (agent.name, going(*way)): Way(agent.name, *way)
             for agent in scenario.agents
             for way in scenario.movements(agent)
@@ -144,7 +145,7 @@ class _Names:
 
     def what(self, agent: str, location: str) -> Optional[Measured]:
         """What an agent does there; None where the scenario has nothing like it."""
-        if is_going(location):
+        if role_of(location) is Role.WAY:
             return self.way(agent, location)
         event = action_of(location)
         return Work(event) if event in self._events else None
@@ -192,7 +193,7 @@ class _Stays:
                 self._close(agent, stay, state, is_gap)
                 del self._open[agent]
                 stay = None
-            if stay is None and (is_going(location) or is_doing(location)):
+            if stay is None and role_of(location) in UNDER_WAY:
                 begun = self._begin(agent, location, state)
                 if begun is not None:
                     self._open[agent] = stay = begun

@@ -15,7 +15,6 @@ from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.solution import guaranteed
 from pursue_gen.solving.verdict import margin_text, margins, periods_json
 from pursue_gen.synthesis.limits import Listener
-from pursue_gen.tga.network import Kind
 
 WON, LOST, UNDECIDED = "won", "lost", "not decided"
 
@@ -63,7 +62,7 @@ def verdict_of(scenario: Scenario, request: SolveRequest, progress: Optional[Lis
     except (Lost, LimitHit) as problem:
         return Verdict(LOST if isinstance(problem, Lost) else UNDECIDED, problem.diagnostics[0].message)
     won = found.solution
-    has_goal = won.objective.kind is not Kind.SAFETY
+    has_goal = won.objective.reaches
     takes = won.guarantee.worst if won.guarantee is not None else None
     if has_goal and takes is None:
         takes = guaranteed(won, limits=request.options.limits).worst

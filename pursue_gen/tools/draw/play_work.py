@@ -6,6 +6,7 @@ from multiprocessing.connection import Connection
 from typing import Any, Dict, List, Sequence
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.solving.inputs import settled
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
@@ -52,7 +53,7 @@ def _shown(session: Session, lines: Sequence[str], turn: int) -> Dict[str, Any]:
     for number, automaton in enumerate(setup.game.automata):
         if automaton.name in setup.agents:
             location = automaton.locations[play_.position.state.locations[number]]
-            kind, first, *rest = session.words.network.parts.get(location, ("at", location))
-            at[automaton.name] = [first, rest[0]] if kind == "way" else [first]
+            here = Symbol.of(location)
+            at[automaton.name] = list(here.parts if here.role is Role.WAY else here.parts[-1:])
     said = [] if play_.over else choices(session)
     return {"turn": turn, "lines": list(lines), "choices": [list(one) for one in said], "over": play_.over, "at": at}

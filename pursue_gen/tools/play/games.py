@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Optional
 
+from pursue_gen.explanation.network_words import words_of
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import Lost
 from pursue_gen.solving.optional import promised
@@ -15,7 +16,6 @@ from pursue_gen.tools.play.advice import Advisor
 from pursue_gen.tools.play.counter import counter_game
 from pursue_gen.tools.play.session import GameOf, Session
 from pursue_gen.tools.play.state import beginning, setup_of
-from pursue_gen.tools.play.texts import event_texts
 from pursue_gen.tools.play.world import StrategyPlay
 
 
@@ -39,4 +39,4 @@ def session_of(
     else:
         setup = setup_of(found.scenario, rules, found.solution.strategy)
         game = StrategyPlay(setup, Advisor(setup, found.solution.strategy), seed)
-    return Session(game, event_texts(setup.scenario, setup.network), beginning(setup))
+    return Session(game, words_of(setup.scenario, setup.network), beginning(setup))

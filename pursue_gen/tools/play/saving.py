@@ -9,7 +9,6 @@ from pursue_gen import __version__
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.files import write_texts
 from pursue_gen.solving.rules import rules_text
-from pursue_gen.tga.network import is_end
 from pursue_gen.tools.play.state import LOST, ROBOTS, RUNNING, WON, PlayedMove, PlayState, Setup
 from pursue_runtime.observer.records import FORMAT, format_record
 
@@ -42,7 +41,7 @@ def _trace(setup: Setup, play: PlayState) -> Iterator[str]:
 
 
 def _ends(setup: Setup, deed: PlayedMove) -> bool:
-    return is_end(setup.game.origins[deed.edges[0]])
+    return setup.game.origins[deed.edges[0]].is_end
 
 
 def _journal(setup: Setup, play: PlayState) -> Iterator[Dict[str, Any]]:

@@ -25,7 +25,7 @@ from pursue_gen.synthesis.game import (
 )
 from pursue_gen.synthesis.strategy import Command, Strategy, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tga.network import Kind, Network, Objective, is_end
+from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.words import event_word
 from pursue_gen.zones.dbm import is_strict
 
@@ -58,7 +58,7 @@ class Setup:
     @property
     def safety(self) -> bool:
         """True where there is nothing to reach, and so no end but by losing."""
-        return self.objective.kind is Kind.SAFETY
+        return not self.objective.reaches
 
     def owner(self, move: JointMove) -> str:
         """The automaton that moves."""
@@ -70,7 +70,7 @@ class Setup:
 
     def is_end(self, move: JointMove) -> bool:
         """True for the end of a movement or an action."""
-        return is_end(self.game.origins[move.edges[0]])
+        return self.game.origins[move.edges[0]].is_end
 
 
 @dataclass(frozen=True)

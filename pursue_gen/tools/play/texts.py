@@ -2,65 +2,49 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+from typing import Dict, Iterator, List, Mapping, Optional, Sequence
 
-from pursue_gen.explanation import network_words
+from pursue_gen.explanation.network_words import Words
 from pursue_gen.explanation.policy import Window
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import condition_words
-from pursue_gen.language.scenario import Always, Avoid, Connection, NeverWith, Patrol, Reach, Respond, Scenario
+from pursue_gen.language.scenario import Always, Avoid, Connection, NeverWith, Patrol, Reach, Respond
+from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.language.wording import answer_words, events_words, listed, missed_text, patroller, visited
 from pursue_gen.synthesis.game import Game, JointMove
 from pursue_gen.tga.counts import counted
-from pursue_gen.tga.network import Edge, Network
+from pursue_gen.tga.network import Edge
 from pursue_gen.tga.objectives import clock_of, events_done, stated
 from pursue_gen.tga.own_turns import own_turns
 from pursue_gen.tools.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
 
-
-@dataclass(frozen=True)
-class EventTexts:
-    """The words of one scenario: those of reports (`network`), and commands ("set off from a to b") by
-    (automaton, channel or "", location left by a step of its own)."""
-
-    network: network_words.Words
-    orders: Mapping[Tuple[str, str, str], str]
-
-    def order(self, owner: str, edge: Edge) -> str:
-        """The command for this edge of that automaton."""
-        key = (owner, edge.sync.channel, "") if edge.sync else (owner, "", edge.source)
-        return self.orders.get(key, self.network.move(owner, edge))
+_ORDERS = {
+    Role.SETTING_OFF: "set off from {1} to {2}",
+    Role.WAY: "arrive at {1}",
+    Role.EVENT: "do {}",
+    Role.WORK: "begin {}",
+    Role.END: "finish {}",
+}
 
 
-def event_texts(scenario: Scenario, network: Network) -> EventTexts:
-    """The words of a scenario and its network."""
-    orders: Dict[Tuple[str, str, str], str] = {}
-    ways = [way for connection in scenario.connections for way in connection.directions]
-    for agent in scenario.agents:
-        for event in scenario.events:
-            orders[agent.name, event.name, ""] = f"{'do' if event.duration is None else 'begin'} {event.shown}"
-            orders[agent.name, names.done(event.name), ""] = f"finish {event.shown}"
-        for a, b in ways:
-            here, there = scenario.shown(a), scenario.shown(b)
-            orders[agent.name, names.movement(agent.name, a, b), ""] = f"set off from {here} to {there}"
-            orders[agent.name, "", names.going(a, b)] = f"arrive at {there}"
-    return EventTexts(network_words.words_of(scenario, network), orders)
+def order_text(words: Words, owner: str, edge: Edge) -> str:
+    """The command for this edge of that automaton, as in "set off from a to b"."""
+    return words.deed(owner, edge, _ORDERS) or words.move(owner, edge)
 
 
 # What there is --------------------------------------------------------------------------------------------------------
 
 
-def situation(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]:
+def situation(setup: Setup, words: Words, play: PlayState) -> Iterator[str]:
     """Where the agents are, what lasts and until when, the states, the rules' turns, the deadline."""
     where = {automaton.name: k for k, automaton in enumerate(setup.game.automata)}
     shown = setup.scenario.shown
     widest = max((len(shown(agent)) for agent in setup.agents), default=0)
     for agent in setup.agents:
         place = setup.game.automata[where[agent]].locations[play.position.state.locations[where[agent]]]
-        yield f"  {shown(agent):<{widest}}  {words.network.place(agent, place)}{_lasting(setup, play, where[agent])}"
+        yield f"  {shown(agent):<{widest}}  {words.place(agent, place)}{_lasting(setup, play, where[agent])}"
     values = dict(zip(setup.game.variables, play.position.state.values))
     for state in setup.scenario.states:
         value = values.get(names.state_value(state.name), int(state.initially))
@@ -70,7 +54,7 @@ def situation(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]
         yield f"  battery of {battery.agent.shown}: {level} of {battery.capacity}"
     for own in own_turns(setup.scenario):
         place = own.order.locations[values.get(own.variable, 0)].name
-        yield f"  rule {own.name}: {words.network.place(own.name, place)}"
+        yield f"  rule {own.name}: {words.place(own.name, place)}"
     for rule in (rule for rule in setup.scenario.rules if not rule.each):
         yield f"  rule {rule.name}: {_place(setup, words, play, rule.name)}"
     for event, _ in counted(setup.scenario):
@@ -91,14 +75,14 @@ def _lasting(setup: Setup, play: PlayState, number: int) -> str:
     ends = (game.edges[k] for k in game.automata[number].edges)
     lows = [Fraction(edge.duration, game.scale) for edge in ends if edge.source == place]
     low = begun + max(lows, default=Fraction(0))
-    verb = "arrives" if names.is_going(game.automata[number].locations[place]) else "ends"
+    verb = "arrives" if role_of(game.automata[number].locations[place]) is Role.WAY else "ends"
     return f" since {time_text(begun)}; {verb} between {time_text(low)} and {time_text(begun + game.time(high))}"
 
 
 def _doer(game: Game, places: Sequence[int], number: int) -> Optional[int]:
     """Who does what this agent takes part in until it ends; None where it does nothing together with others."""
     location = game.automata[number].locations[places[number]]
-    if not names.is_doing(location):
+    if role_of(location) is not Role.WORK:
         return None
     others = (k for k, automaton in enumerate(game.automata) if automaton.locations[places[k]] == location)
     return next((k for k in others if game.automata[k].invariants[places[k]]), None)
@@ -110,29 +94,29 @@ def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Itera
         number = where[automaton]
         place = setup.game.automata[number].locations[play.position.state.locations[number]]
         if isinstance(objective, Respond) and place == names.AT_RISK:
-            due = play.now - clocks[clock_of(setup.scenario, automaton)] + objective.deadline
+            due = play.now - clocks[clock_of(automaton)] + objective.deadline
             yield f"deadline: {answer_words(objective)} by {time_text(due)} at the latest"
         if isinstance(objective, Patrol) and place == names.AT_RISK:
-            due = play.now - clocks[clock_of(setup.scenario, automaton)] + objective.period
+            due = play.now - clocks[clock_of(automaton)] + objective.period
             yield f"deadline: {patroller(objective)} at {visited(objective)} by {time_text(due)} at the latest"
         if isinstance(objective, Reach) and objective.after and play.now <= objective.after:
             yield f"{events_words(objective)} counts after {objective.after}"
-        if isinstance(objective, Reach) and objective.within is not None and place != "win":
-            done = {objective.events[k].name for k in events_done(place)}
+        if isinstance(objective, Reach) and objective.within is not None and place != names.WIN:
+            done = {ref.name for ref in events_done(objective, place)}
             left = listed(ref.shown for ref in objective.events if ref.name not in done)
             yield f"deadline: {left} by {time_text(Fraction(objective.within))} at the latest"
 
 
-def deed_text(setup: Setup, words: EventTexts, deed: PlayedMove) -> str:
+def deed_text(setup: Setup, words: Words, deed: PlayedMove) -> str:
     """A step that was made."""
-    said = words.network.move(deed.agent, setup.game.origins[deed.edges[0]])
+    said = words.move(deed.agent, setup.game.origins[deed.edges[0]])
     return said if deed.agent not in setup.agents else f"{setup.scenario.shown(deed.agent)} {said}"
 
 
-def move_text(setup: Setup, words: EventTexts, move: JointMove) -> str:
+def move_text(setup: Setup, words: Words, move: JointMove) -> str:
     """A step that will be made: who, and what."""
     owner = setup.owner(move)
-    said = words.network.move(owner, setup.game.origins[move.edges[0]])
+    said = words.move(owner, setup.game.origins[move.edges[0]])
     return said if owner not in setup.agents else f"{setup.scenario.shown(owner)} {said}"
 
 
@@ -148,7 +132,7 @@ def window_text(now: Fraction, open_: Window) -> str:
 # The end --------------------------------------------------------------------------------------------------------------
 
 
-def ending(setup: Setup, words: EventTexts, play: PlayState) -> str:
+def ending(setup: Setup, words: Words, play: PlayState) -> str:
     """How a game ended, in a sentence."""
     at = time_text(play.now)
     if play.status == WON:
@@ -161,7 +145,7 @@ def ending(setup: Setup, words: EventTexts, play: PlayState) -> str:
     return f"Nothing can go on after {at} time units: {late} ought to move and cannot. The robots have not lost."
 
 
-def _lost(setup: Setup, words: EventTexts, play: PlayState) -> str:
+def _lost(setup: Setup, words: Words, play: PlayState) -> str:
     late, objectives = overdue(setup, play), stated(setup.scenario)
     game, places = setup.game, play.position.state.locations
     broken = [game.automata[k].name for k, place in game.bad if places[k] == place]
@@ -187,10 +171,10 @@ def _lost(setup: Setup, words: EventTexts, play: PlayState) -> str:
     return "the objective is broken"
 
 
-def _place(setup: Setup, words: EventTexts, play: PlayState, name: str) -> str:
+def _place(setup: Setup, words: Words, play: PlayState, name: str) -> str:
     for automaton, location in zip(setup.game.automata, play.position.state.locations):
         if automaton.name == name:
-            return words.network.place(name, automaton.locations[location])
+            return words.place(name, automaton.locations[location])
     return name
 
 
@@ -199,7 +183,7 @@ def _only_while(way: Connection) -> str:
     return "" if way.only_if is None else f", only while {condition_words(way.only_if)}"
 
 
-def overview(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]:
+def overview(setup: Setup, words: Words, play: PlayState) -> Iterator[str]:
     """The map in text: each POI with who is there, and its ways with their distances; then who is on the way."""
     shown = setup.scenario.shown
     at: Dict[str, List[str]] = {}
@@ -208,8 +192,9 @@ def overview(setup: Setup, words: EventTexts, play: PlayState) -> Iterator[str]:
         if automaton.name not in setup.agents:
             continue
         location = automaton.locations[number]
-        part = words.network.parts.get(location, ("at", location))
-        group, key = (away, words.network.place(automaton.name, location)) if part[0] == "way" else (at, part[1])
+        symbol = Symbol.of(location)
+        is_away = symbol.role is Role.WAY
+        group, key = (away, words.place(automaton.name, location)) if is_away else (at, symbol.parts[-1])
         group.setdefault(key, []).append(shown(automaton.name))
     widest = max((len(poi.shown) for poi in setup.scenario.pois), default=0)
     for poi in setup.scenario.pois:

@@ -29,7 +29,7 @@ from pursue_gen.synthesis.limits import Limits, careful_memory
 from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.pauses import pauses
 from pursue_gen.tools.replanning.request import Request, read_request
@@ -126,7 +126,7 @@ def _won_in_shares(
 def _patrols_many(game: Network, objective: Objective) -> bool:
     """True where patrols of so many places are asked for, and nothing else, that tours are looked for first."""
     names = {name for name, _ in objective.bad}
-    return objective.kind is Kind.SAFETY and len(names) >= PATROL and names <= patrols(game)
+    return not objective.reaches and len(names) >= PATROL and names <= patrols(game)
 
 
 def _verdict(network: Network, objective: Objective, reaction: Fraction, limits: Limits) -> Verdict:

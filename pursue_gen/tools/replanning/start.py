@@ -11,7 +11,7 @@ from typing import AbstractSet, Dict, List, Mapping, Optional, Tuple, TypeVar
 from pursue_gen.language.network_names import agent_clock, agent_position, going
 from pursue_gen.language.numbers import Number
 from pursue_gen.tga.assumptions import without_broken
-from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Edge, Guard, Network, is_end, with_controllability
+from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Edge, Guard, Network, with_controllability
 from pursue_gen.tga.scale import common_denominator, least_common_multiple
 from pursue_gen.tools.replanning.request import Request, wrong
 
@@ -150,7 +150,7 @@ def _idle(automaton: Automaton, here: str, clocks: Mapping[str, Fraction]) -> Au
     """The automaton without commands in its location, where a movement or action may end too early."""
     edges: List[Edge] = []
     for edge in automaton.edges:
-        if edge.source == here and is_end(edge):
+        if edge.source == here and edge.is_end:
             bounds = tuple(bound for bound in edge.guard.clocks if _holds(bound, clocks))
             edge = replace(with_controllability(edge, False), guard=Guard(bounds, edge.guard.integers))
         receives = edge.sync is not None and not edge.sync.sends  # others decide that
@@ -162,7 +162,7 @@ def _idle(automaton: Automaton, here: str, clocks: Mapping[str, Fraction]) -> Au
 def _shares(network: Network, name: str) -> bool:
     """True for an agent that is busy with what others do, until they end it."""
     edges = network.automaton(name).edges if any(a.name == name for a in network.automata) else ()
-    return any(is_end(edge) and edge.sync is not None and not edge.sync.sends for edge in edges)
+    return any(edge.is_end and edge.sync is not None and not edge.sync.sends for edge in edges)
 
 
 def _without_company(automaton: Automaton, absent: AbstractSet[Tuple[str, int]]) -> Automaton:

@@ -19,7 +19,7 @@ from pursue_gen.solving.proving import prove
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
-from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.network import Network, Objective
 
 _WORK = 20_000_000
 """The work of one game with a deadline: about a second."""
@@ -34,7 +34,7 @@ def sooner(
     """The strategy, or a proven one that comes to the goal sooner at worst: as soon as can be guaranteed in whole time
     units, as far as little work finds that. Only clocks that the network has are looked at."""
     clock = _counter(network)
-    if objective.kind is Kind.SAFETY or clock is None or strategy.in_parts:
+    if not objective.reaches or clock is None or strategy.in_parts:
         return strategy
     worst = worst_case(network, objective, strategy, reaction, _STATES, limits)
     if worst is None:

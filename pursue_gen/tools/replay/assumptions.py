@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from itertools import chain
-from typing import Iterator, List, Mapping, Sequence, Tuple
+from typing import List, Mapping, Sequence, Tuple
 
-from pursue_gen.language.network_names import assumption_clock, is_assumption
+from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.tools.replay.moves import DiscreteState, Move, Moves
 
 Found = Tuple[DiscreteState, List[Move]]
@@ -14,7 +14,11 @@ Found = Tuple[DiscreteState, List[Move]]
 
 def newly_broken(before: Mapping[str, int], now: Mapping[str, int]) -> Tuple[str, ...]:
     """The variables of the assumptions that hold among the values before, and not among those now."""
-    return tuple(name for name, value in before.items() if is_assumption(name) and value and now.get(name) == 0)
+    return tuple(name for name in _holding(before) if now.get(name) == 0)
+
+
+def _holding(values: Mapping[str, int]) -> List[str]:
+    return [name for name, value in values.items() if value and role_of(name) is Role.ASSUMPTION]
 
 
 def without(place: DiscreteState, broken: Sequence[str]) -> DiscreteState:
@@ -27,7 +31,7 @@ def breach(moves: Moves, place: DiscreteState, word: str, agent: str) -> Found:
 
     One assumption is broken where that suffices, else all that hold, as the observer has it.
     """
-    standing = [name for name, value in place.values.items() if is_assumption(name) and value]
+    standing = _holding(place.values)
     for some in chain(([name] for name in standing), [standing] if len(standing) > 1 else []):
         found = list(moves.of(without(place, some), word, agent))
         if found:
@@ -37,12 +41,5 @@ def breach(moves: Moves, place: DiscreteState, word: str, agent: str) -> Found:
 
 def overstayed(moves: Moves, place: DiscreteState, clocks: Mapping[str, float]) -> Tuple[str, ...]:
     """The variables of the assumptions by which somebody should have left by now."""
-    return tuple(_overstayed(moves, place, clocks))
-
-
-def _overstayed(moves: Moves, place: DiscreteState, clocks: Mapping[str, float]) -> Iterator[str]:
     over = {clock for clock, late in moves.exceeded(place, clocks).items() if late >= 0}
-    numbers = (name for name, value in place.values.items() if is_assumption(name) and value)
-    for name in numbers:
-        if assumption_clock(int(name[len("assume") :])) in over:
-            yield name
+    return tuple(name for name in _holding(place.values) if moves.assumed[name] in over)

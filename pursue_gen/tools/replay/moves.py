@@ -5,7 +5,8 @@ from __future__ import annotations
 import itertools
 from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_gen.language.network_names import assumption, assumption_clock, is_assumption, is_doing, is_going
+from pursue_gen.language.network_names import assumption_clock
+from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.tga.network import ClockBound, Edge, Network, Objective
 from pursue_gen.tga.words import event_word
 from pursue_runtime.state import SystemState
@@ -45,7 +46,7 @@ class Untimely(NamedTuple):
 
 
 class Moves:
-    """The joint moves of one network. `clocks`: those of each automaton."""
+    """The joint moves of one network. `clocks`: those of each automaton; `assumed`: of assumptions."""
 
     def __init__(self, network: Network) -> None:
         self.network = network
@@ -61,8 +62,8 @@ class Moves:
             for edge in automaton.edges:
                 self._edges.setdefault((automaton.name, edge.source), []).append(edge)
         self._names = [automaton.name for automaton in network.automata]
-        numbers = [int(name[len("assume") :]) for name, _ in network.variables if is_assumption(name)]
-        self._assumed = {assumption(number): assumption_clock(number) for number in numbers}
+        assumed = (Symbol.of(name) for name, _ in network.variables if role_of(name) is Role.ASSUMPTION)
+        self.assumed: Dict[str, str] = {name: assumption_clock(int(name.parts[0])) for name in assumed}
 
     @staticmethod
     def word(automaton: str, edge: Edge) -> str:
@@ -94,7 +95,7 @@ class Moves:
     def sharing(self, place: DiscreteState, word: str, agent: str) -> Tuple[str, ...]:
         """Who does something together there that ends with the word, the agent among them; () where that is nobody."""
         here = place.locations.get(agent, "")
-        if not is_doing(here):
+        if role_of(here) is not Role.WORK:
             return ()
         ends = {
             name: [edge for edge in self._edges.get((name, here), ()) if edge.sync and edge.sync.channel == word]
@@ -117,7 +118,7 @@ class Moves:
         origins = {source for (name, source) in self._edges if name == robot and here in self._targets(robot, source)}
         for end in self._targets(robot, here):
             for edge in self._edges.get((robot, end), ()):
-                if is_going(edge.target) and origins & set(self._targets(robot, edge.target)):
+                if edge.enters is Role.WAY and origins & set(self._targets(robot, edge.target)):
                     return robot, edge
         return None
 
@@ -171,7 +172,7 @@ class Moves:
     def _bounds(self, part: Tuple[str, str], place: DiscreteState) -> Sequence[ClockBound]:
         """The invariant of an automaton's location, without the bounds of assumptions that have been broken."""
         bounds = self._invariants.get(part, ())
-        broken = {clock for variable, clock in self._assumed.items() if place.values.get(variable) == 0}
+        broken = {clock for variable, clock in self.assumed.items() if place.values.get(variable) == 0}
         return [bound for bound in bounds if bound.clock not in broken] if broken else bounds
 
     def _enabled(self, name: str, place: DiscreteState) -> Iterator[Edge]:

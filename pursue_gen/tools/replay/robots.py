@@ -7,8 +7,9 @@ import math
 from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.drawing.layout import poses
-from pursue_gen.language.network_names import going, is_doing, is_going
+from pursue_gen.language.network_names import going
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
 from pursue_gen.tools.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
 from pursue_gen.tools.replay.game import Game
 from pursue_gen.tools.replay.orders import Orders
@@ -45,7 +46,7 @@ def check_robots(
     activities = _activities(steps, robots, record)
     with_goals = {order.robot for order in record.orders if order.goal is not None}
     where = {robot: _places(game.scenario, robot) for robot in robots if robot in with_goals}
-    ways = {going(x.name, y.name): y.name for x in game.scenario.pois for y in game.scenario.pois}
+    ways: Dict[str, str] = {going(x.name, y.name): y.name for x in game.scenario.pois for y in game.scenario.pois}
     diary = _ActivityIndex(activities)
     uncommanded = _uncommanded(game.scenario, steps, record)
     found: List[Finding] = []
@@ -147,9 +148,9 @@ def _activities(steps: Sequence[Done], robots: Sequence[str], record: MissionRec
         first = record.states[0]
         for robot in robots:
             there = first.locations[robot]
-            if is_going(there) or is_doing(there):
+            if role_of(there) in UNDER_WAY:
                 open_[robot] = len(begun)
-                begun.append((first, float("inf"), robot, there if is_going(there) else ""))
+                begun.append((first, float("inf"), robot, there if role_of(there) is Role.WAY else ""))
             elif first.agent == robot:
                 begun.append((first, first.stamp, robot, ""))
     for before, state, mover, _ in steps:
@@ -162,10 +163,10 @@ def _activities(steps: Sequence[Done], robots: Sequence[str], record: MissionRec
             if robot in open_:
                 place = open_.pop(robot)
                 begun[place] = (begun[place][0], record.known_from(state), robot, begun[place][3])
-            if is_going(there):
+            if role_of(there) is Role.WAY:
                 open_[robot] = len(begun)
                 begun.append((state, float("inf"), robot, there))
-            elif is_doing(there) and (mover == robot or robot not in state.lost):
+            elif role_of(there) is Role.WORK and (mover == robot or robot not in state.lost):
                 open_[robot] = len(begun)
                 begun.append((state, float("inf"), robot, ""))
     return begun

@@ -21,6 +21,7 @@ from pursue_gen.drawing.look import AgentLook, agent_looks, mark, safe, tag, tex
 from pursue_gen.explanation.network_words import Words, words_of
 from pursue_gen.files import write_texts
 from pursue_gen.language.scenario import Agent, Scenario
+from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.tools.report import timeline
 from pursue_gen.tools.report.html import Section, asset, data, page
 from pursue_gen.tools.report.recording import Recording, Stay, Step, ending_text, stays
@@ -41,6 +42,7 @@ class Segment:
     end: float
     line: Tuple[Point, ...]
     description: str
+    is_work: bool
 
 
 def check_name(file: Path) -> None:
@@ -130,8 +132,7 @@ def _tracks(scenario: Scenario, recording: Recording, floor: Optional[Floor]) ->
             "name": agent.shown,
             "offset": [round(v, 1) for v in _offset(number, count)],
             "segments": [
-                [one.start, one.end, [[round(x, 1), round(y, 1)] for x, y in one.line], one.description,
-                 one.description.startswith("doing ")]
+                [one.start, one.end, [[round(x, 1), round(y, 1)] for x, y in one.line], one.description, one.is_work]
                 for one in segments[agent.name]
             ],
         }
@@ -185,20 +186,21 @@ def _segments_of(
     """`line`: the way from one place to another on the picture."""
     segments = []
     for stay in stays(recording, agent.name):
-        part = words.parts.get(stay.what, ("at", agent.location.name))
-        description = words.place(agent.name, stay.what)
-        points = line(part[1], part[2] if part[0] == "way" else part[1])
-        done = _part_done(recording, stay, agent, part) if part[0] == "way" else 0.0
-        segments.append(Segment(stay.start, stay.end, tuple(_first_part(points, done)), description))
+        here = Symbol.of(stay.what)
+        is_way = here.role is Role.WAY
+        points = line(*here.parts) if is_way else line(*here.parts[-1:] * 2)
+        done = _part_done(recording, stay, agent, here.parts) if is_way else 0.0
+        description, is_work = words.place(agent.name, stay.what), here.role is Role.WORK
+        segments.append(Segment(stay.start, stay.end, tuple(_first_part(points, done)), description, is_work))
     return segments
 
 
 def _part_done(recording: Recording, stay: Stay, agent: Agent, part: Tuple[str, ...]) -> float:
     """How much of its way an agent comes: all, or less where the recording ends or the movement is given up."""
     after = next((step.locations.get(agent.name) for step in recording.steps if step.at >= stay.end), None)
-    if stay.over and after == part[2]:
+    if stay.over and after == part[1]:
         return 1.0
-    _, longest = recording.scenario.movements(agent).get((part[1], part[2]), (1, 2))
+    _, longest = recording.scenario.movements(agent).get((part[0], part[1]), (1, 2))
     return float(min(0.95, (stay.end - stay.start) / longest))
 
 

@@ -112,7 +112,8 @@ def from_states(
         started = state.stamp if started is None else started
         at = max((state.stamp - started) / state.unit, steps[-1].at if steps else 0.0)
         reason = in_words(state.reason, scenario.shown)
-        steps.append(Step(at, state.locations, state.values, *led_by, state.status, reason, state.plan, state.lost))
+        locations = {name: network.places.get((name, there), there) for name, there in state.locations.items()}
+        steps.append(Step(at, locations, state.values, *led_by, state.status, reason, state.plan, state.lost))
     if not steps:
         return None
     end = steps[-1].at if steps[-1].status in ENDED else max(steps[-1].at, until)

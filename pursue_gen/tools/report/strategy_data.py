@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from string import ascii_letters
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.explanation.network_words import Words, words_of, zone_texts
 from pursue_gen.language import network_names as names
-from pursue_gen.language.scenario import Reach, Scenario
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
 from pursue_gen.proof.relaxed_reachability import commanded
@@ -17,8 +17,6 @@ from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import Game, State, initial_state, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Place, Strategy, Zone
 from pursue_gen.tga.network import Objective
-from pursue_gen.tga.objectives import stated
-from pursue_gen.tga.watchers import FOR
 
 Key = Tuple[Tuple[str, str, str, str], ...]
 
@@ -289,7 +287,7 @@ class _Builder:
 
     def place(self, automaton: str, location: str) -> Tuple[str, Tuple[str, ...]]:
         """A place in words, and its parts where it is an agent's."""
-        return self.words.place(automaton, location), self.words.parts.get(location, ())
+        return self.words.place(automaton, location), _parts(location)
 
     def number(self, automaton: str, location: str) -> int:
         """The number of a location."""
@@ -372,11 +370,25 @@ def shown_name(name: str, kind: str) -> str:
     """The name of an automaton on the page; the second objective of a kind and the following have numbers."""
     if kind not in ("goal", "deadline"):
         return name
-    what, _, robots = name.partition(FOR)
-    number = what.lstrip(ascii_letters)
+    what, *robots = _watched(name)
+    (number,) = Symbol.of(what).parts
     word = "goal" if kind == "goal" else "objective"
-    shown = f"{word} {number}" if number else f"the {word}"
-    return f"{shown} for {robots.replace('_', ' and ')}" if robots else shown
+    shown = f"the {word}" if number == "1" else f"{word} {number}"
+    return f"{shown} for {' and '.join(robots)}" if robots else shown
+
+
+def _parts(location: str) -> Tuple[str, ...]:
+    """Where an agent is, for the page: (at, place), (way, from, to) or (doing, place, event); () of other locations."""
+    symbol = Symbol.of(location)
+    kind = {Role.AT: "at", Role.WAY: "way", Role.WORK: "doing"}.get(symbol.role)
+    parts = symbol.parts if symbol.role is Role.WAY else symbol.parts[::-1]
+    return (kind, *parts) if kind else ()
+
+
+def _watched(automaton: str) -> Tuple[str, ...]:
+    """The objective's automaton that it is, or that it is for some robots, and these."""
+    symbol = Symbol.of(automaton)
+    return symbol.parts if symbol.role is Role.WATCHER else (symbol,)
 
 
 def _kind(scenario: Scenario, automaton: str) -> str:
@@ -384,7 +396,5 @@ def _kind(scenario: Scenario, automaton: str) -> str:
     for agent in scenario.agents:
         if agent.name == automaton:
             return "other" if not agent.controllable else "person" if agent.human else "robot"
-    objective = stated(scenario).get(automaton.split(FOR)[0])
-    if objective is not None:
-        return "goal" if isinstance(objective, Reach) else "deadline"
-    return "states" if automaton == names.STATES else "rule"
+    kinds = {Role.REACH: "goal", Role.SAFETY: "deadline", Role.STATES: "states"}
+    return kinds.get(role_of(_watched(automaton)[0]), "rule")

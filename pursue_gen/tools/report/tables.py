@@ -10,7 +10,6 @@ from pursue_gen.language.numbers import at_most
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition.split import ALL, CENTRALIZED, DEDICATED, DISTRIBUTED
 from pursue_gen.solving.solution import Solution
-from pursue_gen.tga.network import Kind
 from pursue_gen.tools.report.commands import CommandsTable, Game, commands_table
 from pursue_gen.tools.report.html import Section, table
 from pursue_gen.tools.report.thesis_figures import Times, thesis_times
@@ -51,7 +50,7 @@ def command_tables(
 def case_for(scenario: Scenario, won: Solution, reach_obj: str, shape: str = DISTRIBUTED) -> Case:
     """What is simulated with controllers of that shape."""
     options = Options(shape, reach_obj, won.reaction, won.rules.ends, won.rules.slack)
-    return case_of(scenario, won, options, Settings("mixed", (), _UNTIL[won.objective.kind is not Kind.SAFETY]))[0]
+    return case_of(scenario, won, options, Settings("mixed", (), _UNTIL[won.objective.reaches]))[0]
 
 
 def measured(
@@ -90,7 +89,7 @@ def section(
         "of the controller's strategy file (in the thesis: of its Python program). Percentages are of General.</p>"
     )
     robots = tuple(agent.name for agent in scenario.agents if agent.is_robot)
-    goal = won.objective.kind is not Kind.SAFETY
+    goal = won.objective.reaches
     parts.append(f"<h3>{'Times to the goal' if goal else 'Simulated missions'}</h3>")
     parts.append(_times(won, missions, thesis_times(scenario.name, robots)) if goal else _safety(missions))
     parts += [f"<p>{safe(text)}</p>" for one in missions[-1:] for text in driven_words(one.summary)]

@@ -9,6 +9,7 @@ from pursue_gen.drawing.look import AgentLook, agent_looks, mark, patterns, safe
 from pursue_gen.explanation.network_words import Words, words_of
 from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Patrol, Reach, Respond, Scenario
+from pursue_gen.language.symbols import UNDER_WAY, Role, Symbol, role_of
 from pursue_gen.language.wording import answer_words, events_words, visited
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Network
@@ -120,9 +121,9 @@ def _scale(recording: Recording, words: Words) -> Scale:
 
 def _bar_label(recording: Recording, words: Words, location: str) -> str:
     """What stands above a movement or an action; nothing above a wait."""
-    part = words.parts.get(location, ("at", location))
-    shown = recording.scenario.shown
-    return "" if part[0] == "at" else f"{shown(part[1])} → {shown(part[2])}" if part[0] == "way" else shown(part[2])
+    symbol = Symbol.of(location)
+    first, *others = map(recording.scenario.shown, symbol.parts)
+    return "" if symbol.role not in UNDER_WAY else first if symbol.role is Role.WORK else f"{first} → {others[0]}"
 
 
 def _names(recording: Recording) -> List[str]:
@@ -207,15 +208,16 @@ def _agent(
     found, taken, shown = stays(recording, agent), 0.0, recording.scenario.shown
     labels = [_bar_label(recording, words, stay.what) for stay in found]
     for number, (stay, label) in enumerate(zip(found, labels)):
-        part = words.parts.get(stay.what, ("at", stay.what))
+        place = shown(Symbol.of(stay.what).parts[-1])
         x = scale.x(stay.start)
         if not label:
-            yield _line(scale, stay, f"at {shown(part[1])}", "wait", max(0.0, taken - x))
+            yield _line(scale, stay, f"at {place}", "wait", max(0.0, taken - x))
             continue
         after = next((scale.x(found[k].start) for k in range(number + 1, len(found)) if labels[k]), None)
         room = (scale.width if after is None else after) - x
         taken = x + min(room, (len(label) + 1) * _BOLD)
-        ink = ("#ffffff", f"{label} at {shown(part[1])}", 3.0) if part[0] == "doing" else (fill, f"from {label}", 1.5)
+        is_work = role_of(stay.what) is Role.WORK
+        ink = ("#ffffff", f"{label} at {place}", 3.0) if is_work else (fill, f"from {label}", 1.5)
         yield _bar(scale, stay, _label(x, room, label, "pg-strong"), look.colour, *ink)
     free = 0.0
     for before, step in zip(recording.steps, recording.steps[1:]):
@@ -249,7 +251,7 @@ def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:
             there = tuple(_line(scale, stay, "there") for stay in found if stay.what == names.IDLE)
             yield Lane(name, there + _deadline(recording, scale, risks, f"a visit of {visited(objective)}".rstrip(",")))
         elif isinstance(objective, Reach) and objective.within is not None:
-            before = [stay for stay in found if stay.what not in ("win", names.LATE)]
+            before = [stay for stay in found if stay.what not in (names.WIN, names.LATE)]
             whole = [replace(before[0], end=before[-1].end, over=before[-1].over)] if before else []
             risks = [(stay, float(objective.within)) for stay in whole]
             yield Lane(name, _deadline(recording, scale, risks, events_words(objective)))

@@ -14,7 +14,8 @@ class Driven:
     distance."""
 
     def __init__(self, scenario: Scenario) -> None:
-        self._lengths = {going(a, b): float(way.distance) for way in scenario.connections for a, b in way.directions}
+        ways = ((way, end) for way in scenario.connections for end in way.directions)
+        self._lengths: Dict[str, float] = {going(*end): float(way.distance) for way, end in ways}
         self._places: Dict[str, str] = {}
         self.units = {agent.name: 0.0 for agent in scenario.agents if agent.controllable and agent.mobile is not None}
 

@@ -8,7 +8,6 @@ from pursue_gen.diagnostics import usage_error
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.solution import Solution
-from pursue_gen.tga.network import Kind
 from pursue_gen.tools.simulation.outcome import Settings
 from pursue_gen.tools.simulation.runs import Case, case_of
 from pursue_gen.workspace.make import options_for
@@ -37,7 +36,7 @@ def make_case(
     `opponent` and `faults` as for `Settings`; `until`: when a mission is over, in time units; None for the default. It
     does not know where the game is too large or the strategy has stages: then it does anything.
     """
-    goal = won.objective.kind is not Kind.SAFETY
+    goal = won.objective.reaches
     settings = Settings(opponent, faults, until or (_LONG if goal else _SHORT))
     case, knows = case_of(scenario, won, options_for(request, won), settings)
     return case, knows or not goal or opponent not in ("worst", "mixed")

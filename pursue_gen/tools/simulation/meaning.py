@@ -8,6 +8,7 @@ from typing import FrozenSet, Mapping, Optional
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Holds, Not, OnWay
 from pursue_gen.language.scenario import Always, Scenario
+from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.tga.objectives import stated
 
 
@@ -31,7 +32,7 @@ def holds(condition: Condition, scenario: Scenario, locations: Mapping[str, str]
         meant = [agent.name for agent in scenario.agents if agent.is_robot or not who.robots]
     places = [locations[name] for name in meant]
     if isinstance(condition, OnWay):
-        return any(names.is_going(place) for place in places)
+        return any(role_of(place) is Role.WAY for place in places)
     if isinstance(condition, At):
         poi = condition.place.name
         here = {poi, *(names.doing(event.name, poi) for event in scenario.events)}

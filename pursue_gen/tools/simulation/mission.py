@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 from typing import Any, Dict, List, Optional, Tuple, Union
 
-from pursue_gen.tga.network import Kind
 from pursue_gen.tools.simulation.became_true import BecameTrue
 from pursue_gen.tools.simulation.connections import RECONNECTION, Connections
 from pursue_gen.tools.simulation.driven import Driven
@@ -141,7 +140,7 @@ class SimulatedMission:
 
     def _end(self, mission: Mission) -> Tuple[str, str]:
         """How it ended, before what was found is looked at."""
-        safety = self._stage.solution.objective.kind is Kind.SAFETY
+        safety = not self._stage.solution.objective.reaches
         ends = {STOPPED: STOPPED, LOST: LOST, HOLDING: HELD}
         if mission.status == WON:
             return GOAL, ""

@@ -5,9 +5,8 @@ from __future__ import annotations
 import random
 from typing import List, NamedTuple, Optional, Tuple
 
-from pursue_gen.language.network_names import is_going, is_under_way
+from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
 from pursue_gen.proof.moves import JointMove, State
-from pursue_gen.tga.network import is_end
 from pursue_gen.tga.words import event_word
 from pursue_gen.tools.simulation.recorder import EPSILON
 from pursue_gen.tools.simulation.remaining import Remaining
@@ -54,7 +53,7 @@ def options(stage: Stage, state: State, point: Tuple[float, ...]) -> List[Option
     found = []
     for move in stage.arena.situation(state).moves:
         first = move.moves[0]
-        if move.controllable or is_end(first.edge) or first.automaton not in stage.opponents or move.enabled is None:
+        if move.controllable or first.edge.is_end or first.automaton not in stage.opponents or move.enabled is None:
             continue
         window = _window(move.enabled, stage.arena.scale, point)
         if window is not None:
@@ -106,13 +105,13 @@ class Opponent:
         network, clock = self._stage.arena.network, self._stage.arena.clock
         latest: List[Tuple[float, str]] = []
         for automaton, here in zip(network.automata, state[0]):
-            if automaton.name in self._stage.opponents and not is_under_way(here):
+            if automaton.name in self._stage.opponents and role_of(here) not in UNDER_WAY:
                 bounds = next(place.invariant for place in automaton.locations if place.name == here)
                 latest += [(bound.bound - point[clock[bound.clock]], automaton.name) for bound in bounds]
         if not latest:
             return None
         moment, agent = min(latest)
-        leaving = [o for o in able if o.agent == agent and is_going(o.move.moves[0].edge.target)]
+        leaving = [o for o in able if o.agent == agent and o.move.moves[0].edge.enters is Role.WAY]
         leaving = [option for option in leaving if option.first <= moment + EPSILON]
         if not leaving:
             return None

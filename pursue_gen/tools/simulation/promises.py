@@ -40,8 +40,9 @@ class Promises:
         """`exact`: nothing comes late, so that a deadline is either kept or missed; False where there are faults."""
         self.problems: List[str] = []
         self._scenario, self._exact = scenario, exact
-        self._events = {has_happened(event): event.name for event in scenario.events}
-        self._ways = {going(a, b): frozenset((a, b)) for way in scenario.connections for a, b in way.directions}
+        self._events: Dict[str, str] = {has_happened(event): event.name for event in scenario.events}
+        ends = (way for connection in scenario.connections for way in connection.directions)
+        self._ways: Dict[str, FrozenSet[str]] = {going(*way): frozenset(way) for way in ends}
         self._places = [poi.name for poi in scenario.pois]
         self._done: List[Set[str]] = [set() for _ in scenario.reach]
         self._since: Dict[int, float] = {}

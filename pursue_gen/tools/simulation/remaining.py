@@ -18,7 +18,7 @@ from pursue_gen.proof.moves import JointMove, State
 from pursue_gen.proof.worst_case import LONGEST, counting_clock, with_counter, with_deadline
 from pursue_gen.proof.zones import with_neighbours
 from pursue_gen.solving.solution import Solution
-from pursue_gen.tga.network import Kind, Network
+from pursue_gen.tga.network import Network
 from pursue_gen.zones.dbm import INF, Dbm, constant, raw
 
 STATES = 2_000
@@ -45,7 +45,7 @@ class Remaining:
         """How often to look ahead where many missions are to be played: less often in larger games."""
         self._known: Dict[Tuple[State, Tuple[int, ...]], Optional[float]] = {}
         self._met = 0  # symbolic states that were looked at
-        if won.objective.kind is Kind.SAFETY or won.strategy.in_parts:
+        if not won.objective.reaches or won.strategy.in_parts:
             return
         part = won.part
         game = with_deadline(with_counter(part), won.objective, LONGEST)

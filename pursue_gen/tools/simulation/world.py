@@ -8,13 +8,12 @@ from __future__ import annotations
 import random
 from typing import Callable, Dict, Optional
 
-from pursue_gen.language.network_names import is_under_way
 from pursue_gen.tools.simulation.connections import drawn_share
 from pursue_gen.tools.simulation.event_queue import EventQueue, Timer
 from pursue_gen.tools.simulation.faults import Breakdown, FaultPlan
 from pursue_gen.tools.simulation.stage import Stage
 from pursue_runtime.controller.reports import Report
-from pursue_runtime.locations import action_of, is_action, is_movement
+from pursue_runtime.locations import action_of, is_action, is_movement, is_under_way
 from pursue_runtime.orders import Order, parse_orders
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.simulator.simulator import EndWindow, Simulator, end_window, report_of

@@ -9,7 +9,7 @@ from typing import List
 import pytest
 
 from pursue_gen.language import load
-from pursue_gen.language.network_names import is_going
+from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.tools.calibration.proposal import Options, propose
@@ -52,7 +52,7 @@ def test_missions_that_keep_to_the_model_leave_no_window(name: str) -> None:
             for agent in robots
             if after.locations[agent] != before.locations[agent]
         ]
-        ways = [what for what in entered if is_going(what[1])]
+        ways = [what for what in entered if role_of(what[1]) is Role.WAY]
         of_robots = [s for s in (*found.measured, *found.unused) if isinstance(s.what, Way) and s.what.agent in robots]
         assert len(of_robots) == len(ways) and found.strangers == ()
         works += sum(not isinstance(sample.what, Way) for sample in found.measured)

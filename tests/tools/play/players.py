@@ -9,6 +9,7 @@ from typing import List, Optional, Tuple
 
 from hypothesis import strategies as st
 
+from pursue_gen.explanation.network_words import words_of
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import IDEAL, Rules
@@ -16,7 +17,6 @@ from pursue_gen.tools.play.counter import CounterPlay
 from pursue_gen.tools.play.games import session_of
 from pursue_gen.tools.play.session import GameOf, Session
 from pursue_gen.tools.play.state import GRAIN, PlannedMove, PlayState, beginning
-from pursue_gen.tools.play.texts import event_texts
 from pursue_gen.tools.play.world import Offer, StrategyPlay
 
 SCENARIOS = Path(__file__).resolve().parents[3] / "scenarios"
@@ -76,7 +76,7 @@ def game(name: str, ideal: bool = False, old: str = "", new: str = "") -> GameOf
 def session(name: str, old: str = "", new: str = "") -> Session:
     """A new session of it."""
     played = game(name, old=old, new=new)
-    return Session(played, event_texts(played.setup.scenario, played.setup.network), beginning(played.setup))
+    return Session(played, words_of(played.setup.scenario, played.setup.network), beginning(played.setup))
 
 
 def world(name: str, seed: int, ideal: bool = False) -> StrategyPlay:

@@ -11,8 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from players import do, game, moments, whims, world
 
+from pursue_gen.explanation.network_words import words_of
 from pursue_gen.tools.play.state import CHANCE, LOST, OTHERS, ROBOTS, RUNNING, WON, PlannedMove, beginning, last_moment
-from pursue_gen.tools.play.texts import event_texts, situation
+from pursue_gen.tools.play.texts import situation
 from pursue_gen.tools.play.world import StrategyPlay
 
 REACH = ("thesis/scenario_1", "thesis/scenario_2", "thesis/scenario_3", "thesis/scenario_4", "thesis/catch_the_thief",
@@ -160,7 +161,7 @@ def test_where_nobody_does_anything_nothing_happens(name: str) -> None:
 
 def test_a_partner_is_busy_as_long_as_the_one_who_does_it() -> None:
     played = world("museum/film", 1)
-    words = event_texts(played.setup.scenario, played.setup.network)
+    words = words_of(played.setup.scenario, played.setup.network)
     table = beginning(played.setup)
     while "doing showFilm at hall" not in "".join(situation(played.setup, words, table)):
         table = played.advance(table)

@@ -14,7 +14,7 @@ from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import start_zone
 from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
-from pursue_gen.tga.network import Automaton, Location, Network, is_end
+from pursue_gen.tga.network import Automaton, Location, Network
 from pursue_gen.tga.scale import common_denominator, scaled
 from pursue_gen.tools.replanning.request import read_request
 from pursue_gen.tools.replanning.start import network_from, region
@@ -113,7 +113,7 @@ def test_a_late_agent_may_stay(clock: float, ahead: float, bounded: bool) -> Non
     network = on_the_way(clock, ahead=ahead)
     assert bool(place(network, "bot1").invariant) is bounded
     assert place(network, "bot2").invariant == ()
-    (end,) = (edge for edge in network.automaton("bot1").edges if edge.source == "going_c_to_b" and is_end(edge))
+    (end,) = (edge for edge in network.automaton("bot1").edges if edge.source == "going_c_to_b" and edge.is_end)
     assert end.guard.clocks and not end.controllable
 
 

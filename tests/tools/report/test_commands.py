@@ -16,7 +16,6 @@ from pursue_gen import __version__
 from pursue_gen.partition import partition
 from pursue_gen.partition.strategy_file import render
 from pursue_gen.synthesis.strategy import Block, Strategy
-from pursue_gen.tga.network import is_end
 from pursue_gen.tools.report.commands import Game, as_json, commands_table, render_table
 from pursue_gen.tools.report.thesis_figures import TABLES, thesis_table
 from tests.partition.games import AGENTS, QUICK, agent, game, random_strategies
@@ -56,7 +55,7 @@ def test_rows_are_what_the_controllers_have(strategy: Strategy, ideal: Strategy,
     general = [c for block in ideal.blocks for c in block.commands if c.moves[0].automaton != "nurse"]
     assert rows["General"].commands == len(general)
     ours = [c for block in strategy.blocks for c in block.commands if c.moves[0].automaton != "nurse"]
-    assert rows["Centralized"].commands == sum(not is_end(c.moves[0].edge) for c in ours)
+    assert rows["Centralized"].commands == sum(not c.moves[0].edge.is_end for c in ours)
 
 
 @QUICK

@@ -11,13 +11,15 @@ import pytest
 from benchmarks.families import deliver_by_robots
 from pursue_gen.explanation.network_words import zone_texts
 from pursue_gen.language import load, parse
+from pursue_gen.language.network_names import reach_objective, safety_objective
 from pursue_gen.partition import partition
 from pursue_gen.solving.decomposition import won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solution import Solution, solve_scenario
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tools.report.strategy_data import UNKNOWN, StrategyData, as_json, size, strategy_data_of
+from pursue_gen.tga.watchers import Watcher
+from pursue_gen.tools.report.strategy_data import UNKNOWN, StrategyData, as_json, shown_name, size, strategy_data_of
 from tests.patrols import corridor
 
 SCENARIOS = Path(__file__).resolve().parents[3] / "scenarios"
@@ -140,3 +142,10 @@ def test_of_tours_each_robot_has_a_part_and_what_is_kept_apart_is_not_left_out()
     places = {name: [words for words, *_ in shown] for name, _, shown in data.automata}
     assert "stop 2 of 11" in places["bot1_tour"]
     assert data.left_out == ()
+
+
+def test_an_objective_is_called_by_its_number_and_by_the_robots_for_which_it_is_watched() -> None:
+    assert shown_name(safety_objective(0), "deadline") == "the objective"
+    assert shown_name(reach_objective(1), "goal") == "goal 2"
+    watcher = Watcher(safety_objective(2), ("cart_1", "cart_2"))
+    assert shown_name(watcher.name, "deadline") == "objective 3 for cart_1 and cart_2"
