@@ -37,8 +37,7 @@ def test_quick_tests_pass_with_the_oldest_packages(python38: str) -> None:
 
 
 def test_tests_that_solve_games_pass_with_the_native_engine(engine38: str) -> None:
-    code = "from pursue_gen.synthesis.native import engine; print(engine.available())"
-    assert said([engine38, "-c", code]).stdout == "True\n"
+    assert said([engine38, "-c", "from pursue_gen.synthesis.native import _core"]).returncode == 0
     passed(engine38, *SOLVING)
 
 
