@@ -55,14 +55,14 @@ def excuse(reason: object) -> None:
     """Why there is no native solver, and what to do."""
     print(
         f"pursue-gen: the native solver and checker were not built ({reason}).\n"
-        "pursue-gen: install a C++17 compiler (Debian: g++ python3-dev) and install again; until then the slower\n"
-        "pursue-gen: Python ones serve.",
+        "pursue-gen: install a C++17 compiler (Debian: g++ python3-dev) and install again; until then nothing can be\n"
+        "pursue-gen: solved.",
         file=sys.stderr,
     )
 
 
 class OptionalBuild(build_ext):
-    """Builds the native solver if it can; without it the Python reference serves."""
+    """Builds solver and checker if it can; without them nothing is solved, but all else works."""
 
     def run(self) -> None:
         """Never fails the installation."""

@@ -7,12 +7,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import Callable, Dict, List, Optional
-from unittest import mock
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.outcomes import LimitHit, Lost
 from pursue_gen.proof.checker import verify
-from pursue_gen.proof.native import tables
 from pursue_gen.solving.decomposition import Found, won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules, played
@@ -24,9 +22,10 @@ from pursue_gen.synthesis.engine import Engine
 from pursue_gen.synthesis.game import Game
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.native.engine import NativeEngine
-from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga.network import Kind, Network, Objective
+from tests.oracle.checker import in_python
+from tests.oracle.engine import ReferenceEngine
 
 PLAIN, TWIN, NATIVE, IN_TURN, SOONEST, REGIONS = "plain", "python", "native", "in turn", "soonest", "regions"
 COMMAND, WHOLE, COMPOSED, NO_RESTS, FEW_CALLS = "command", "whole", "composed", "no rests", "few calls"
@@ -109,7 +108,7 @@ class Opinions:
             self.half_proven += 1
         else:
             self.proven += 1
-            with mock.patch.object(tables, "_proof", None):
+            with in_python():
                 again = verify(*how)
             if again != report:
                 self.faults.append(f"{who}: the checkers differ: {report.states} and {again.states}, {again.reason}")
@@ -141,7 +140,7 @@ def on_game(network: Network, objective: Objective, rules: Rules, least: int) ->
         found.ask(SOONEST, lambda: _decided(NativeEngine(), game, _NATIVE_WORK, soonest=True))
     if len(game.clocks) <= _CLOCKS and 0 < _positions(game, found.states) <= _POSITIONS:
         found.verdicts[REGIONS] = _on_regions(game)
-    by_twin = SolveOptions(Limits(work=_WORK), engine=ReferenceEngine.name)
+    by_twin = SolveOptions(Limits(work=_WORK), engine=ReferenceEngine())
     command = SolveOptions(most_work=_NATIVE_WORK)
     found.ask(f"{TWIN}, proven", lambda: found.check(TWIN, solution(network, objective, rules, by_twin)))
     found.ask(COMMAND, lambda: found.check(COMMAND, solved(network, objective, rules, command)))
@@ -177,7 +176,7 @@ def on_scenario(network: Network, objective: Objective, rules: Rules) -> Opinion
     game, reaction = played(network, rules), rules.reaction
 
     def whole() -> bool:
-        verdict = solve(game, objective, reaction, NativeEngine.name, _SCENARIO, whole=True)
+        verdict = solve(game, objective, reaction, NativeEngine(), _SCENARIO, whole=True)
         found.states = verdict.stats.discrete_states
         return verdict.won
 
@@ -199,6 +198,6 @@ def on_scenario(network: Network, objective: Objective, rules: Rules) -> Opinion
     command = SolveOptions(most_work=_SCENARIO.work)
     found.ask(COMMAND, lambda: found.check(COMMAND, solved(network, objective, rules, command)))
     if 0 < found.states <= _TWIN_STATES:
-        by_twin = SolveOptions(Limits(work=_WORK), engine=ReferenceEngine.name)
+        by_twin = SolveOptions(Limits(work=_WORK), engine=ReferenceEngine())
         found.ask(TWIN, lambda: found.check(TWIN, solution(network, objective, rules, by_twin)))
     return found

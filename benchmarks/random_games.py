@@ -29,7 +29,6 @@ from pursue_gen.solving.solvers import solved
 from pursue_gen.solving.verdict import margins
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.limits import Limits
-from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.tga.network import (
     Automaton,
     ClockBound,
@@ -42,6 +41,7 @@ from pursue_gen.tga.network import (
     Sync,
     Test,
 )
+from tests.oracle.engine import ReferenceEngine
 
 LEAST = 20
 """The games have at least so many discrete states."""

@@ -1,7 +1,7 @@
 """Python 3.8 with the oldest packages that do, as Ubuntu 20.04 and ROS Noetic have them, in .venv38 of the checkout.
 
-It is made once, and the native engine is built for it after each change of that. PURSUE_PYTHON38 names a Python 3.8;
-else it is looked for on PATH and among pyenv's.
+It is made once, and the native solver and checker are built for it after each change of these. PURSUE_PYTHON38 names a
+Python 3.8; else it is looked for on PATH and among pyenv's.
 """
 
 from __future__ import annotations
@@ -26,8 +26,9 @@ from tests.conftest import ROOT
 PLACE = ROOT / ".venv38"
 OLDEST = [f"{need.name}=={need.oldest}" for need in (*NEEDS, TORNADO)]
 WITH_THEM = ["MarkupSafe==1.1.1", "cryptography==2.8", "hypothesis==6.113.0", "pybind11==2.10.0", "pytest==8.3.5"]
-"""MarkupSafe is what jinja2 2.10 works with; pybind11 builds the engine; the others run the tests."""
-ENGINE = ROOT / "pursue_gen" / "synthesis" / "native"
+"""MarkupSafe is what jinja2 2.10 works with; pybind11 builds solver and checker; the others run the tests."""
+MODULES = {"synthesis/native": "_core", "proof/native": "_proof"}
+"""Of `pursue_gen`: the folders of solver and checker, and what they are built as."""
 
 ROS_PACKAGES = (
     "actionlib_msgs", "catkin", "diagnostic_msgs", "genmsg", "genpy", "geometry_msgs", "move_base_msgs", "roscpp",
@@ -94,24 +95,28 @@ def _made(base: str) -> str:
 
 
 def build_engine(python: str) -> None:
-    """Builds the native engine for this Python where that is not done; skips the test where it cannot be built.
+    """Builds solver and checker for this Python where that is not done; skips the test where they cannot be built.
 
-    Without optimization: that takes a third of the time, and the engine is used for small games.
+    Hardly optimized, with matrices of one size: that takes a sixth of the time, and they are used for small games.
     """
     code = "import pybind11, sysconfig as s; print(s.get_config_var('EXT_SUFFIX'), s.get_path('include')," \
         " pybind11.get_include(), sep='\\n')"  # fmt: skip
     suffix, *headers = said([python, "-c", code]).stdout.splitlines()
     if shutil.which("g++") is None or not Path(headers[0], "Python.h").is_file():
-        pytest.skip(f"the native engine cannot be built here: it needs g++ and {headers[0]}/Python.h")
-    built, stamp = ENGINE / f"_core{suffix}", PLACE / "engine"
+        pytest.skip(f"solver and checker cannot be built here: they need g++ and {headers[0]}/Python.h")
+    package, stamp = ROOT / "pursue_gen", PLACE / "engine"
+    built = {package / folder: package / folder / f"{name}{suffix}" for folder, name in MODULES.items()}
     sources = sorted(path for end in ("*.hpp", "*.cpp") for path in (ROOT / "pursue_gen").rglob(end))
     wanted = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()
     with _alone():
-        if built.is_file() and stamp.is_file() and stamp.read_text(encoding="utf-8") == wanted:
+        there = all(module.is_file() for module in built.values())
+        if there and stamp.is_file() and stamp.read_text(encoding="utf-8") == wanted:
             return
-        words = ["g++", "-std=c++17", "-O0", "-g0", "-shared", "-fPIC", "-fvisibility=hidden", "-Ipursue_gen"]
-        done = said([*words, *(f"-I{folder}" for folder in headers), str(ENGINE / "module.cpp"), "-o", str(built)])
-        assert done.returncode == 0, done.stdout[-5000:]
+        words = ["g++", "-std=c++17", "-O1", "-g0", "-DPURSUE_ONE_SIZE", "-shared", "-fPIC", "-fvisibility=hidden"]
+        words += [f"-I{folder}" for folder in ("pursue_gen", *headers)]
+        for folder, module in built.items():
+            done = said([*words, str(folder / "module.cpp"), "-o", str(module)])
+            assert done.returncode == 0, done.stdout[-5000:]
         stamp.write_text(wanted, encoding="utf-8")
 
 

@@ -30,13 +30,6 @@ class Controllers(str, Enum):
     GENERAL = "general"
 
 
-class Engine(str, Enum):
-    """Which solver."""
-
-    NATIVE = "native"
-    PYTHON = "python"
-
-
 class Solver(str, Enum):
     """Whose solver, instead of the built-in one."""
 
@@ -132,7 +125,6 @@ MARGIN = typer.Option(
 )
 JSON = typer.Option(False, "--json", help="Print JSON on stdout.")
 PLAN = typer.Option(None, metavar="FILE", help="Use this plan (UPPAAL-TIGA's format) instead of solving.")
-ENGINE = typer.Option(None, help="The solver; native where it was built, by default.")
 CONTROLLERS = typer.Option(Controllers.DISTRIBUTED, help="As for ws.")
 KEY = typer.Option(
     None, "--key", metavar="NAME|PATH", help="Sign with this key; with the only one there is by default."
@@ -170,7 +162,6 @@ _REQUEST: Mapping[str, Tuple[Any, Any]] = {
     "reaction": (Optional[str], REACTION),
     "slack": (List[str], SLACK),
     "plan": (Optional[Path], PLAN),
-    "engine": (Optional[Engine], ENGINE),
     "solver": (Optional[Solver], SOLVER),
     "verifytga": (Optional[Path], VERIFYTGA),
     "optimize": (Optional[Optimize], OPTIMIZE),
@@ -184,7 +175,7 @@ _REQUEST: Mapping[str, Tuple[Any, Any]] = {
 REQUEST: Any = None
 """Marks the parameter `request` of a command, for which `with_request` declares the options."""
 
-MISSION = tuple(name for name in _REQUEST if name not in ("engine", "whole"))
+MISSION = tuple(name for name in _REQUEST if name != "whole")
 """The options of the commands that generate what robots run."""
 
 
@@ -230,7 +221,7 @@ def _request(values: Dict[str, Any]) -> SolveRequest:
     memory, seconds = texts.pop("memory", None), texts.pop("limit", None)
     memory = careful_memory() if memory is None else memory
     limits = Limits(DEFAULT_SECONDS, memory, by_default=True) if seconds is None else Limits(seconds, memory)
-    how = {name: texts.pop(name) for name in ("engine", "solver", "verifytga", "optimize", "whole") if name in texts}
+    how = {name: texts.pop(name) for name in ("solver", "verifytga", "optimize", "whole") if name in texts}
     if "slack" in texts:
         texts["slack"] = tuple(texts["slack"])
     return SolveRequest(**texts, options=SolveOptions(limits=limits, **how))

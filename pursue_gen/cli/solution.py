@@ -17,7 +17,7 @@ from pursue_gen.solving.optional import Promised, promised_of
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import rules_text
 from pursue_gen.solving.verdict import verdict_text
-from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.limits import UNDECIDED, Limits
 from pursue_gen.tga import translate
 
 
@@ -97,7 +97,8 @@ def explained(
             explanation = explain(scenario, rules, limits, progress, problem.parts)
         info(render(explanation).rstrip())
         return {"explanation": as_json(explanation)}
-    if isinstance(problem, LimitHit) and request.plan is None and request.options.solver is None:
+    ours = request.plan is None and request.options.solver is None
+    if isinstance(problem, LimitHit) and ours and problem.diagnostics[0].code == UNDECIDED:
         from pursue_gen.explanation import costs
 
         show(problem.diagnostics)

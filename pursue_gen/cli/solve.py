@@ -18,7 +18,7 @@ from pursue_gen.outcomes import LimitHit, Lost, NotProven, TooSlow
 if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest
 
-SOLVERS = ("engine", "solver", "verifytga", "whole")
+SOLVERS = ("solver", "verifytga", "whole")
 OPTIONS = ("ends", "reaction", "slack", "limit", "memory", "optimize", "within", *SOLVERS)
 
 

@@ -14,7 +14,7 @@ from pursue_gen.explanation.position import Position
 from pursue_gen.language import network_names as names
 from pursue_gen.synthesis.game import Game, JointMove, State, invariant
 from pursue_gen.synthesis.lookup import blocks_of, facts_of
-from pursue_gen.synthesis.reference.relaxed import RelaxedPlanner
+from pursue_gen.synthesis.relaxed import RelaxedPlanner
 from pursue_gen.synthesis.strategy import Block, Strategy, Zone
 from pursue_gen.tga.network import Edge
 from pursue_gen.zones.dbm import is_strict

@@ -79,13 +79,13 @@ def strategy_margin(
 
 
 def game_margin(
-    network: Network, objective: Objective, reaction: Fraction, engine: Optional[str] = None, limits: Limits = NO_LIMITS
+    network: Network, objective: Objective, reaction: Fraction, limits: Limits = NO_LIMITS
 ) -> Margin:
     """The margin of a game that is won with the reaction, as far as it is found within the limits."""
     start = limits.now()
 
     def wins(delay: Fraction) -> bool:
-        return solve(network, objective, delay, engine=engine, limits=limits.since(start)).won
+        return solve(network, objective, delay, limits=limits.since(start)).won
 
     return _largest(wins, reaction)
 

@@ -9,7 +9,7 @@ from typing import Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, warning
 from pursue_gen.files import LARGEST_TEXT, read_text
-from pursue_gen.outcomes import LimitHit, NotProven
+from pursue_gen.outcomes import LimitHit, NotProven, Unavailable
 from pursue_gen.solving.least_time import unscaled
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
@@ -74,6 +74,8 @@ def trials(
             left = options.since(start)
             with enforced(left.limits, PROVING):
                 proven = prove(game, objective, strategy, rules.reaction, None, left, simpler=False)
+        except Unavailable:
+            raise
         except PursueError as problem:
             done.append(Trial(rules, None, problem))
             continue

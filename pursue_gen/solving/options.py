@@ -7,15 +7,17 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Optional
 
+from pursue_gen.synthesis.engine import Engine
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
+from pursue_gen.synthesis.solve import NATIVE
 
 
 @dataclass(frozen=True)
 class SolveOptions:
     """What solving and proving share; nothing in it changes which game is played.
 
-    `limits` hold for solving and proving together; `progress` is called a few times a second. `engine`: "native",
-    "python", or None for the native one where it was built. `optimize`: "time" for the strategy with the least
+    `limits` hold for solving and proving together; `progress` is called a few times a second. `engine`: the
+    solver's own, or another one of its contract. `optimize`: "time" for the strategy with the least
     worst-case time to the goal, "none" for the first one found, None for a quick one that is found with little work.
     `within`: the goal has to be reached in so many time units; None: some time. `whole`: what cannot matter is not left
     out of the game, and the game is solved in one piece (an experiment). `solver`: None for the built-in solver,
@@ -24,7 +26,7 @@ class SolveOptions:
     """
 
     limits: Limits = NO_LIMITS
-    engine: Optional[str] = None
+    engine: Engine = NATIVE
     progress: Optional[Listener] = None
     optimize: Optional[str] = None
     within: Optional[Fraction] = None

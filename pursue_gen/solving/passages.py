@@ -1,6 +1,6 @@
 """Robots that must never be at one place, and have to be at several to reach the goal: orders of passage.
 
-In rounds: what has to be done next, and where, comes from a relaxed plan (`synthesis.reference.relaxed`), as if nobody
+In rounds: what has to be done next, and where, comes from a relaxed plan (`synthesis.relaxed`), as if nobody
 was in anybody's way; `routes` brings the robots there. What comes out is one play. The strategy that does the same in
 each play (`passage_steps`) lets robots that do not meet move at the same time. Where it is proven it wins; where
 nothing is found, nothing is known.
@@ -20,7 +20,7 @@ from pursue_gen.solving.routes import Floor, routes
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import State
-from pursue_gen.synthesis.reference.relaxed import RelaxedPlanner
+from pursue_gen.synthesis.relaxed import RelaxedPlanner
 from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga.network import Automaton, Clause, Edge, Kind, Network, Objective
 from pursue_gen.tga.part import part_of

@@ -39,9 +39,6 @@ def solved(network: Network, objective: Objective, rules: Rules, options: SolveO
     if options.optimize is not None or options.within is not None:
         hint = "leave out --solver, or --optimize and --within"
         raise usage_error("UPPAAL-TIGA's solver does not look at the time to the goal", hint)
-    if options.engine is not None:
-        message = f"{options.engine} is an engine of the built-in solver"
-        raise usage_error(message, "use --engine or --solver verifytga, not both")
     from pursue_gen.solving.verifytga import run_verifytga
 
     game = played(network, rules)

@@ -9,8 +9,9 @@ from fractions import Fraction
 from typing import AbstractSet, Optional, Tuple
 
 from pursue_gen.outcomes import LimitHit
+from pursue_gen.synthesis.engine import Engine
 from pursue_gen.synthesis.limits import NOTHING_YET, SOLVING, Limits, Listener, limit_reached
-from pursue_gen.synthesis.solve import Stats, Verdict, guess, solve
+from pursue_gen.synthesis.solve import NATIVE, Stats, Verdict, guess, solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
 
@@ -29,7 +30,7 @@ class Budget:
         self,
         limits: Limits,
         progress: Optional[Listener] = None,
-        engine: Optional[str] = None,
+        engine: Engine = NATIVE,
         phase: str = SOLVING,
         whole: bool = False,
     ) -> None:

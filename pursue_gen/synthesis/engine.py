@@ -56,11 +56,7 @@ class Engine(ABC):
     """
 
     name: ClassVar[str]
-    """What `--engine` calls it."""
-
-    def available(self) -> bool:
-        """True if it can be used in this installation."""
-        return True
+    """What verdicts call it."""
 
     def holds(self, game: Game) -> bool:
         """True if its numbers can hold all times and values of the game."""

@@ -1,4 +1,4 @@
-"""A network and an objective as integer tables: what both engines play on.
+"""A network and an objective as integer tables: what an engine plays on.
 
 Everything is an index: clocks count from 1 (0 is the constant 0), all else from 0. All bounds are scaled so that they
 and the reaction delay are integers: a time t of the network is `t * scale` here. A bound is (i, j, raw), see `dbm`.

@@ -1,4 +1,4 @@
-"""One function in front of the engines: who wins, and with which strategy."""
+"""One function in front of the engine: who wins, and with which strategy."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from fractions import Fraction
 from functools import partial
 from typing import AbstractSet, Callable, Mapping, Optional, Tuple
 
-from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.outcomes import Unavailable
+from pursue_gen.diagnostics import error
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.synthesis.engine import Engine, Outcome
@@ -16,7 +16,6 @@ from pursue_gen.synthesis.game import Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.native.engine import NativeEngine
 from pursue_gen.synthesis.overtaking import ended_earlier, without_overtaking
-from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.synthesis.strategy_from import to_ranks, to_strategy
 from pursue_gen.tga.network import Network, Objective
@@ -59,29 +58,15 @@ class Verdict:
     cautious: Callable[[], Optional[Strategy]] = _none
 
 
-ENGINES: Tuple[Engine, ...] = (NativeEngine(), ReferenceEngine())
-"""The fastest first."""
-
-
-def choose(name: Optional[str] = None) -> Engine:
-    """The engine of that name; None: the first that is available.
-
-    Raises PursueError with exit status 6 where it is not available, KeyError for a name that no engine has.
-    """
-    if name is None:
-        return next(engine for engine in ENGINES if engine.available())
-    engine = {engine.name: engine for engine in ENGINES}[name]
-    if not engine.available():
-        hint = "install a C++17 compiler (Debian: g++ python3-dev) and then pursue-gen again, or use the python engine"
-        raise Unavailable([error("SYN011", f"the {engine.name} engine was not built", hint=hint)])
-    return engine
+NATIVE = NativeEngine()
+"""The engine, where no other is given: tests give its readable twin."""
 
 
 def solve(
     network: Network,
     objective: Objective,
     reaction: Fraction = Fraction(0),
-    engine: Optional[str] = None,
+    engine: Engine = NATIVE,
     limits: Limits = NO_LIMITS,
     progress: Optional[Listener] = None,
     whole: bool = False,
@@ -97,14 +82,13 @@ def solve(
     lost so may be won. `first`: the least work for the game as it is, before searches take turns (see `Engine`); None:
     all that the limits give it, as searches in turn would use up more than half of that in vain.
 
-    `reaction` is the delay of a command in time units, `engine` the name of one (see `choose`); `progress` is called
-    a few times a second. Without a name the first engine that holds the game decides it. Raises PursueError for
-    networks that the game does not support, with exit status 5 at a limit, with 6 where the engine is not available,
-    and with 2 where it does not hold the game.
+    `reaction` is the delay of a command in time units; `progress` is called a few times a second. Raises PursueError
+    for networks that the game does not support, LimitHit at a limit and where the engine does not hold the game,
+    Unavailable where it was not built.
     """
-    chosen, game, gone = _compiled(network, objective, reaction, engine, whole, without_pauses)
-    outcome = chosen.giving_first(limits.work if first is None else first).solve(game, limits, progress, soonest)
-    stats = _stats(chosen, outcome)
+    game, gone = _compiled(network, objective, reaction, engine, whole, without_pauses)
+    outcome = engine.giving_first(limits.work if first is None else first).solve(game, limits, progress, soonest)
+    stats = _stats(engine, outcome)
     if not outcome.won:
         return Verdict(False, None, stats, None)
     blocks, ranks = outcome.blocks, outcome.ranks
@@ -123,7 +107,7 @@ def guess(
     network: Network,
     objective: Objective,
     reaction: Fraction = Fraction(0),
-    engine: Optional[str] = None,
+    engine: Engine = NATIVE,
     limits: Limits = NO_LIMITS,
     progress: Optional[Listener] = None,
     whole: bool = False,
@@ -135,34 +119,31 @@ def guess(
     `late`: the automata of patrols; by one by which these wait until they are due. Other arguments, and what it raises,
     as for `solve`. An engine that does not guess finds none.
     """
-    chosen, game, gone = _compiled(network, objective, reaction, engine, whole, without_pauses)
-    outcome = chosen.guess(game, limits, progress, late)
-    return to_strategy(game, outcome.blocks, gone) if outcome.won else None, _stats(chosen, outcome)
+    game, gone = _compiled(network, objective, reaction, engine, whole, without_pauses)
+    outcome = engine.guess(game, limits, progress, late)
+    return to_strategy(game, outcome.blocks, gone) if outcome.won else None, _stats(engine, outcome)
 
 
 def _compiled(
     network: Network,
     objective: Objective,
     reaction: Fraction,
-    engine: Optional[str],
+    engine: Engine,
     whole: bool,
     without_pauses: bool,
-) -> Tuple[Engine, Game, Tuple[str, ...]]:
-    """An engine that holds the game, the game, and the clocks that it leaves out."""
-    chosen = choose(engine)
+) -> Tuple[Game, Tuple[str, ...]]:
+    """The game, which the engine holds, and the clocks that it leaves out."""
     game = compile_game(network, objective, reaction)
     part = cone_of_influence(network, objective)
     gone = pauses(part) if without_pauses else ()
     if gone or part is not network:
         part = without_clocks(part, gone)
         game = compile_game(without_clocks(network, gone) if whole else part, objective, reaction, part)
-    if not chosen.holds(game):
-        if engine is not None:
-            hint = "leave the choice to pursue-gen, or use --engine python"
-            message = f"the {engine} engine cannot hold the game: its times are too large, or it has too many clocks"
-            raise PursueError([error("SYN012", message, hint=hint)])
-        chosen = next(other for other in ENGINES if other.available() and other.holds(game))
-    return chosen, game, gone
+    if not engine.holds(game):
+        hint = "choose a larger unit of time, or times with fewer decimals, so that the numbers become smaller"
+        message = "the solver cannot hold the game: its times are too large, or it has too many clocks"
+        raise LimitHit([error("SYN012", message, hint=hint)])
+    return game, gone
 
 
 def _stats(engine: Engine, outcome: Outcome) -> Stats:

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Deque, Dict, Iterable, List, Sequence, Set, Tuple
 
 from pursue_gen.synthesis.game import Action, Bound, Game, RawBlock, State, initial_state, is_bad, is_goal, joint_moves
+from pursue_gen.synthesis.native.engine import core
 from pursue_gen.synthesis.strategy import (
     Block,
     Command,
@@ -19,12 +20,7 @@ from pursue_gen.synthesis.strategy import (
     Zone,
     ZoneKey,
 )
-from pursue_gen.zones.dbm import INF, LE_ZERO, constant, is_strict
-
-try:
-    from pursue_gen.synthesis.native import _core
-except ImportError:  # no compiler when the package was installed
-    _core = None  # type: ignore[assignment]
+from pursue_gen.zones.dbm import constant, is_strict
 
 Matrix = Tuple[int, ...]
 
@@ -133,40 +129,5 @@ def _zone(game: Game, matrix: Matrix, known: _Known) -> Zone:
 
 def minimal(dim: int, matrix: Matrix) -> List[Bound]:
     """The bounds (i, j, raw) of a canonical matrix that the others, and clocks being >= 0, do not imply."""
-    return minimal_in_python(dim, matrix) if _core is None else _core.minimal(dim, matrix)
-
-
-def minimal_in_python(dim: int, matrix: Matrix) -> List[Bound]:
-    """The same without the native engine.
-
-    Larsen, Larsson, Pettersson and Yi 1997: clocks at fixed differences form a class; each is bound to the first of its
-    class, and between the first ones a bound is left out where a way round is as tight.
-    """
-    rows = [matrix[i * dim : i * dim + dim] for i in range(dim)]
-    first = list(range(dim))
-    for i, row in enumerate(rows):
-        for j in range(i):
-            # The difference of the two clocks is one number: each bound is `<=` and they add up to `<= 0`.
-            if row[j] + rows[j][i] == 2 and row[j] & 1:
-                first[i] = j
-                break
-    heads = [i for i in range(dim) if first[i] == i]
-    from_zero = {first[k] for k in range(1, dim) if rows[0][k] == LE_ZERO}
-    kept: List[Bound] = []
-    for i, row in enumerate(rows):
-        of_class = first[i]
-        ways = [(k, row[k], rows[k]) for k in heads if k != i and row[k] < INF] if of_class == i else []
-        for j, bound in enumerate(row):
-            # That a clock is >= 0 goes without saying, also where it tells how large another of its class is at least.
-            if i == j or bound >= INF or (i == 0 and (bound == LE_ZERO or j in from_zero)):
-                continue
-            if of_class == first[j]:
-                if of_class in (i, j):
-                    kept.append((i, j, bound))
-            elif of_class == i and first[j] == j:
-                for k, there, onward in ways:
-                    if k != j and there + onward[j] - ((there | onward[j]) & 1) <= bound:
-                        break
-                else:
-                    kept.append((i, j, bound))
-    return kept
+    found: List[Bound] = core().minimal(dim, matrix)
+    return found

@@ -1,7 +1,7 @@
 """How long it takes at least to the goal: a lower bound that holds whatever the controller does.
 
 The environment is taken to be lazy: it moves only where an invariant forces it, as late as possible, and commands take
-effect as late as the reaction delay allows. Against that the relaxed problem (see `reference.relaxed`) is solved, with
+effect as late as the reaction delay allows. Against that the relaxed problem (see `relaxed`) is solved, with
 times: each fact holds as soon as the cheapest edge can give it, and the latest of an edge's preconditions decides when
 that is (the h-max of Bonet and Geffner 2001). The environment may play so, so no strategy guarantees less.
 """

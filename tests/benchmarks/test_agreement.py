@@ -20,10 +20,7 @@ from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.outcomes import LimitHit, Lost, NotProven
 from pursue_gen.proof.checker import Report
 from pursue_gen.solving.rules import IDEAL
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.tga.network import Kind
-
-pytestmark = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 
 EVERYBODY = {"plain", "python", "native", "in turn", "soonest", "regions", "python, proven", "command"}
 

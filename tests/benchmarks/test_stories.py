@@ -9,12 +9,10 @@ import pytest
 
 from benchmarks.synthesis import STORIES, scenario_cases
 from pursue_gen.language import load
-from pursue_gen.synthesis.native.engine import NativeEngine
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 
 FILES = sorted(STORIES.glob("*.pur"))
-needs_native = pytest.mark.skipif(not NativeEngine().available(), reason="the native engine is not built here")
 
 
 def test_there_are_a_hotel_an_airport_and_a_museum() -> None:
@@ -30,7 +28,6 @@ def test_a_story_has_five_places_four_agents_and_two_rules(file: Path) -> None:
     assert any(not agent.controllable for agent in scenario.agents)
 
 
-@needs_native
 @pytest.mark.parametrize("name", ["hotel", "airport"])
 def test_a_story_is_won_in_the_default_game(name: str) -> None:
     (file,) = (file for file in FILES if file.stem == name)

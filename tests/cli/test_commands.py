@@ -33,7 +33,6 @@ from pursue_gen.language import load
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import read_network, read_query
@@ -386,22 +385,25 @@ def test_solve_refuses_what_would_mix_its_output(words: Tuple[str, ...], message
     assert message in told.err
 
 
-@pytest.mark.parametrize("engine", ["native", "python"])
-def test_both_engines_can_be_asked(tmp_path: Path, engine: str) -> None:
-    if engine == "native" and not native.available():
-        pytest.skip("the native engine is not built here")
-    told = pursue("solve", FIRST, "--engine", engine, "-o", tmp_path / "plan.txt")
-    assert (told.status, told.out) == (0, "")
-    assert f"{engine} engine" in told.err
-    assert pursue("verify", FIRST, tmp_path / "plan.txt").status == 0
-
-
-def test_a_missing_native_engine_is_reported() -> None:
-    with mock.patch("pursue_gen.synthesis.native.engine._core", None):
-        assert pursue("solve", FIRST, "-o", os.devnull).status == 0
-        told = pursue("solve", FIRST, "--engine", "native")
+@pytest.mark.parametrize(
+    ("command", "missing"),
+    [
+        ("solve", "synthesis.native.engine._core"),
+        ("solve", "proof.native.tables._proof"),
+        ("ws", "synthesis.native.engine._core"),
+        ("verify", "proof.native.tables._proof"),
+    ],
+)
+def test_without_the_native_solver_or_checker_it_says_what_to_do(tmp_path: Path, command: str, missing: str) -> None:
+    plan = tmp_path / "plan.txt"
+    assert pursue("solve", FIRST, "-o", plan).status == 0
+    words = {"solve": [], "ws": ["-o", tmp_path / "ws"], "verify": [plan]}[command]
+    with mock.patch(f"pursue_gen.{missing}", None):
+        told = pursue(command, FIRST, *words)
+        assert pursue("check", FIRST).status == 0, "what needs neither goes on"
     assert (told.status, told.out) == (6, "")
-    assert "the native engine was not built" in told.err
+    assert "SYN011" in told.err and "./run setup" in told.err
+    assert not (tmp_path / "ws").exists()
 
 
 def test_solve_in_json(tmp_path: Path) -> None:
@@ -490,16 +492,15 @@ def test_a_win_in_the_ideal_game_only_is_said(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("option", [["--limit", "0.000001"], ["--memory", "1"]])
-@pytest.mark.parametrize("engine", [[], ["--engine", "python"]])
-def test_a_limit_is_no_verdict(option: List[str], engine: List[str]) -> None:
-    told = pursue("solve", FIRST, *option, *engine, "--json")
+def test_a_limit_is_no_verdict(option: List[str]) -> None:
+    told = pursue("solve", FIRST, *option, "--json")
     assert told.status == 5
     verdict = json.loads(told.out)
     assert verdict["won"] is None
     assert [finding["code"] for finding in verdict["diagnostics"]] == ["SYN010"]
     assert option[0] in told.err and "states were reached" in told.err
     assert "decided" in verdict["costs"]
-    assert "costs" not in json.loads(pursue("solve", FIRST, *option, *engine, "--json", "--no-explain").out)
+    assert "costs" not in json.loads(pursue("solve", FIRST, *option, "--json", "--no-explain").out)
 
 
 @pytest.mark.parametrize("command", ["solve", "ws", "report", "sim", "play"])

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from pursue_gen.cli.options import MISSION, REQUEST, with_request
 from pursue_gen.solving.request import SolveRequest
 
-ALL = (*MISSION, "engine")
+ALL = (*MISSION, "whole")
 AFTER = typer.Option(Path("."))
 
 
@@ -41,14 +41,14 @@ def test_without_arguments_it_is_the_default_request() -> None:
 
 def test_every_option_arrives_in_the_request() -> None:
     game = "--controllers general --reach-obj all --ends reported --reaction 1/20 --slack 2 --slack bot1=5 --plan p.txt"
-    how = "--solver verifytga --verifytga /bin/tiga --optimize time --limit 3 --memory 7 --engine python"
+    how = "--solver verifytga --verifytga /bin/tiga --optimize time --limit 3 --memory 7"
     _, request, _ = requests(*ALL, arguments=f"{game} {how}")
     assert isinstance(request, SolveRequest) and not request.is_default
     assert (request.controllers, request.reach_obj, request.ends) == ("general", "all", "reported")
     assert (request.reaction, request.slack, request.plan) == ("1/20", ("2", "bot1=5"), Path("p.txt"))
     options = request.options
     assert (options.solver, options.verifytga, options.optimize) == ("verifytga", Path("/bin/tiga"), "time")
-    assert (options.limits.seconds, options.limits.memory, options.engine) == (3, 7, "python")
+    assert (options.limits.seconds, options.limits.memory) == (3, 7)
 
 
 @pytest.mark.parametrize("name", MISSION)

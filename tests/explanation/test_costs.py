@@ -14,7 +14,6 @@ from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.limits import Limits
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.tga import scenario_objective, translate
 from tests.large_scenarios import many_walkers
@@ -36,8 +35,6 @@ agent "child" mobile 1 location hall
 reach_objective: do serve
 """
 
-needs_native = pytest.mark.skipif(not native.available(), reason="takes minutes in the Python engine")
-
 
 def decided(scenario: Scenario) -> Verdict:
     return solve(played(translate(scenario), DEFAULT), scenario_objective(scenario), DEFAULT.reaction)
@@ -48,7 +45,6 @@ def little_work(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(costs_module, "WORK", 20_000_000)
 
 
-@needs_native
 @pytest.mark.usefixtures("little_work")
 def test_parts_without_which_it_is_decided_are_named_the_cheapest_first() -> None:
     found = costs(CROWD, DEFAULT)
@@ -61,7 +57,6 @@ def test_parts_without_which_it_is_decided_are_named_the_cheapest_first() -> Non
         assert (again.won, again.stats.discrete_states) == (cost.won, cost.states)
 
 
-@needs_native
 @pytest.mark.usefixtures("little_work")
 def test_the_costs_are_the_same_at_each_time() -> None:
     def timeless() -> Costs:
@@ -98,7 +93,6 @@ def test_it_is_over_in_some_seconds_and_within_the_memory_whoever_has_set_no_lim
     assert costs(anteroom, DEFAULT, Limits(by_default=True)).decided == ()
 
 
-@needs_native
 def test_where_no_part_alone_is_enough_several_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(costs_module, "_ALONE", 1e-9)
     found = costs(parse(ANTEROOM, "anteroom.pur"), DEFAULT)

@@ -18,7 +18,6 @@ from pursue_gen.explanation.explain import Explanation, as_json, explain, render
 from pursue_gen.language import parse
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, Rules, played
 from pursue_gen.synthesis.limits import Limits
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 from tests.cli.test_commands import pursue
@@ -275,7 +274,6 @@ def test_what_more_has_to_be_assumed_of_others_is_a_statement(name: str, claim: 
     assert [change.sentence for change in changes if change.what == "assumption"] == [claim]
 
 
-@pytest.mark.skipif(not native.available(), reason="takes minutes in the Python engine")
 @pytest.mark.parametrize("name", ["EB1", "WC2a", "CT3a"])
 def test_the_claims_about_the_published_scenarios_hold(reference_dir: Path, name: str) -> None:
     text = (reference_dir / name / "scenario.pur").read_text()
@@ -461,7 +459,6 @@ def test_whoever_could_act_without_end_and_need_not_is_not_blamed() -> None:
     assert explain(parse(text, "x.pur"), DEFAULT, Limits(PLENTY)).endless == ()
 
 
-@pytest.mark.skipif(not native.available(), reason="takes minutes in the Python engine")
 def test_who_wins_by_one_walk_is_shown_walking() -> None:
     explanation = explain(parse(errands_beside_a_visitor(6), "errands.pur", "errands"), DEFAULT)
     assert explanation.preventing == ("visitor",)
@@ -469,7 +466,6 @@ def test_who_wins_by_one_walk_is_shown_walking() -> None:
     assert walked and all("room1" in line.text or "hall" in line.text or "end" in line.text for line in walked)
 
 
-@pytest.mark.skipif(not native.available(), reason="takes minutes in the Python engine")
 def test_what_one_of_several_robots_cannot_keep_is_shown_with_that_robot() -> None:
     """The patrol of bot3, and that it is where person1 is: what the other robots could do is no matter to either."""
     scenario = parse(lab_scenario(3), "lab.pur", "lab")

@@ -20,7 +20,6 @@ from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.tga import scenario_objective, translate
 from tests.stories import CARE_HOME
@@ -166,7 +165,6 @@ def test_a_play_against_few_calls_is_found_where_the_game_of_all_calls_is_too_la
     assert play.end == "overdue" and describe(scenario, play)[-1].text.startswith("too late")
 
 
-@pytest.mark.skipif(not native.available(), reason="takes minutes in the Python engine")
 @pytest.mark.parametrize("seed", range(6))
 def test_an_objective_of_a_random_scenario_is_won_in_its_part_where_it_is_won_alone(seed: int) -> None:
     text = lab_scenario(seed, Size(places=4, robots=2, people=1, promises=3))

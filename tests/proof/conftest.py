@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from typing import Iterator
-from unittest import mock
 
 import pytest
 
-from pursue_gen.proof.native import tables
-
-built = pytest.mark.skipif(not tables.available(), reason="the native checker is not built here (no compiler)")
+from tests.oracle.checker import in_python
 
 
-@pytest.fixture(scope="module", autouse=True, params=[pytest.param("native", marks=built), "python"])
+@pytest.fixture(scope="module", autouse=True, params=["native", "python"])
 def twin(request: pytest.FixtureRequest) -> Iterator[str]:
     """The checker that is used: "native" or "python"."""
     name: str = request.param
     if name == "native":
         yield name
     else:
-        with mock.patch.object(tables, "_proof", None):
+        with in_python():
             yield name

@@ -21,7 +21,6 @@ from pursue_gen.proof.native.search import searches_of
 from pursue_gen.proof.search import Depth
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.limits import LimitMonitor
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone
@@ -353,7 +352,6 @@ def test_limits_and_strategies_of_the_other_side() -> None:
     assert kind(verify(STRAIGHT, REACH, replace(plan, counter=True))) == "counter-strategy"
 
 
-@pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 def test_where_the_hull_of_many_zones_fails_they_are_checked_one_by_one() -> None:
     scenario = parse(clean_by_robots(1), "cleaning.pur", "cleaning")
     net, objective = played(translate(scenario), Rules()), scenario_objective(scenario)

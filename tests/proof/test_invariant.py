@@ -21,7 +21,6 @@ from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.policies import won_by_policy
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.limits import LimitMonitor
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
@@ -35,8 +34,6 @@ from tests.synthesis.play_by_play import PlayByPlay
 from tests.synthesis.test_verdicts import published
 
 DELAYS = (Fraction(0), Fraction(1, 2), Fraction(1))
-
-needs_native = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 
 
 def covered(network: Network, objective: Objective, strategy: Strategy, reaction: Fraction) -> bool:
@@ -81,7 +78,6 @@ def test_who_goes_round_for_ever_leaves_nothing_that_is_covered_and_reaches_no_g
     assert "for ever" in verify(game, REACH, Strategy(tuple(goes))).reason
 
 
-@needs_native
 @pytest.mark.parametrize("name", ["EB1", "EB3", "WC1", "CT5"])
 def test_strategies_of_the_solver_pass_and_what_is_left_of_them_wins(reference_dir, monkeypatch, name):
     network, objective = published(reference_dir, name)
@@ -97,7 +93,6 @@ def test_strategies_of_the_solver_pass_and_what_is_left_of_them_wins(reference_d
     assert len(fewer.blocks) <= len(strategy.blocks)
 
 
-@needs_native
 def test_a_strategy_of_the_solver_with_one_zone_less_passes_only_where_no_play_misses_it(reference_dir):
     network, objective = published(reference_dir, "EB1")
     strategy = solve(network, objective).strategy
@@ -144,7 +139,6 @@ def test_a_strategy_that_does_not_know_the_start_does_not_pass():
     assert not covered(CAREFUL, SAFETY, late, Fraction(0))
 
 
-@needs_native
 def test_what_is_not_left_though_extrapolation_leads_out_of_it_is_proven() -> None:
     """The clock of the robot's rest is beyond all bounds there, and forgotten: then a person seems to come too soon."""
     text = lab_scenario(355329724, Size(places=4, robots=1, people=2, promises=2))

@@ -15,7 +15,6 @@ from pursue_gen.proof.checker import verify
 from pursue_gen.proof.margin import CAP, STEP, Margin, as_json, describe, game_margin, in_words, strategy_margin
 from pursue_gen.solving.rules import IDEAL, Rules
 from pursue_gen.solving.solution import solve_scenario
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Kind, Network, Objective
@@ -96,7 +95,6 @@ def test_the_thesis_s_scenarios_can_be_played_at_leisure_but_not_in_the_ideal_ga
     assert "no real robot" in describe(margin, ideal.strategy)
 
 
-@pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 def test_the_thief_is_caught_with_commands_that_are_late_but_not_by_the_ideal_strategy() -> None:
     scenario = load(thesis_scenario("catch_the_thief"))
     won, ideal = solve_scenario(scenario, Rules()), solve_scenario(scenario, IDEAL)
@@ -125,7 +123,6 @@ def test_solve_tells_both_margins_and_what_no_robot_can_play() -> None:
     assert found["playable"] is False and "game_margin" not in found and "no real robot" in ideal.err
 
 
-@pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 def test_report_and_workspaces_tell_the_margin(tmp_path: Path) -> None:
     file = thesis_scenario("1")
     assert "ideal game: Margin 0: it loses when a command takes effect 0.05" in pursue("report", file).out

@@ -14,7 +14,7 @@ from benchmarks.lab_scenarios import Size, lab_scenario
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.proof.checker import verify
+from pursue_gen.proof.checker import LIMIT, Report, verify
 from pursue_gen.proof.shares import names_of
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
@@ -32,6 +32,7 @@ from pursue_gen.tools.simulation.make import make_case
 from pursue_gen.tools.simulation.mission import simulate_mission
 from pursue_gen.tools.simulation.outcome import SAFE, Settings
 from pursue_gen.tools.simulation.runs import MissionRunner
+from tests.oracle.checker import natively
 from tests.proof.test_stages import of_the_whole
 
 RANDOM = settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
@@ -136,9 +137,12 @@ def in_shares(text: str, reaction: Fraction = LATE) -> Tuple[Network, Objective,
     return network, objective, found.strategy
 
 
-def whole(network: Network, strategy: Strategy) -> Strategy:
-    """The strategy with blocks that name everything."""
-    return replace(of_the_whole(with_watchers(network, strategy.watchers), strategy), watchers=strategy.watchers)
+def as_a_whole(network: Network, objective: Objective, strategy: Strategy, limit: int = LIMIT) -> Report:
+    """The report on the strategy with blocks that name everything, by the native checker: it is the judge here, and not
+    what is tested."""
+    whole = replace(of_the_whole(with_watchers(network, strategy.watchers), strategy), watchers=strategy.watchers)
+    with natively():
+        return verify(network, objective, whole, limit=limit)
 
 
 def reason(network: Network, objective: Objective, strategy: Strategy) -> str:
@@ -172,7 +176,7 @@ def test_a_plan_in_shares_is_read_as_it_was_written(text: str) -> None:
 @pytest.mark.parametrize("text", [NARROW, VISITED])
 def test_what_is_proven_share_by_share_wins_the_game_as_a_whole(text: str) -> None:
     network, objective, strategy = in_shares(text, NOW)
-    assert verify(network, objective, whole(network, strategy)).ok
+    assert as_a_whole(network, objective, strategy).ok
 
 
 def test_who_keeps_a_promise_that_others_could_keep_too_follows_a_watcher_of_its_own() -> None:
@@ -180,7 +184,7 @@ def test_who_keeps_a_promise_that_others_could_keep_too_follows_a_watcher_of_its
     assert strategy.watchers == (Watcher("obj", ("bot1",)), Watcher("obj2", ("bot1",)))
     assert (("obj_for_bot1", "lose"), ("obj2_for_bot1", "lose"), ("obj", "lose"), ("obj2", "lose")) in strategy.shares
     assert reason(network, objective, strategy) == ""
-    assert verify(network, objective, whole(network, strategy)).ok
+    assert as_a_whole(network, objective, strategy).ok
     assert "obj_for_bot1" in reason(network, objective, replace(strategy, watchers=strategy.watchers[1:]))
     own = tuple(tuple(place for place in share if place != ("obj", "lose")) for share in strategy.shares)
     assert "obj may have to leave atRisk" in reason(network, objective, replace(strategy, shares=own))
@@ -334,7 +338,7 @@ def test_who_keeps_a_wrong_watcher_that_passes_keeps_the_objective(data: st.Data
     passes = verify(network, objective, strategy).ok
     event("passes" if passes else "refused")
     if passes:
-        assert verify(network, objective, whole(network, strategy)).ok
+        assert as_a_whole(network, objective, strategy).ok
 
 
 @RANDOM
@@ -350,7 +354,7 @@ def test_a_strategy_with_wrong_claims_that_passes_wins_the_game_as_a_whole(data:
         return  # it speaks of clocks that its share does not have
     event("passes" if passes else "refused")
     if passes:
-        report = verify(network, objective, whole(network, strategy), limit=MANY)
+        report = as_a_whole(network, objective, strategy, MANY)
         event("too large to judge" if report.reason.startswith("limit") else "judged")
         assert report.ok or report.reason.startswith("limit"), (report.reason, report.play)
 

@@ -16,7 +16,6 @@ from pursue_gen.proof.margin import strategy_margin
 from pursue_gen.proof.simplify import simplified
 from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.solution import solution
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, Strategy, Zone
 from pursue_gen.tga import scenario_objective, translate
@@ -28,7 +27,6 @@ from tests.synthesis.play_by_play import PlayByPlay, inside
 from tests.synthesis.test_verdicts import published
 
 NOW, HALF = Fraction(0), Fraction(1, 2)
-needs_native = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 
 
 def zones(strategy: Strategy) -> Iterator[Zone]:
@@ -149,7 +147,6 @@ def test_ranks_follow_their_zones_when_others_go(net: Network, objective: Object
     assert verify(net, objective, kept, NOW, prompt=False, ranks=left).ok
 
 
-@needs_native
 @pytest.mark.parametrize("rules", [IDEAL, Rules()], ids=["ideal", "default"])
 @pytest.mark.parametrize("number", ["1", "2", "3", "4", "catch_the_thief"])
 def test_the_thesis_s_strategies_get_fewer_zones_and_stand_no_less_delay(number: str, rules: Rules) -> None:
@@ -169,7 +166,6 @@ TIGA = {"CT1": (164, 194), "CT2a": (588, 751), "EB1": (77, 82), "EB3": (332, 348
 """Blocks and commands of UPPAAL-TIGA's plans, as published."""
 
 
-@needs_native
 @pytest.mark.parametrize("name", TIGA)
 def test_ideal_strategies_are_at_most_half_of_tiga_s(reference_dir, name: str) -> None:
     network, objective = published(reference_dir, name)

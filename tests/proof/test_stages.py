@@ -6,7 +6,6 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 from typing import Dict, List, Optional, Tuple
-from unittest import mock
 
 import pytest
 from hypothesis import given, settings
@@ -17,7 +16,6 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.proof.checker import Report, pruned, verify
 from pursue_gen.proof.moves import Arena, JointMove, State
-from pursue_gen.proof.native import tables
 from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.solving.decomposition import won_by_some
 from pursue_gen.solving.options import SolveOptions
@@ -25,9 +23,9 @@ from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Place, Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
+from tests.oracle.checker import natively
 
 DELAY = Fraction(1, 10)
-JUDGE = tables._proof
 
 Game = Tuple[Network, Objective]
 
@@ -47,9 +45,9 @@ def in_stages(text: str, reaction: Fraction = DELAY) -> Tuple[Network, Objective
 
 
 def wins_as_a_whole(network: Network, objective: Objective, strategy: Strategy) -> Report:
-    """The report on the same strategy without stages, by the native checker where it is built: it is the judge here,
-    and not what is tested."""
-    with mock.patch.object(tables, "_proof", JUDGE):
+    """The report on the same strategy without stages, by the native checker: it is the judge here, and not what is
+    tested."""
+    with natively():
         return verify(network, objective, of_the_whole(network, strategy))
 
 

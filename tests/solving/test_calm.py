@@ -7,7 +7,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import List, Tuple
 
-import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -28,7 +27,6 @@ from pursue_gen.solving.shares import won_in_shares
 from pursue_gen.solving.solution import Solution, solution
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import Limits
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.strategy import with_automata_of
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tools.simulation.make import make_case
@@ -241,7 +239,6 @@ def test_commands_that_are_given_while_nothing_is_owed_are_left_out() -> None:
     assert verify(quiet.network, quiet.objective, quiet.strategy, quiet.reaction).ok
 
 
-@pytest.mark.skipif(not native.available(), reason="takes minutes in the Python engine")
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
 @given(st.integers(0, 10_000))
 def test_random_scenarios_are_won_as_before_and_nobody_moves_without_a_duty(seed: int) -> None:

@@ -24,6 +24,7 @@ from pursue_gen.tools.simulation.outcome import GOAL, SAFE, Settings
 from pursue_gen.tools.simulation.stage import stage_of
 from pursue_gen.workspace import Options
 from tests.conditions import ref
+from tests.oracle import ENGINES
 
 STORY = """\
 poi "a"
@@ -71,7 +72,8 @@ def games(draw: st.DrawFn) -> Tuple[str, Scenario]:
 def outcome(scenario: Scenario, engine: str) -> Optional[Solution]:
     """The proven solution, None where the game is lost."""
     try:
-        return solution(translate(scenario), scenario_objective(scenario), DEFAULT, SolveOptions(engine=engine))
+        options = SolveOptions(engine=ENGINES[engine])
+        return solution(translate(scenario), scenario_objective(scenario), DEFAULT, options)
     except PursueError as problem:
         assert problem.exit_status == 4, problem
         return None

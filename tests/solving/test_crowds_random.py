@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from typing import Optional, Tuple
-from unittest import mock
 
 from hypothesis import HealthCheck, assume, event, given, settings
 from hypothesis import strategies as st
@@ -11,7 +10,6 @@ from hypothesis import strategies as st
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.checker import verify
-from pursue_gen.proof.native import tables
 from pursue_gen.solving.decomposition import won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
@@ -27,6 +25,7 @@ from pursue_gen.tools.simulation.make import make_case
 from pursue_gen.tools.simulation.mission import simulate_mission
 from pursue_gen.tools.simulation.outcome import GOAL, SAFE, Settings
 from pursue_gen.tools.simulation.runs import MissionRunner
+from tests.oracle.checker import in_python
 from tests.proof.staged_games import damaged
 from tests.proof.test_stages import of_the_whole
 from tests.solving.random_stories import stories
@@ -70,7 +69,7 @@ def test_what_is_won_so_is_won_and_both_checkers_say_so(story: Tuple[str, Scenar
         return
     assert verdict_of(network, objective, rules) is not False
     report = verify(network, objective, strategy, rules.reaction)
-    with mock.patch.object(tables, "_proof", None):
+    with in_python():
         assert verify(network, objective, strategy, rules.reaction) == report
     assert report.ok
     if strategy.blocks:

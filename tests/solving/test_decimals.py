@@ -18,7 +18,6 @@ from pursue_gen.solving.least_time import fastest
 from pursue_gen.solving.rules import IDEAL, Rules
 from pursue_gen.solving.solution import Solution, solution
 from pursue_gen.synthesis.limits import Limits
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
@@ -29,9 +28,9 @@ from pursue_gen.tools.simulation.outcome import GOAL, Settings
 from pursue_gen.tools.simulation.runs import MissionRunner, case_of
 from pursue_gen.workspace import Options, generate
 from pursue_runtime.data import parse_data
+from tests.oracle import ENGINES
 from tests.synthesis.random_games import networks
 
-ENGINES = ["python", pytest.param("native", marks=pytest.mark.skipif(not native.available(), reason="not built"))]
 FEW = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 
 TEXT = """\
@@ -62,8 +61,8 @@ def test_the_unit_of_time_changes_no_verdict(
 ) -> None:
     network, objective = game
     small, reaction = scaled(network, Fraction(1, factor)), Fraction(delay, factor)
-    verdict = solve(small, objective, reaction, engine)
-    assert verdict.won == solve(network, objective, Fraction(delay), engine).won
+    verdict = solve(small, objective, reaction, ENGINES[engine])
+    assert verdict.won == solve(network, objective, Fraction(delay), ENGINES[engine]).won
     if verdict.strategy is not None:
         assert verify(small, objective, verdict.strategy, reaction).ok
         assert read_plan(write_plan(verdict.strategy, small, objective), small, "plan") == verdict.strategy

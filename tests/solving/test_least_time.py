@@ -29,7 +29,6 @@ from pursue_gen.solving.rules import IDEAL, Rules
 from pursue_gen.solving.solution import fastest_solution, guaranteed, solution
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.limits import Limits
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone
 from pursue_gen.synthesis.time_bounds import least_time
@@ -38,12 +37,12 @@ from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Loc
 from pursue_gen.tga.scale import scaled
 from pursue_gen.tga.uppaal import read_network, read_query
 from tests.conftest import thesis_scenario
+from tests.oracle import ENGINES
 from tests.synthesis.random_games import networks
 from tests.synthesis.region_game import RegionGame
 
 REPORTED, DEFAULT = Rules(reaction=Fraction(0)), Rules()
 PLENTY = SolveOptions(Limits(3600.0))
-ENGINES = ["python", pytest.param("native", marks=pytest.mark.skipif(not native.available(), reason="not built"))]
 
 
 def _thesis(number: str) -> Tuple[Network, Objective]:
@@ -247,7 +246,7 @@ def test_games_with_a_deadline_agree_with_brute_force(
 ) -> None:
     (network, objective), reaction = drawn, Fraction(delay)
     limited = with_deadline(with_counter(network), objective, deadline)
-    verdict = solve(limited, objective, reaction, engine)
+    verdict = solve(limited, objective, reaction, ENGINES[engine])
     assert verdict.won == _won_by_regions(network, objective, reaction, deadline)
     if verdict.strategy is not None:
         report = verify(limited, objective, verdict.strategy, reaction)

@@ -26,7 +26,6 @@ from pursue_gen.solving.options import DEFAULT
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.shares import won_in_shares
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
@@ -237,7 +236,6 @@ def test_a_rule_that_only_says_when_robots_may_begin_something_else_is_left_out(
     assert "supply" not in {each.name for each in without_turns(part, watched(wanted)).automata}
 
 
-@pytest.mark.skipif(not native.available(), reason="takes minutes in the Python engine")
 @pytest.mark.parametrize("seed", (0, 3, 6, 9))
 def test_promises_of_random_scenarios_that_are_called_lost_are_lost(seed: int) -> None:
     text = lab_scenario(seed, Size(places=4, robots=2, people=1, promises=3))
@@ -253,7 +251,6 @@ def shortened(line: str, factor: int) -> str:
     return f"{head}{within}{int(time) // factor}" if within and line.startswith("objective") else line
 
 
-@pytest.mark.skipif(not native.available(), reason="takes minutes in the Python engine")
 def test_somebody_who_does_nothing_takes_no_shares_away() -> None:
     text = lab_scenario(24)  # its person2 has a clock, and nothing to do
     assert 'agent "person2" location' in text and "can_do" not in text

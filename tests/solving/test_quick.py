@@ -21,7 +21,6 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import guaranteed, solution
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import Limits
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind, Network, Objective
@@ -32,7 +31,6 @@ from tests.synthesis.random_games import networks
 
 NOW = SolveOptions()
 FIRST, THIEF = thesis_scenario("1"), thesis_scenario("1").with_name("catch_the_thief.pur")
-needs_native = pytest.mark.skipif(not native.available(), reason="the Python engine finds other strategies")
 LEAST = {"1": "23.3", "2": "23.3", "3": "23.4", "4": "26.4"}
 
 
@@ -55,24 +53,20 @@ def _is_quick(game: Tuple[Network, Objective], least: str) -> None:
     assert verify(found.network, found.objective, found.strategy, found.reaction).ok
 
 
-@needs_native
 @pytest.mark.parametrize("number", LEAST)
 def test_the_thesis_scenarios_are_quick(number: str) -> None:
     _is_quick(_game(thesis_scenario(number)), LEAST[number])
 
 
-@needs_native
 def test_the_thief_is_caught_quickly() -> None:
     _is_quick(_game(THIEF), "20.6")
 
 
-@needs_native
 @pytest.mark.parametrize(("name", "least"), [("CT1", "61.9"), ("CT2a", "79.2"), ("CT4", "117.8")])
 def test_published_scenarios_are_quick(reference_dir: Path, name: str, least: str) -> None:
     _is_quick(_published(reference_dir, name), least)
 
 
-@needs_native
 @pytest.mark.parametrize(("file", "worst"), [("drug_delivery/drug_delivery", "22"), ("fields/two_robot_farm", "76")])
 def test_where_the_order_of_time_does_not_help_games_with_a_deadline_do(file: str, worst: str) -> None:
     game = _game(FIRST.parent.parent / f"{file}.pur")
@@ -82,7 +76,6 @@ def test_where_the_order_of_time_does_not_help_games_with_a_deadline_do(file: st
     assert verify(found.network, found.objective, found.strategy, found.reaction).ok
 
 
-@needs_native
 def test_plans_hold_multiples_of_the_unit_and_of_the_reaction() -> None:
     for file in ("catch_the_thief/one_officer", "fields/two_robot_farm", "thesis/catch_the_thief"):
         strategy = solved(*_game(FIRST.parent.parent / f"{file}.pur"), Rules()).strategy
@@ -91,7 +84,6 @@ def test_plans_hold_multiples_of_the_unit_and_of_the_reaction() -> None:
         assert all((10 * constraint.bound).denominator == 1 for zone in zones for constraint in zone), file
 
 
-@needs_native
 def test_the_same_strategy_comes_out_however_long_it_takes() -> None:
     game = _game(THIEF)
     assert solved(*game, Rules()).strategy == solved(*game, Rules(), SolveOptions(Limits(3600.0))).strategy
@@ -105,7 +97,6 @@ def test_without_work_the_first_strategy_stays(monkeypatch: pytest.MonkeyPatch) 
     assert found.guarantee is not None and found.guarantee.worst == guaranteed(first, quick_module.STATES).worst
 
 
-@needs_native
 def test_after_a_hard_game_the_first_strategy_stays(monkeypatch: pytest.MonkeyPatch) -> None:
     first = solution(*_game(THIEF), Rules())
     assert first.stats is not None and quick(first, NOW).strategy != first.strategy

@@ -538,7 +538,6 @@ def test_a_strategy_that_does_not_win_is_no_verdict(game: Game, strategy: Strate
     "options",
     [
         ("solve", "--verifytga", "verifytga"),
-        ("solve", "--solver", "verifytga", "--engine", "native"),
         ("ws", "--solver", "verifytga", "--plan", "plan.txt"),
     ],
 )

@@ -10,6 +10,7 @@ from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import solution
 from pursue_gen.tga import scenario_objective, translate
+from tests.oracle import ENGINES
 
 SCENARIOS = Path(__file__).resolve().parents[2] / "scenarios"
 
@@ -23,7 +24,7 @@ def is_won(source: str, engine: str = "native") -> bool:
     """Whether the default game is won, with a strategy that is proven."""
     read = parse(source, "x.pur", "x")
     try:
-        solution(translate(read), scenario_objective(read), DEFAULT, SolveOptions(engine=engine))
+        solution(translate(read), scenario_objective(read), DEFAULT, SolveOptions(engine=ENGINES[engine]))
     except PursueError as problem:
         assert problem.exit_status == 4, problem
         return False

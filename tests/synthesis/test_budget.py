@@ -12,16 +12,15 @@ from pursue_gen.language import load, parse
 from pursue_gen.synthesis import limits as limits_module
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits, Progress
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from tests.conftest import thesis_scenario
 from tests.large_scenarios import many_walkers
+from tests.oracle import ENGINES
 
 NOW = Fraction(0)
-needs_native = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
-engines = pytest.mark.parametrize("engine", [pytest.param("native", marks=needs_native), "python"])
+engines = pytest.mark.parametrize("engine", ENGINES)
 
 
 @pytest.fixture(scope="module")
@@ -32,11 +31,11 @@ def game() -> Tuple[Network, Objective]:
 
 @engines
 def test_the_same_game_is_the_same_work(game: Tuple[Network, Objective], engine: str) -> None:
-    first, second = (solve(*game, engine=engine).stats.work for _ in range(2))
+    first, second = (solve(*game, engine=ENGINES[engine]).stats.work for _ in range(2))
     assert first == second > 0
-    assert solve(*game, engine=engine, limits=Limits(work=first)).won
+    assert solve(*game, engine=ENGINES[engine], limits=Limits(work=first)).won
     with pytest.raises(PursueError) as problem:
-        solve(*game, engine=engine, limits=Limits(work=first // 2))
+        solve(*game, engine=ENGINES[engine], limits=Limits(work=first // 2))
     assert problem.value.exit_status == 5
     assert f"the limit of {first // 2} units of work" in render(problem.value.diagnostics[0])
 
@@ -47,15 +46,15 @@ def test_a_limit_on_work_ends_a_large_game_at_the_same_state(engine: str) -> Non
     ends = set()
     for _ in range(2):
         with pytest.raises(PursueError) as problem:
-            solve(translate(scenario), scenario_objective(scenario), engine=engine, limits=Limits(work=2000))
+            solve(translate(scenario), scenario_objective(scenario), engine=ENGINES[engine], limits=Limits(work=2000))
         ends.add(problem.value.diagnostics[0].message.split(" waiting")[0])
     assert len(ends) == 1
 
 
 @engines
 def test_games_share_a_budget(game: Tuple[Network, Objective], engine: str) -> None:
-    work = solve(*game, engine=engine).stats.work
-    budget = Budget(Limits(work=100 * work + 10_000_000), engine=engine)
+    work = solve(*game, engine=ENGINES[engine]).stats.work
+    budget = Budget(Limits(work=100 * work + 10_000_000), engine=ENGINES[engine])
     before = budget.work
     assert budget.verdict(*game, NOW).won
     spent = before - budget.work
@@ -86,5 +85,5 @@ def test_progress_has_the_phase(game: Tuple[Network, Objective], monkeypatch: py
     monkeypatch.setattr(limits_module, "_CHECK_INTERVAL", 0.0)
     monkeypatch.setattr(limits_module, "_REPORT_INTERVAL", 0.0)
     heard: List[Progress] = []
-    assert Budget(Limits(), heard.append, "python", "explaining").verdict(*game, NOW).won
+    assert Budget(Limits(), heard.append, ENGINES["python"], "explaining").verdict(*game, NOW).won
     assert {progress.phase for progress in heard} == {"explaining"}

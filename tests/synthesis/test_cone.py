@@ -35,6 +35,7 @@ from pursue_gen.tga.network import (
     Test,
 )
 from pursue_gen.tga.part import part_of
+from tests.oracle import ENGINES
 from tests.synthesis.play_by_play import PlayByPlay
 from tests.synthesis.random_games import networks
 
@@ -68,7 +69,7 @@ def _named(scenario: Scenario, rules: Rules = DEFAULT) -> Set[str]:
 
 def _won(scenario: Scenario, reaction: Fraction, engine: str, whole: bool = False) -> bool:
     network = played(translate(scenario), replace(DEFAULT, reaction=reaction))
-    return solve(network, scenario_objective(scenario), reaction, engine, whole=whole).won
+    return solve(network, scenario_objective(scenario), reaction, ENGINES[engine], whole=whole).won
 
 
 # By hand --------------------------------------------------------------------------------------------------------------
@@ -100,7 +101,7 @@ def test_what_the_objective_depends_on_is_kept_and_nothing_else(
     assert _named(_scenario(agents, rule), rules) == kept
 
 
-@pytest.mark.parametrize("engine", ["native", "python"])
+@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("reaction", [Fraction(0), Fraction(1, 10), Fraction(1, 2)])
 @pytest.mark.parametrize("whole", [False, True])
 def test_whoever_shouts_without_end_does_no_harm(engine: str, reaction: Fraction, whole: bool) -> None:
@@ -108,7 +109,7 @@ def test_whoever_shouts_without_end_does_no_harm(engine: str, reaction: Fraction
     assert _won(guest, reaction, engine, whole)
 
 
-@pytest.mark.parametrize("engine", ["native", "python"])
+@pytest.mark.parametrize("engine", ENGINES)
 def test_a_move_that_changes_nothing_makes_no_command_stale(engine: str) -> None:
     # The thief matters: the bot serves when they meet. On its way it may say anything as often as it likes.
     scenario = parse(
@@ -120,7 +121,7 @@ def test_a_move_that_changes_nothing_makes_no_command_stale(engine: str) -> None
     )
     network, objective = played(translate(scenario), DEFAULT), scenario_objective(scenario)
     assert cone_of_influence(network, objective) is network
-    verdict = solve(network, objective, DEFAULT.reaction, engine)
+    verdict = solve(network, objective, DEFAULT.reaction, ENGINES[engine])
     assert verdict.strategy is not None
     assert verify(network, objective, verdict.strategy, DEFAULT.reaction, ranks=verdict.ranks).ok
 
@@ -137,7 +138,7 @@ OTHERS_CALL = replace(CALLING, controllable=False)
 NOTING = Edge("here", "here", sync=Sync("a", False), resets=("z",))
 
 
-@pytest.mark.parametrize("engine", ["native", "python"])
+@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("whole", [False, True])
 @pytest.mark.parametrize(
     ("own", "others"),
@@ -165,12 +166,12 @@ def test_no_move_that_changes_nothing_keeps_time_from_passing(
     late = Automaton("A", SOON_OVER, "here", (AWAY, *own))
     bystander = Automaton("B", (Location("here"), Location("there")), "here", others)
     network = Network(("x", "z"), (("w", 0),), ("a",), (late, bystander))
-    assert not solve(network, NEVER_BAD, engine=engine, whole=whole).won
+    assert not solve(network, NEVER_BAD, engine=ENGINES[engine], whole=whole).won
     saved = replace(network, automata=(replace(late, edges=(*late.edges, GO)), bystander))
-    assert solve(saved, NEVER_BAD, engine=engine, whole=whole).won
+    assert solve(saved, NEVER_BAD, engine=ENGINES[engine], whole=whole).won
 
 
-@pytest.mark.parametrize("engine", ["native", "python"])
+@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("whole", [False, True])
 def test_a_robot_that_talks_to_itself_meets_no_deadline(engine: str, whole: bool) -> None:
     text = """
@@ -185,7 +186,7 @@ agent "visitor" location desk can_do call
 objective: if call then fetch within 2
 """
     scenario = parse(text, "desk.pur", "desk")
-    assert not solve(translate(scenario), scenario_objective(scenario), engine=engine, whole=whole).won
+    assert not solve(translate(scenario), scenario_objective(scenario), engine=ENGINES[engine], whole=whole).won
 
 
 def test_many_bystanders_cost_no_states() -> None:

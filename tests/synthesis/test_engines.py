@@ -22,7 +22,6 @@ from pursue_gen.synthesis.engine import Engine, Outcome
 from pursue_gen.synthesis.game import Game, State, joint_moves
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.native.engine import NativeEngine
-from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.synthesis.strategy_from import to_strategy
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective, Sync
@@ -30,6 +29,7 @@ from pursue_gen.tga.uppaal import read_network, read_query
 from pursue_gen.zones.dbm import Dbm
 from pursue_gen.zones.federation import Federation
 from tests.conftest import thesis_scenario
+from tests.oracle.engine import ReferenceEngine
 from tests.synthesis.random_games import games
 from tests.synthesis.region_game import Position, RegionGame
 
@@ -37,13 +37,13 @@ EVERY_KIND = (Kind.REACH, Kind.REACH_WHILE_SAFE, Kind.SAFETY)
 DEFAULT = Fraction(1, 10)
 RANDOM = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 
-native = pytest.mark.skipif(not NativeEngine().available(), reason="the native engine is not built here (no compiler)")
-BUILT = [NativeEngine(), NativeEngine(small_budget=0)] if NativeEngine().available() else []
-ALL: Tuple[Engine, ...] = (*BUILT, ReferenceEngine(), ReferenceEngine(directed=False))
+ALL: Tuple[Engine, ...] = (
+    NativeEngine(), NativeEngine(small_budget=0), ReferenceEngine(), ReferenceEngine(directed=False),
+)  # fmt: skip
 """For properties that cost more than a solve: each game that is drawn is for all engines."""
 ENGINES = [
-    pytest.param(NativeEngine(), marks=native, id="native"),
-    pytest.param(NativeEngine(small_budget=0), marks=native, id="native, searches with few moves"),
+    pytest.param(NativeEngine(), id="native"),
+    pytest.param(NativeEngine(small_budget=0), id="native, searches with few moves"),
     pytest.param(ReferenceEngine(), id="reference"),
     pytest.param(ReferenceEngine(directed=False), id="reference, all moves at once"),
 ]

@@ -29,7 +29,6 @@ from pursue_gen.tga.network import Kind, Network, Objective
 from tests.synthesis.random_games import started
 
 NATIVE = NativeEngine()
-pytestmark = pytest.mark.skipif(not NATIVE.available(), reason="the native engine is not built here (no compiler)")
 SMALL = Limits(work=300_000, states=20_000)
 
 

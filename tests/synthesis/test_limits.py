@@ -37,19 +37,19 @@ from pursue_gen.synthesis.limits import (
     processor_time,
 )
 from pursue_gen.synthesis.native import engine as native
-from pursue_gen.synthesis.reference import engine as reference
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from tests.conftest import thesis_scenario
 from tests.large_scenarios import many_walkers
+from tests.oracle import ENGINES
+from tests.oracle import engine as reference
 
 Game = Tuple[Network, Objective]
 AT_ONCE = {"seconds": Limits(seconds=1e-9), "memory": Limits(memory=1)}
 
-needs_native = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
-engines = pytest.mark.parametrize("engine", [pytest.param("native", marks=needs_native), "python"])
+engines = pytest.mark.parametrize("engine", ENGINES)
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +85,7 @@ def told(problem: PursueError) -> str:
 @pytest.mark.parametrize("which", AT_ONCE)
 def test_a_limit_ends_an_engine(game: Game, engine: str, which: str) -> None:
     with pytest.raises(PursueError) as failure:
-        solve(*game, engine=engine, limits=AT_ONCE[which])
+        solve(*game, engine=ENGINES[engine], limits=AT_ONCE[which])
     text = told(failure.value)
     assert {"seconds": "1e-09 seconds of processor time", "memory": "the limit of 1 MiB of memory"}[which] in text
     assert {"seconds": "--limit", "memory": "--memory"}[which] in text
@@ -94,7 +94,8 @@ def test_a_limit_ends_an_engine(game: Game, engine: str, which: str) -> None:
 
 @engines
 def test_limits_that_are_not_hit_change_nothing(game: Game, engine: str) -> None:
-    free, kept = solve(*game, engine=engine), solve(*game, engine=engine, limits=Limits(600, memory_in_use() + 4096))
+    limits = Limits(600, memory_in_use() + 4096)
+    free, kept = solve(*game, engine=ENGINES[engine]), solve(*game, engine=ENGINES[engine], limits=limits)
     assert (kept.won, kept.strategy) == (free.won, free.strategy)
     assert kept.stats.discrete_states == free.stats.discrete_states
 
@@ -102,7 +103,7 @@ def test_limits_that_are_not_hit_change_nothing(game: Game, engine: str) -> None
 @engines
 def test_the_progress_is_reported(game: Game, engine: str, eager: None) -> None:
     heard: List[Progress] = []
-    solve(*game, engine=engine, progress=heard.append)
+    solve(*game, engine=ENGINES[engine], progress=heard.append)
     assert heard
     assert all(p.phase == SOLVING and p.memory > 0 and p.seconds >= 0 and p.states >= 0 for p in heard)
     assert [p.states for p in heard] == sorted(p.states for p in heard)
@@ -111,7 +112,7 @@ def test_the_progress_is_reported(game: Game, engine: str, eager: None) -> None:
 @engines
 def test_ctrl_c_while_the_progress_is_reported_ends_an_engine(game: Game, engine: str) -> None:
     with pytest.raises(KeyboardInterrupt):
-        solve(*game, engine=engine, progress=mock.Mock(side_effect=KeyboardInterrupt))
+        solve(*game, engine=ENGINES[engine], progress=mock.Mock(side_effect=KeyboardInterrupt))
 
 
 @engines
@@ -124,10 +125,10 @@ def test_what_others_do_meanwhile_counts_for_who_waits_alone(game: Game, engine:
 
     limits = Limits(1.0, wall=wall)
     if not wall:
-        assert solve(*game, engine=engine, limits=limits, progress=rest).won
+        assert solve(*game, engine=ENGINES[engine], limits=limits, progress=rest).won
         return
     with mock.patch.object(limits_module, "_CHECK_INTERVAL", 0.0), pytest.raises(PursueError) as failure:
-        solve(*game, engine=engine, limits=limits, progress=rest)
+        solve(*game, engine=ENGINES[engine], limits=limits, progress=rest)
     assert "the limit of 1 seconds;" in told(failure.value)
 
 
@@ -136,7 +137,7 @@ def test_of_a_large_game_it_is_reported_how_far_it_got(engine: str) -> None:
     scenario = parse(many_walkers(), "crowd.pur")
     for seconds in (0.5, 5.0, 50.0):  # on a busy machine the time may be over before much is done
         with pytest.raises(PursueError) as failure:
-            solve(translate(scenario), scenario_objective(scenario), engine=engine, limits=Limits(seconds))
+            solve(translate(scenario), scenario_objective(scenario), engine=ENGINES[engine], limits=Limits(seconds))
         words = told(failure.value).split("; ")[1].split()
         if int(words[0]) > 1:
             break
@@ -149,7 +150,7 @@ def test_a_limit_on_memory_ends_a_large_game(engine: str) -> None:
     scenario = parse(many_walkers(), "crowd.pur")
     most = memory_in_use() + 12
     with pytest.raises(PursueError) as failure:
-        solve(translate(scenario), scenario_objective(scenario), engine=engine, limits=Limits(1200, most))
+        solve(translate(scenario), scenario_objective(scenario), engine=ENGINES[engine], limits=Limits(1200, most))
     assert f"the limit of {most} MiB of memory" in told(failure.value)
 
 
@@ -160,7 +161,6 @@ def test_memory_is_looked_at_while_python_loads_a_codec() -> None:
     assert int(asked.stdout) > 0
 
 
-@needs_native
 def test_other_threads_go_on_while_the_native_engine_solves() -> None:
     scenario = parse(many_walkers(), "crowd.pur")
     game = compile_game(translate(scenario), scenario_objective(scenario))
@@ -187,7 +187,6 @@ def test_other_threads_go_on_while_the_native_engine_solves() -> None:
     assert ended.is_set()
 
 
-@needs_native
 def test_the_last_of_the_memory_ends_the_native_engine_with_a_message() -> None:
     code = f"""if True:
         import resource
@@ -214,15 +213,15 @@ def test_the_last_of_the_memory_ends_the_native_engine_with_a_message() -> None:
     assert done.stdout.startswith("5 no verdict with the memory that there is")
 
 
-@pytest.mark.parametrize("engine", ["native", "python"])
+@pytest.mark.parametrize("engine", ENGINES)
 def test_memory_that_is_not_given_is_reported_as_a_limit(game: Game, engine: str) -> None:
     core = mock.Mock(solve=mock.Mock(side_effect=MemoryError), LimitReached=ZeroDivisionError)
     with mock.patch.object(native, "_core", core), mock.patch.object(reference, "_assign", side_effect=MemoryError):
         with pytest.raises(PursueError) as failure:
-            solve(*game, engine=engine)
+            solve(*game, engine=ENGINES[engine])
         assert "with the memory that there is" in told(failure.value)
         with pytest.raises(PursueError) as failure:
-            solve(*game, engine=engine, limits=Limits(memory=1 << 20))
+            solve(*game, engine=ENGINES[engine], limits=Limits(memory=1 << 20))
         assert "the limit of 1048576 MiB" in told(failure.value)
 
 

@@ -16,16 +16,15 @@ from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import Game, State, joint_moves
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.native.engine import NativeEngine
-from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 from pursue_gen.zones.dbm import INF
 from tests.conftest import thesis_scenario
+from tests.oracle.engine import ReferenceEngine
 from tests.synthesis.random_games import games
 from tests.synthesis.test_engines import EVERY_KIND, is_well_formed
 
 NATIVE = NativeEngine()
-pytestmark = pytest.mark.skipif(not NATIVE.available(), reason="the native engine is not built here (no compiler)")
 
 
 @pytest.mark.parametrize("reaction", [Fraction(0), Fraction(1, 10)])
@@ -101,7 +100,7 @@ def test_ranks_fall_with_every_command() -> None:
 def test_a_strategy_speaks_of_nothing_that_no_play_reaches(reaction: Fraction) -> None:
     scenario = load(str(thesis_scenario("1").parents[1] / "catch_the_thief" / "one_officer.pur"))
     network, objective = ends_reported(translate(scenario), {}), scenario_objective(scenario)
-    verdict = solve(network, objective, reaction, engine="native")
+    verdict = solve(network, objective, reaction)
     assert verdict.strategy is not None
     report = verify(network, objective, verdict.strategy, reaction, ranks=verdict.ranks)
     assert report.ok
@@ -143,6 +142,6 @@ def test_what_few_moves_win_bit_by_bit_is_decided_with_all_of_them() -> None:
     """
     scenario = parse(text, "x.pur", "x")
     game = played(translate(scenario), Rules()), scenario_objective(scenario), Fraction(1, 10)
-    verdict = solve(*game, "native", Limits(seconds=60))
+    verdict = solve(*game, limits=Limits(seconds=60))
     assert not verdict.won and verdict.stats.work < 20_000_000
-    assert not solve(*game, "native", soonest=True).won
+    assert not solve(*game, soonest=True).won

@@ -14,12 +14,12 @@ from pursue_gen.language import parse
 from pursue_gen.proof.checker import verify
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.overtaking import kept_apart, shortened
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
 from pursue_gen.zones.dbm import Dbm
+from tests.oracle import ENGINES
 from tests.synthesis.zones import Point, later, points, times, zones
 
 WAITER = """\
@@ -36,7 +36,6 @@ reach_objective: do pay after 20
 """
 
 HALF = Fraction(1, 2)
-ENGINES = ["python", pytest.param("native", marks=pytest.mark.skipif(not native.available(), reason="not built"))]
 GO, AGAIN = (0,), (1,)
 
 
@@ -54,7 +53,7 @@ def chase(again_by: str) -> Network:
 @pytest.mark.parametrize("again_by", ["bot", "mate"])
 def test_a_command_that_gains_is_not_overtaken_by_one_that_starts_over(engine: str, again_by: str) -> None:
     network, objective = chase(again_by), Objective(Kind.REACH, goal=(("bot", "win"),))
-    verdict = solve(network, objective, HALF, engine)
+    verdict = solve(network, objective, HALF, ENGINES[engine])
     assert verdict.strategy is not None
     assert verify(network, objective, verdict.strategy, HALF).ok
     assert verdict.ranks is None or verify(network, objective, verdict.strategy, HALF, ranks=verdict.ranks).ok
@@ -65,7 +64,7 @@ def test_a_command_that_gains_is_not_overtaken_by_one_that_starts_over(engine: s
 def test_an_officer_who_is_late_does_not_turn_round_for_ever(engine: str, distance: int) -> None:
     scenario = parse(catch_by_one_distance(distance), "chase.pur", "chase")
     network, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
-    verdict = solve(network, objective, Fraction(1, 10), engine)
+    verdict = solve(network, objective, Fraction(1, 10), ENGINES[engine])
     assert verdict.strategy is not None
     assert prove(network, objective, verdict.strategy, Fraction(1, 10), verdict.ranks).blocks
 
@@ -149,14 +148,13 @@ def test_an_earlier_command_ends_where_a_later_one_could_overtake_it(
         assert said == [None if met else GO]
 
 
-@pytest.mark.skipif(not native.available(), reason="not built")
 @pytest.mark.parametrize("deadline", [11, 12, 14, 17])
 def test_a_waiter_whom_a_guest_calls_for_ever_goes_to_the_desk_in_time(deadline: int) -> None:
     """Lingering in the zone of the way to the desk until the next call has to be answered would never end."""
     text = WAITER.format(deadline)
     scenario = parse(text, "waiter.pur", "waiter")
     network, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
-    verdict = solve(network, objective, Fraction(1, 10), "native")
+    verdict = solve(network, objective, Fraction(1, 10))
     assert verdict.strategy is not None
     proven = prove(
         network, objective, verdict.strategy, Fraction(1, 10), verdict.ranks, otherwise=verdict.cautious

@@ -10,10 +10,10 @@ import pytest
 from pursue_gen.language import load
 from pursue_gen.proof.checker import verify
 from pursue_gen.synthesis.compile_game import compile_game
-from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.synthesis.strategy_from import followed, to_strategy
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 from tests.conftest import thesis_scenario
+from tests.oracle.engine import ReferenceEngine
 from tests.synthesis.test_engines import DEFAULT, published
 
 

@@ -16,7 +16,6 @@ from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import initial_state, start_zone
 from pursue_gen.synthesis.native.engine import NativeEngine
-from pursue_gen.synthesis.reference.engine import ReferenceEngine
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Strategy
 from pursue_gen.synthesis.time_bounds import least_time
@@ -32,6 +31,8 @@ from pursue_gen.tga.network import (
     Objective,
 )
 from pursue_gen.tga.uppaal import write_network
+from tests.oracle import ENGINES
+from tests.oracle.engine import ReferenceEngine
 from tests.synthesis.random_games import started
 from tests.synthesis.region_game import RegionGame
 from tests.synthesis.test_engines import ALL
@@ -40,7 +41,6 @@ EVERY_KIND = (Kind.REACH, Kind.REACH_WHILE_SAFE, Kind.SAFETY)
 DELAYS = st.sampled_from((Fraction(0), Fraction(1)))
 QUICK = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 
-needs_native = pytest.mark.skipif(not NativeEngine().available(), reason="the native engine is not built (no compiler)")
 
 Drawn = Tuple[Network, Objective]
 
@@ -54,7 +54,6 @@ def test_engines_agree_with_brute_force(drawn: Drawn, delay: Fraction) -> None:
     assert [engine.solve(game).won for engine in ALL] == [won] * len(ALL)
 
 
-@needs_native
 @QUICK
 @given(started(EVERY_KIND), st.sampled_from((Fraction(0), Fraction(1, 2))))
 def test_both_engines_agree_on_finer_grids(drawn: Drawn, delay: Fraction) -> None:
@@ -65,7 +64,6 @@ def test_both_engines_agree_on_finer_grids(drawn: Drawn, delay: Fraction) -> Non
     assert NativeEngine().solve(game).won == ReferenceEngine().solve(game).won
 
 
-@needs_native
 @QUICK
 @given(started(EVERY_KIND), DELAYS)
 def test_the_checker_agrees_with_the_engines(drawn: Drawn, delay: Fraction) -> None:
@@ -76,7 +74,6 @@ def test_the_checker_agrees_with_the_engines(drawn: Drawn, delay: Fraction) -> N
         assert report.ok, report.reason
 
 
-@needs_native
 @QUICK
 @given(started(EVERY_KIND), DELAYS)
 def test_the_checker_never_accepts_a_strategy_where_the_game_is_lost(drawn: Drawn, delay: Fraction) -> None:
@@ -115,12 +112,12 @@ def _between(clock: str, low: Fraction, high: Fraction) -> Tuple[Constraint, ...
     return Constraint(None, clock, -low, False), Constraint(clock, None, high, False)
 
 
-@pytest.mark.parametrize("engine", ["python", pytest.param("native", marks=needs_native)])
+@pytest.mark.parametrize("engine", ENGINES)
 def test_a_start_is_won_as_far_as_all_its_points_are(engine: str) -> None:
     network = _wait_for(3, 4)
 
     def won(*start: Constraint) -> bool:
-        return solve(replace(network, start=start), GOAL, engine=engine).won
+        return solve(replace(network, start=start), GOAL, engine=ENGINES[engine]).won
 
     half = Fraction(1, 2)
     exact = _between("y", half, half)
@@ -152,7 +149,7 @@ def test_times_to_the_goal_count_from_the_start() -> None:
     begun = replace(
         _wait_for(3, 9), start=(*_between("x", Fraction(2), Fraction(2)), *_between("y", Fraction(1), Fraction(2)))
     )
-    verdict = solve(begun, GOAL, engine="python")
+    verdict = solve(begun, GOAL, engine=ENGINES["python"])
     assert verdict.strategy is not None
     assert worst_case(begun, GOAL, verdict.strategy) == pytest.approx(2, abs=0.01)
     assert least_time(compile_game(begun, GOAL)) == 1

@@ -10,15 +10,13 @@ import pytest
 from pursue_gen.language import load, parse
 from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.solution import solution
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import read_network, read_query
 from tests.conftest import thesis_scenario
+from tests.oracle import ENGINES
 
 DEFAULT = Rules()
-
-needs_native = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 
 
 def published(reference_dir: Path, name: str):
@@ -27,7 +25,6 @@ def published(reference_dir: Path, name: str):
     return network, read_query((folder / "TCTL.q").read_text(), f"{name}/TCTL.q")
 
 
-@needs_native
 @pytest.mark.parametrize(
     ("name", "ideal", "default"),
     [
@@ -52,7 +49,6 @@ def test_published_scenarios_are_decided_as_tiga_does_and_as_a_robot_must(refere
         assert solve(played(network, rules), objective, rules.reaction).won is expected
 
 
-@needs_native
 @pytest.mark.parametrize("name", ["CT1", "CT2a", "CT4", "CT5", "WC1"])
 def test_a_reaction_of_half_a_unit_changes_no_verdict_of_these(reference_dir, name):
     network, objective = published(reference_dir, name)
@@ -60,14 +56,12 @@ def test_a_reaction_of_half_a_unit_changes_no_verdict_of_these(reference_dir, na
     assert solve(played(network, rules), objective, rules.reaction).won
 
 
-@needs_native
 @pytest.mark.parametrize("rules", [Rules(reaction=Fraction(0)), Rules("controllable", Fraction(1, 10))])
 def test_ends_reported_alone_and_reaction_alone_both_cost_the_first_ecobot_its_win(reference_dir, rules):
     network, objective = published(reference_dir, "EB1")
     assert not solve(played(network, rules), objective, rules.reaction).won
 
 
-@needs_native
 @pytest.mark.parametrize(("deadline", "won"), [(45, False), (46, True)])
 def test_the_first_ecobot_wins_with_a_deadline_of_46_and_not_of_45(reference_dir, deadline, won):
     text = (reference_dir / "EB1" / "scenario.pur").read_text().replace("within 20", f"within {deadline}")
@@ -79,13 +73,10 @@ def test_the_first_ecobot_wins_with_a_deadline_of_46_and_not_of_45(reference_dir
 @pytest.mark.parametrize("rules", [IDEAL, DEFAULT], ids=["ideal", "default"])
 @pytest.mark.parametrize("number", ["1", "2", "3", "4", "catch_the_thief"])
 def test_the_five_scenarios_of_the_thesis_are_won_and_proven(number, rules):
-    if number.startswith("catch") and not native.available():
-        pytest.skip("takes minutes in the Python engine")
     scenario = load(thesis_scenario(number))
     assert solution(translate(scenario), scenario_objective(scenario), rules).strategy.blocks
 
 
-@needs_native
 @pytest.mark.parametrize("rules", [IDEAL, DEFAULT], ids=["ideal", "default"])
 @pytest.mark.parametrize("name", ["CT1", "CT2a", "WC1"])
 def test_strategies_for_published_scenarios_pass_the_checker(reference_dir, name, rules):
@@ -93,18 +84,16 @@ def test_strategies_for_published_scenarios_pass_the_checker(reference_dir, name
     assert solution(network, objective, rules).strategy.blocks
 
 
-@needs_native
 @pytest.mark.parametrize("name", ["EB1", "EB3"])
 def test_strategies_for_the_ideal_ecobots_pass_the_checker(reference_dir, name):
     network, objective = published(reference_dir, name)
     assert solution(network, objective, IDEAL).strategy.blocks
 
 
-@needs_native
 @pytest.mark.parametrize("name", ["CT1", "WC1", "WC2a", "EB1"])
 @pytest.mark.parametrize("rules", [IDEAL, DEFAULT], ids=["ideal", "default"])
 def test_both_engines_agree(reference_dir, name, rules):
     network, objective = published(reference_dir, name)
     game = played(network, rules)
-    verdicts = {engine: solve(game, objective, rules.reaction, engine=engine).won for engine in ("native", "python")}
+    verdicts = {name: solve(game, objective, rules.reaction, engine=engine).won for name, engine in ENGINES.items()}
     assert verdicts["native"] is verdicts["python"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Dict
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import Severity
@@ -53,7 +53,6 @@ def disguised(draw: st.DrawFn) -> str:
     return re.sub(r"\b\w+\b", lambda word: names.get(word[0], word[0]), text)
 
 
-@settings(max_examples=200)
 @given(disguised())
 def test_what_check_passes_becomes_a_network(text: str) -> None:
     reading = read(text, "story.pur", "story")

@@ -325,7 +325,7 @@ def test_the_spot_distance_changes_poses_and_nothing_of_the_game() -> None:
 def test_a_place_without_a_pose_demands_no_orientation_but_a_robot_with_a_pose_of_its_own_does() -> None:
     computed = read(files("thesis/scenario_1")["src/controller_bot1/config/poses.yaml"])["poses"]
     assert all(pose[3:] == [0.0] * 4 for pose in computed.values())
-    measured = read(files("airport/luggage")["src/controller_cart/config/poses.yaml"])["poses"]
+    measured = read(files("thesis/catch_the_thief")["src/controller_polBot1/config/poses.yaml"])["poses"]
     assert all(any(pose[3:]) for pose in measured.values())
     text = """
 poi "a" //[0, 0, 0, 0, 0, 0, 1]

@@ -7,13 +7,14 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from pursue_gen.language.numbers import Number
 from pursue_gen.synthesis.limits import LimitMonitor
+from pursue_gen.synthesis.native import not_built
 from pursue_gen.synthesis.strategy import Constraint, DiscreteState, Move, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import ClockBound, Edge, Network
 from pursue_gen.tga.scale import common_denominator, least_common_multiple
 
 try:
     from pursue_gen.proof.native import _proof
-except ImportError:  # no compiler when the package was installed: the checker in Python serves
+except ImportError:  # no compiler when the package was installed
     _proof = None  # type: ignore[assignment]
 
 _CLOCKS, _MOST, _VALUES = 39, 1 << 50, 1 << 31
@@ -83,11 +84,6 @@ class Tables:
         return [(b, part, n) for part, count in parts for n in range(count)]
 
 
-def available() -> bool:
-    """True if the native checker was built with the package."""
-    return _proof is not None
-
-
 _latest: List[Tables] = []
 """The tables that were made last: one strategy is checked several times in a row, or each part of it."""
 
@@ -96,9 +92,9 @@ _KEPT = 50_000
 
 
 def tables_of(network: Network, strategy: Strategy) -> Tables:
-    """The tables. Raises NotHeld where the native checker is not built or they cannot hold it."""
-    if not available():
-        raise NotHeld
+    """The tables. Raises NotHeld where they cannot hold it, Unavailable where the native checker was not built."""
+    if _proof is None:
+        raise not_built("checker")
     for tables in _latest:
         if tables.strategy is strategy and tables.network == network:
             return tables

@@ -10,13 +10,13 @@ from typing import Any, Callable, ClassVar, Collection, Dict, List, Optional, Tu
 from pursue_gen.synthesis.engine import NOT_GUESSED, Counts, Engine, Outcome
 from pursue_gen.synthesis.game import Action, Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, NOTHING_YET, Limits, Listener, Progress, limit_reached
+from pursue_gen.synthesis.native import not_built
 from pursue_gen.zones.dbm import INF
 
 try:
     from pursue_gen.synthesis.native import _core
-except ImportError:  # no compiler when the package was installed: the Python reference serves
+except ImportError:  # no compiler when the package was installed
     _core = None  # type: ignore[assignment]
-
 
 _CLOCKS, _NO_BOUND, _VALUES = 127, 1 << 29, 1 << 31
 """The bounds of module.cpp: clocks, raw bounds, values of variables."""
@@ -25,9 +25,11 @@ _UNBOUNDED = {1 << 30: INF}
 """How module.cpp writes no bound, and what that is here."""
 
 
-def available() -> bool:
-    """True if the native engine was built with the package."""
-    return _core is not None
+def core() -> Any:
+    """The module in C++. Raises Unavailable where it was not built with the package."""
+    if _core is None:
+        raise not_built("solver")
+    return _core
 
 
 @dataclass(frozen=True)
@@ -40,10 +42,6 @@ class NativeEngine(Engine):
 
     name: ClassVar[str] = "native"
     small_budget: float = 5e5
-
-    def available(self) -> bool:
-        """True if it was built with the package."""
-        return available()
 
     def holds(self, game: Game) -> bool:
         """True up to 127 clocks, while sums along a path through all clocks stay below 2²⁹, and values in 32 bits."""
@@ -69,7 +67,7 @@ class NativeEngine(Engine):
         put_off = [k for k, automaton in enumerate(game.automata) if automaton.name in late]
         if late and not put_off:
             return NOT_GUESSED
-        return self._run(game, limits, progress, partial(_core.guess, late=put_off))
+        return self._run(game, limits, progress, partial(core().guess, late=put_off))
 
     def solve(
         self,
@@ -79,7 +77,7 @@ class NativeEngine(Engine):
         soonest: bool = False,
     ) -> Outcome:
         """Decide the game, see `Engine`."""
-        search = partial(_core.solve, small_budget=self.small_budget, soonest=soonest)
+        search = partial(core().solve, small_budget=self.small_budget, soonest=soonest)
         return self._run(game, limits, progress, search)
 
     @staticmethod

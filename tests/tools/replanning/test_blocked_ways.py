@@ -11,16 +11,14 @@ from hypothesis import strategies as st
 from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tools.replanning import replan
 from pursue_gen.tools.replanning.request import read_request
 from pursue_gen.tools.replanning.start import network_from
 from pursue_runtime.locations import movement
+from tests.oracle import ENGINES
 from tests.tools.replanning.plays import asked, beginning, game_of, solved, walk
-
-pytestmark = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 
 RING = """
 poi "a"
@@ -174,7 +172,7 @@ def test_no_plan_uses_a_blocked_way_and_both_engines_agree(
         for way, alone in blocked:
             assert not {to for who, to in commanded(answer) if alone in ("", who)} & set(movements([way]))
     scenario, network = ring(), network_from(played(translate(ring()), Rules()), read_request(request))
-    assert solve(network, scenario_objective(scenario), Rules().reaction, engine="python").won is answer["won"]
+    assert solve(network, scenario_objective(scenario), Rules().reaction, engine=ENGINES["python"]).won is answer["won"]
 
 
 @pytest.mark.parametrize("name", ["thesis/scenario_3", "thesis/catch_the_thief"])

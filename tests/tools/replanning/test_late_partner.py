@@ -9,14 +9,11 @@ import pytest
 from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.tga import translate
 from pursue_gen.tools.replanning import replan
 from pursue_gen.tools.replanning.request import read_request
 from pursue_gen.tools.replanning.start import network_from
 from tests.tools.replanning.plays import game_of
-
-pytestmark = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 
 MEET = """
 poi "hall"

@@ -4,20 +4,15 @@ from __future__ import annotations
 
 from typing import Any, Dict
 
-import pytest
-
 from benchmarks.lab_scenarios import lab_scenario
 from pursue_gen.language import parse
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.tga import translate
 from pursue_gen.tools.replanning import replan
 from pursue_gen.tools.replanning.replan import _objectives
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy, read_cover
 from tests.tools.replanning.plays import game_of
-
-pytestmark = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 
 LAB = lab_scenario(17)
 """Three robots: one answers orders, one patrols, all of them are to be where a person comes to."""

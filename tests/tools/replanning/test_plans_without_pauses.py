@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from typing import Any, Dict
 
-import pytest
-
 from pursue_gen.language import parse
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.tga import translate
 from pursue_gen.tools.replanning import replan
 from pursue_runtime.strategy import Strategy, read_cover
 from tests.solving.test_callers import CLOCKS, HOTEL
 from tests.tools.replanning.plays import game_of
-
-pytestmark = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 
 
 def request(text: str, **changed: Any) -> Dict[str, Any]:

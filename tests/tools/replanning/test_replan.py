@@ -15,7 +15,6 @@ from pursue_gen.partition.strategy_file import render
 from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import played
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network
@@ -26,8 +25,6 @@ from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy, read_cover
 from pursue_runtime.zones import holds
 from tests.tools.replanning.plays import asked, beginning, busy, ended, game_of, solved, walk
-
-pytestmark = pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 
 THESIS = [f"thesis/{name}" for name in ("scenario_1", "scenario_2", "scenario_3", "scenario_4", "catch_the_thief")]
 WON = [*THESIS, "work_cell/work_cell"]

@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import start_zone
-from pursue_gen.synthesis.native import engine as native
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga.network import Automaton, Location, Network
 from pursue_gen.tga.scale import common_denominator, scaled
 from pursue_gen.tools.replanning.request import read_request
 from pursue_gen.tools.replanning.start import network_from, region
+from tests.oracle import ENGINES
 from tests.synthesis.test_start import GOAL
 from tests.tools.replanning.plays import asked, beginning, solved, walk
 
@@ -90,7 +90,6 @@ def on_the_way(clock: float, **changed) -> Network:
     return network_at(**{"ahead": 0.0, "locations": locations, "clocks": clocks, **changed})
 
 
-@pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 @pytest.mark.parametrize("name", ["thesis/scenario_1", "thesis/scenario_3", "work_cell/work_cell"])
 @pytest.mark.parametrize("lost", [False, True])
 def test_both_engines_agree_in_the_middle_of_plays(name: str, lost: bool) -> None:
@@ -98,7 +97,7 @@ def test_both_engines_agree_in_the_middle_of_plays(name: str, lost: bool) -> Non
     excused = [agent.name for agent in scenario.agents[:1]] if lost else []
     for state, clocks in list(walk(name, 5, 18))[::5]:
         network = network_from(won.network, read_request(asked(name, state, clocks, excused=excused)))
-        native_, python = (solve(network, won.objective, won.reaction, engine=e).won for e in ("native", "python"))
+        native_, python = (solve(network, won.objective, won.reaction, engine=e).won for e in ENGINES.values())
         assert native_ is python
 
 

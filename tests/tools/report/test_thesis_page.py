@@ -6,11 +6,9 @@ import json
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Tuple
 
-import pytest
 from typer.testing import CliRunner
 
 from pursue_gen.cli.app import app
-from pursue_gen.synthesis.native import engine as native
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -38,7 +36,6 @@ def rows_of_report(*options: str) -> Iterator[Tuple[str, Dict[str, Any], Dict[st
 
 
 # The engines find different strategies; the figures are those of the native one.
-@pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 def test_the_figures_beside_those_of_the_thesis_are_those_that_report_prints() -> None:
     expected = [
         [name, row["controller"], *(f"{one[what]}" for one in (row, row["thesis"]) for what in ("commands", "lines"))]
@@ -47,7 +44,6 @@ def test_the_figures_beside_those_of_the_thesis_are_those_that_report_prints() -
     assert rows_of_the_comparison("### Two games") == expected
 
 
-@pytest.mark.skipif(not native.available(), reason="the native engine is not built here (no compiler)")
 def test_the_shares_in_one_game_are_those_that_report_prints() -> None:
     expected = []
     for name, row, general in rows_of_report("--ends", "controllable"):

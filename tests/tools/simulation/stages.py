@@ -64,8 +64,17 @@ def sabotaged(name: str, path: str, old: str, new: str) -> Stage:
 
 
 def missions(name: str, number: int, settings: Settings, on: Optional[Stage] = None) -> Tuple[Outcome, ...]:
-    """The first so many missions."""
+    """The first so many missions; those on the scenario's own stage are played once in a session."""
+    return _first(name, number, settings) if on is None else _played(name, number, settings, on)
+
+
+@functools.lru_cache(maxsize=None)
+def _first(name: str, number: int, settings: Settings) -> Tuple[Outcome, ...]:
+    return _played(name, number, settings, stage(name))
+
+
+def _played(name: str, number: int, settings: Settings, on: Stage) -> Tuple[Outcome, ...]:
     times = remaining(name)
     bound = times.bound()
     settings = replace(settings, bound=bound, span=0.6 * bound if bound else settings.span, margin=margin(name))
-    return tuple(simulate_mission(on or stage(name), settings, seed, times) for seed in range(1, number + 1))
+    return tuple(simulate_mission(on, settings, seed, times) for seed in range(1, number + 1))

@@ -16,7 +16,6 @@ from typing import Any
 import pytest
 from stages import SCENARIOS
 
-from pursue_gen.synthesis.native import engine as native
 from tests.cli.test_commands import pursue
 
 FIRST, THIEF = (SCENARIOS / "thesis" / f"{name}.pur" for name in ("scenario_1", "catch_the_thief"))
@@ -38,7 +37,6 @@ def hashed(seed: int, *words: Any) -> "subprocess.CompletedProcess[str]":
     return done
 
 
-@pytest.mark.skipif(not native.available(), reason="the Python engine guarantees another time")
 def test_a_table_and_what_is_guaranteed() -> None:
     done = called(THIEF, "--runs", 30, "--seed", 5)
     assert done.returncode == 0, done.stderr

@@ -138,7 +138,7 @@ def test_a_robot_that_fails_is_replaced_by_a_new_plan() -> None:
 
 def test_a_mission_is_the_same_again_with_and_without_its_record() -> None:
     settings = Settings("mixed", tuple(kind for kind in FAULTS if kind not in ("failed", "silent")))
-    for seed in range(5):
+    for seed in range(3):
         first = simulate_mission(stage(THIEF), settings, seed, remaining(THIEF))
         again = simulate_mission(stage(THIEF), settings, seed, remaining(THIEF), record=True)
         assert again.play and not first.play

@@ -24,6 +24,7 @@ from pursue_gen.tools.simulation.stage import stage_of
 from pursue_gen.workspace import Options
 from pursue_runtime.state import SystemState
 from tests.course import Course
+from tests.oracle import ENGINES
 from tests.whole_stories import stories
 
 TIMES = re.compile(r"\b(?:distance|mobile|duration|takes|\d to|within|every|after|waits) [1-9]\d*")
@@ -59,7 +60,7 @@ class Watched(SimulatedMission):
 def solved(scenario: Scenario, engine: str = "native", work: int = 100_000) -> Tuple[Optional[Solution], bool]:
     """The proven solution, and whether the game is lost; neither where that takes more work than a test is worth."""
     try:
-        return solve_scenario(scenario, DEFAULT, SolveOptions(Limits(work=work), engine=engine)), False
+        return solve_scenario(scenario, DEFAULT, SolveOptions(Limits(work=work), engine=ENGINES[engine])), False
     except PursueError as problem:
         return None, problem.exit_status == LOST
 

@@ -24,11 +24,11 @@ from typing import ClassVar, Deque, Dict, Iterable, List, Optional, Set, Tuple
 from pursue_gen.synthesis.engine import Counts, Engine, Outcome
 from pursue_gen.synthesis.game import Action, Game, RawBlock, State, is_bad, is_goal
 from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor, Limits, Listener
-from pursue_gen.synthesis.reference.relaxed import RelaxedPlanner
-from pursue_gen.synthesis.reference.zone_graph import Node, Transition, ZoneGraph
+from pursue_gen.synthesis.relaxed import RelaxedPlanner
 from pursue_gen.synthesis.strategy_from import followed
 from pursue_gen.zones.dbm import Dbm
 from pursue_gen.zones.federation import Federation, predt
+from tests.oracle.zone_graph import Node, Transition, ZoneGraph
 
 Piece = Tuple[Dbm, Action]
 

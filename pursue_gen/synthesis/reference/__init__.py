@@ -1,1 +1,0 @@
-"""The readable engine, in Python: the native one's twin."""
