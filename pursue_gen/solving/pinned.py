@@ -2,14 +2,15 @@
 
 A person goes to a place and stays there, or all stay where they are. Where the duties of that (see `duties`) cannot all
 be covered while a robot does something, nobody who is to win begins that, and a game in which it is not begun is no
-harder. What is left for some robot alone is then lost as in `one_robot`.
+harder. Nor does another robot begin what must not be where a robot is that cannot leave its place. What is left for
+some robot alone is then lost as in `one_robot`.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import AbstractSet, Dict, FrozenSet, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.solving.contradictions import arrivals
 from pursue_gen.solving.duties import Duties, Duty, Standing, at_home, begins, can_be_covered, places_of
@@ -21,7 +22,7 @@ from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.network import Edge, Kind, Network, Objective
+from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective
 
 _Pins = Dict[Tuple[str, Edge], Tuple[Duty, ...]]
 """What robots cannot begin, each with duties that nobody else can cover meanwhile."""
@@ -43,7 +44,7 @@ def lost_to_pins(
         duties = all_duties.at(standing)
         if not can_be_covered(duties, everywhere):
             return (_promises(objective, _fewest(duties, everywhere)),)
-        pins = _pins(network, duties, everywhere)
+        pins = _pins(network, objective, duties, everywhere)
         for duty in duties if pins else ():
             doers = [(r, e) for r in robots for e in begins(network.automaton(r), duty.ends)]
             if doers and all(each in pins for each in doers):
@@ -56,7 +57,7 @@ def lost_to_pins(
             lost = lost_for_one(game, wanted, reaction, options, work, *starts)
             if lost:
                 heard = {e.sync.channel for n in watched(lost[0]) for e in network.automaton(n).edges if e.sync}
-                some = [d for (r, b), found in pins.items() if heard & _ended(network, r, b) for d in found]
+                some = [d for (r, b), found in pins.items() if heard & _ended(network.automaton(r), b) for d in found]
                 return (_promises(objective, some, lost[0].bad),)
     return ()
 
@@ -94,10 +95,9 @@ def _with(network: Network, edge: Optional[Edge]) -> Tuple[Tuple[str, int], ...]
     return tuple({**dict(network.variables), **dict(edge.assign if edge is not None else ())}.items())
 
 
-def _ended(network: Network, robot: str, begin: Edge) -> AbstractSet[str]:
+def _ended(robot: Automaton, begin: Edge) -> AbstractSet[str]:
     """The channels of the ends of what a robot begins."""
-    edges = network.automaton(robot).edges
-    return {edge.sync.channel for edge in edges if edge.source == begin.target and edge.sync is not None}
+    return {edge.sync.channel for edge in robot.edges if edge.source == begin.target and edge.sync is not None}
 
 
 def _standing(network: Network) -> Iterator[Tuple[Standing, Optional[Edge]]]:
@@ -109,18 +109,65 @@ def _standing(network: Network) -> Iterator[Tuple[Standing, Optional[Edge]]]:
             yield {**home, name: arrival.target}, arrival
 
 
-def _pins(network: Network, duties: Sequence[Duty], everywhere: Dict[str, List[str]]) -> _Pins:
+def _pins(network: Network, objective: Objective, duties: Sequence[Duty], everywhere: Dict[str, List[str]]) -> _Pins:
     channels = frozenset(channel for duty in duties for channel in duty.ends)
     found: _Pins = {}
     for robot in everywhere:
         automaton = network.automaton(robot)
         others = {name: places for name, places in everywhere.items() if name != robot}
         for begin in begins(automaton, channels):
-            ends = {e.sync.channel for e in automaton.edges if e.source == begin.target and e.sync is not None}
-            left = [d for d in duties if d.ends.isdisjoint(ends) and not d.covered_from(robot, begin.target)]
+            left = [duty for duty in duties if _is_left(duty, automaton, begin)]
             if not can_be_covered(left, others):
                 found[robot, begin] = _fewest(left, others)
+        for duty in duties:
+            if _stays(automaton, duty, everywhere):
+                values = _values(automaton, dict(network.variables))
+                doing = [(other, e) for other in others for e in begins(network.automaton(other), channels - duty.ends)]
+                for other, begin in doing:
+                    known = {**values, **{name: {value} for name, value in begin.assign}}
+                    for place in objective.bad:
+                        if _is_reached(network, place, known):
+                            found[other, begin] = (duty, Duty(place, 0, {}))
     return found
+
+
+def _is_left(duty: Duty, robot: Automaton, begin: Edge) -> bool:
+    """True if a robot that begins something neither sees to the duty by that nor covers it meanwhile."""
+    return duty.ends.isdisjoint(_ended(robot, begin)) and not duty.covered_from(robot.name, begin.target)
+
+
+def _stays(robot: Automaton, duty: Duty, everywhere: Dict[str, List[str]]) -> bool:
+    """True if nobody else covers the duty, and the robot does not once it has set off from where it begins."""
+    others = {name: places for name, places in everywhere.items() if name != robot.name}
+    ways = [edge for edge in robot.edges if edge.source == robot.initial and edge.sets_off]
+    return not can_be_covered([duty], others) and all(_is_left(duty, robot, edge) for edge in ways)
+
+
+def _values(robot: Automaton, first: Mapping[str, int]) -> Dict[str, Set[int]]:
+    """The values of a robot's variables while it does not leave the place where it begins."""
+    found = {name: {first[name]} for edge in robot.edges for name, _ in edge.assign}
+    here = {robot.initial, *(e.target for e in robot.edges if e.source == robot.initial and not e.sets_off)}
+    for edge in robot.edges:
+        for name, value in edge.assign if {edge.source, edge.target} <= here else ():
+            found[name].add(value)
+    return found
+
+
+def _is_reached(network: Network, bad: Place, known: Mapping[str, AbstractSet[int]]) -> bool:
+    """True if the environment can at once make happen what is to be avoided, whatever else holds."""
+    automaton = network.automaton(bad[0])
+    sure = {edge.source for edge in automaton.edges if edge.target == bad[1] and _is_taken(edge, known)}
+    return sure == {place.name for place in automaton.locations if place.name != bad[1]}
+
+
+def _is_taken(edge: Edge, known: Mapping[str, AbstractSet[int]]) -> bool:
+    """True if the environment can take the edge whichever of these values hold."""
+    if edge.controllable or edge.sync is not None or edge.guard.clocks:
+        return False
+    return all(
+        any(some <= {test.value for test in clause if test.variable == name} for name, some in known.items())
+        for clause in edge.guard.integers
+    )
 
 
 def _fewest(duties: Sequence[Duty], robots: Dict[str, List[str]]) -> Tuple[Duty, ...]:

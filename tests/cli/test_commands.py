@@ -27,12 +27,14 @@ from hypothesis import strategies as st
 from pursue_gen import __version__
 from pursue_gen.cli.app import main
 from pursue_gen.cli.solution import explained
+from pursue_gen.diagnostics import error
 from pursue_gen.explanation import costs as costs_module
 from pursue_gen.explanation.costs import Costs
 from pursue_gen.language import load
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules, played
+from pursue_gen.synthesis.limits import UNDECIDED
 from pursue_gen.synthesis.plan import read_plan
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import read_network, read_query
@@ -518,7 +520,7 @@ def test_what_a_search_has_held_is_gone_when_it_is_said_what_is_large() -> None:
     def search() -> None:
         large = mock.Mock()
         held.append(weakref.ref(large))
-        raise LimitHit([])
+        raise LimitHit([error(UNDECIDED, "no verdict")])
 
     def look(*_: object) -> Costs:
         assert held[0]() is None

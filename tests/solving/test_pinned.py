@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from typing import Tuple
 
 import pytest
@@ -69,6 +70,26 @@ objective: if ring then open within 30
 """
 """bot1 fetches and opens, which it cannot do together, and whether bot2 can help depends on who asks."""
 
+ON_CALL = """
+poi "hall"
+poi "room1"
+poi "room2"
+connect hall and room1 distance 3
+connect hall and room2 distance 3
+event "ring"
+event "open" location room1 duration 4
+event "order"
+event "drop" location {} duration 2
+rule "turn": order before drop
+agent "bot1" controllable mobile 1 location hall can_do drop
+agent "bot2" controllable mobile 1 location room1 can_do open
+agent "guest" location room2 can_do order, ring
+objective: if order then drop within 40
+objective: bot2 never_with bot1
+objective: if ring then open within {}
+"""
+"""Where somebody rings, and bot2 has no time to come back, it stays in room1."""
+
 
 def lost(text: str) -> Tuple[Tuple[str, ...], ...]:
     """The promises of each part that is found to be lost."""
@@ -103,6 +124,27 @@ def test_what_is_left_for_one_robot_is_too_much() -> None:
     """bot2 could fetch, if nobody asked: it would be too late for that."""
     assert lost(BUSY.format(12)) == (("obj", "obj2", "obj3"),)
     assert lost(BUSY.format(40)) == ()
+
+
+@pytest.mark.parametrize(
+    "text, expected",
+    [
+        (ON_CALL.format("room1", 8), (("obj", "obj2", "obj3"),)),
+        (ON_CALL.format("room2", 8), ()),
+        (ON_CALL.format("room1", 30), ()),
+        (ON_CALL.format("room1", 8) + 'agent "bot3" controllable mobile 1 location room1 can_do open\n', ()),
+        (ON_CALL.format("room1", 8).replace("never_with bot1", "never_with guest"), ()),
+    ],
+    ids=["it is there", "elsewhere", "it has time", "another one answers", "kept apart from others"],
+)
+def test_nobody_begins_what_must_not_be_where_a_robot_has_to_stay(
+    text: str, expected: Tuple[Tuple[str, ...], ...]
+) -> None:
+    assert lost(text) == expected
+    scenario = parse(text, "floor.pur", "floor")
+    network, objective = played(translate(scenario), Rules()), scenario_objective(scenario)
+    with suppress(LimitHit):
+        assert solve(network, objective, Rules().reaction, limits=LITTLE).won == (not expected)
 
 
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))

@@ -44,7 +44,7 @@ def test_sabotage_of_the_run_time_is_seen(what: str, monkeypatch: pytest.MonkeyP
     scope = dict(vars(sys.modules[kind.__module__]))
     exec(compile("from __future__ import annotations\n" + source.replace(old, new), method, "exec"), scope)
     monkeypatch.setattr(kind, method, scope[method])
-    assert_seen(missions(THIEF, 10, Settings("random")), problem)
+    assert_seen(missions(THIEF, 10, Settings("random"), stage(THIEF)), problem)
 
 
 def test_another_command_is_seen() -> None:
