@@ -32,9 +32,6 @@ CAP = Fraction(10)
 USUAL = 3_000
 """States for `strategy_margin` that are worth a second."""
 
-_BLOCKS = 10
-"""A strategy with more blocks than so many for each state is not played: each takes a state where plays come to it."""
-
 @dataclass(frozen=True)
 class Margin:
     """It wins with a delay of `wins`, and not with one of `fails` (time units).
@@ -58,9 +55,9 @@ def strategy_margin(
 
     `states` is what all the looks together may cost, in symbolic states of the checker (not a time: the answer must not
     depend on the machine), within the limits. Where that is used up the margin is at least what was found, and
-    where so few states cannot tell, of a strategy with very many blocks, at least the reaction.
+    where so few states cannot tell, of a strategy with more blocks, at least the reaction.
     """
-    if len(strategy.blocks) > _BLOCKS * states:
+    if len(strategy.blocks) > states:  # each takes a state where plays come to it
         return Margin(reaction, None)
     part = named_part(network, strategy)
     left, arenas = states, None if strategy.in_parts else Arena.kept(part)

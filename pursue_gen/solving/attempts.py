@@ -9,9 +9,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Optional, Sequence, Tuple, Union
 
+from pursue_gen.solving.contradictions import excluded_by_a_stay
 from pursue_gen.solving.efforts import EFFORTS, Effort
+from pursue_gen.solving.errands import excluded_by_an_errand
 from pursue_gen.solving.found import Found
-from pursue_gen.solving.lost_promises import lost_promises
+from pursue_gen.solving.lost_promises import lost_alone, lost_promises
 from pursue_gen.solving.one_robot import lost_for_one
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.pinned import lost_to_pins
@@ -22,11 +24,13 @@ from pursue_gen.tga.network import Network, Objective
 
 @dataclass(frozen=True)
 class _Attempt:
-    """How hard shares are looked for, and the work for policies, for promises that one robot cannot keep together (for
-    all games, and for one), for those that robots cannot keep as they have to stay near others (the same), and whether
-    one or two promises are looked for that are lost. 0, (): that is not tried."""
+    """How hard shares are looked for, whether promises are that are lost alone or where somebody stays, and the work
+    for policies, for promises that one robot cannot keep together (for all games, and for one), for those that robots
+    cannot keep as they have to stay near others (the same), and whether one or two promises are looked for that are
+    lost. 0, (): that is not tried."""
 
     shares: Sequence[Effort] = ()
+    alone: bool = False
     policy: int = 0
     one_robot: Sequence[int] = ()
     pinned: Sequence[int] = ()
@@ -34,14 +38,15 @@ class _Attempt:
 
 
 _SHARED = (
-    _Attempt(EFFORTS[:2], one_robot=(40_000_000, 2_500_000)),
+    _Attempt(EFFORTS[:1], alone=True),
+    _Attempt(EFFORTS[1:2], one_robot=(40_000_000, 2_500_000)),
     _Attempt(EFFORTS[2:3], policy=100_000, one_robot=(200_000_000, 100_000_000), pinned=(60_000_000, 40_000_000)),
     _Attempt(EFFORTS[3:6], lost=True),
     _Attempt(EFFORTS[6:], policy=500_000),
 )
 """For promises that several robots may keep."""
 
-_ONE = (_Attempt(policy=5_000_000, lost=True),)
+_ONE = (_Attempt(alone=True), _Attempt(policy=5_000_000, lost=True))
 """For those of one robot."""
 
 
@@ -55,9 +60,12 @@ def decided_by_attempts(
         lost: Tuple[Objective, ...] = ()
         if each.shares:
             found = won_in_shares(network, objective, reaction, options.since(start), each.shares, known)
+        if found is None and each.alone:
+            lost = lost_alone(network, objective, reaction, options.since(start))
+            lost = lost or excluded_by_a_stay(network, objective) or excluded_by_an_errand(network, objective)
         if found is None and each.policy:
             found = won_by_policy(network, objective, reaction, each.policy, options.since(start))
-        if found is None and each.one_robot:
+        if found is None and not lost and each.one_robot:
             lost = lost_for_one(network, objective, reaction, options.since(start), each.one_robot)
         if found is None and not lost and each.pinned:
             lost = lost_to_pins(network, objective, reaction, options.since(start), each.pinned)

@@ -12,14 +12,11 @@ from pursue_gen.outcomes import LimitHit, Lost, NotProven
 from pursue_gen.proof.independence import named_part
 from pursue_gen.proof.worst_case import LIMIT, with_counter, worst_case
 from pursue_gen.solving.attempts import decided_by_attempts
-from pursue_gen.solving.contradictions import excluded_by_a_stay
 from pursue_gen.solving.decomposition import has_parts, little_work, won_by_some, works_in_parallel
-from pursue_gen.solving.errands import excluded_by_an_errand
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.least_time import Guarantee, bounds, fastest, unscaled
 from pursue_gen.solving.lost_promises import (
     cannot_be_promised,
-    lost_alone,
     lost_promises,
     lost_to_one_walk,
     only_promises,
@@ -209,9 +206,7 @@ def _with_little_work(
         if passed is not None:
             return Solution(passed[0], objective, passed[1], reaction)
     if verdict is None and (several or shared):
-        lost = lost_alone(game, objective, reaction, options.since(start))
-        lost = lost or excluded_by_a_stay(game, objective) or excluded_by_an_errand(game, objective)
-        known = lost or decided_by_attempts(game, objective, reaction, options.since(start))
+        known = decided_by_attempts(game, objective, reaction, options.since(start))
         if known:
             return known
     walking = reaction, options.since(start).limits, options.progress
