@@ -17,7 +17,7 @@ from pursue_gen.solving.optional import Promised, promised_of
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import rules_text
 from pursue_gen.solving.verdict import verdict_text
-from pursue_gen.synthesis.limits import UNDECIDED, Limits
+from pursue_gen.synthesis.limits import UNDECIDED
 from pursue_gen.tga import translate
 
 
@@ -39,16 +39,11 @@ def solve_and_print(scenario: Scenario, request: SolveRequest, explain: bool) ->
         info(verdict_text(won))
     elif not won.warnings:
         info(f"{request.plan} wins: {rules_text(won.rules)}")
-    show_answers(found, request.options.limits)
+    for answer in answers(found.scenario, won, request.options.limits):
+        info(answer.in_words())
     show_promise(found.scenario, request.plan is None)
     show_unneeded(found)
     return found
-
-
-def show_answers(found: Promised, limits: Limits) -> None:
-    """Prints how late each promise with a deadline is kept at worst."""
-    for answer in answers(found.scenario, found.solution, limits):
-        info(answer.in_words())
 
 
 def show_unneeded(found: Promised) -> None:

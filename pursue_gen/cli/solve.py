@@ -43,7 +43,7 @@ def solve(
     been proven by a second, independent program. The exit status is 4 where the objective cannot be met.
     """
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.cli.solution import explained, show_answers, show_promise, show_unneeded
+    from pursue_gen.cli.solution import explained, show_promise, show_unneeded
     from pursue_gen.files import write_texts
     from pursue_gen.partition import unneeded
     from pursue_gen.solving.answers import answers
@@ -76,19 +76,20 @@ def solve(
     if output is not None:
         write_texts({output: plan})
     found = margins(won, margin, limits)
+    times = [] if promise is None else answers(promise.scenario, won, limits)
     if as_json_:
         more: Dict[str, Any] = {}
         if promise is not None:
             alone = [agent.name for agent in unneeded(promise.scenario, won.strategy)]
-            times = [answer.as_json() for answer in answers(promise.scenario, won, limits)]
             more = {**periods_json(promise.scenario), **optional_json(promise.scenario)}
-            more = {"answers": times, "not_needed": alone, **more}
+            more = {"answers": [answer.as_json() for answer in times], "not_needed": alone, **more}
         print(json.dumps({**verdict_json(rules, won, *found), **more}, indent=1))
     elif printed:
         print(plan, end="")
     info(verdict_text(won))
     if promise is not None:
-        show_answers(promise, limits)
+        for answer in times:
+            info(answer.in_words())
         show_promise(promise.scenario)
         show_unneeded(promise)
     info(margin_text(won, *found))

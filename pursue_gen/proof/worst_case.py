@@ -142,6 +142,8 @@ def answer_times(
     if strategy.in_parts:
         games = ((part.game, part.objective, part.strategy) for part in shares_of(network, objective, strategy))
     for whole, wanted, own in games if not (strategy.stages or strategy.passages) else ():
+        if len(own.blocks) > _BLOCKS * limit:
+            continue
         game = named_part(whole, own)
         searches = searches_of(ClosedLoop(game, wanted, own, reaction, None, INSTANT))
         for k, automaton in enumerate(game.automata):
