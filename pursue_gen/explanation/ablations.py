@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import AbstractSet, Callable, Iterator, Optional, Set, Tuple
 
-from pursue_gen.language.conditions import condition_text, conditions_of, names_in
+from pursue_gen.language.conditions import condition_text, names_in
 from pursue_gen.language.scenario import (
     Agent,
     Assumption,
@@ -76,7 +76,7 @@ def without_agent(scenario: Scenario, name: str) -> Optional[Scenario]:
         replace(state, true_if=_others(state.true_if, gone), false_if=_others(state.false_if, gone))
         for state in scenario.states
     )
-    named = {ref.name for condition, _ in conditions_of(scenario) for _, ref in names_in(condition)}
+    named = {ref.name for condition, _ in scenario.conditions() for _, ref in names_in(condition)}
     kept = {state.name for state in states if state.true_if or state.false_if or state.name in named}
     bodies = [(rule, _body(rule.body, gone)) for rule in scenario.rules]
     return replace(
@@ -187,7 +187,7 @@ def _events(scenario: Scenario, agents: Tuple[Agent, ...]) -> Set[str]:
 
 def _wanted(scenario: Scenario) -> Set[str]:
     """The events and agents that the objectives and conditions name."""
-    names = {ref.name for condition, _ in conditions_of(scenario) for _, ref in names_in(condition)}
+    names = {ref.name for condition, _ in scenario.conditions() for _, ref in names_in(condition)}
     names |= {ref.name for reach in scenario.reach for ref in reach.events}
     for safety in scenario.safety:
         if isinstance(safety, Respond):

@@ -11,7 +11,8 @@ from typing import Iterator, Sequence, Set, Tuple
 
 from pursue_gen.explanation.decided import decided_within
 from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, OnWay, Who
-from pursue_gen.language.parts import Agent, Ref
+from pursue_gen.language.parts import Agent
+from pursue_gen.language.refs import Ref
 from pursue_gen.language.scenario import Always, Patrol, Respond, Safety, Scenario
 from pursue_gen.language.wording import objective_text, patrol_text
 from pursue_gen.solving.rules import Rules

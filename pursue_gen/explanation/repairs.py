@@ -17,7 +17,6 @@ from pursue_gen.explanation.number_changes import (
     event_changes,
     travel_changes,
 )
-from pursue_gen.language.conditions import conditions_of
 from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole_below
 from pursue_gen.language.scenario import Agent, Connection, Event, Patrol, Reach, Respond, Safety, Scenario
 from pursue_gen.language.wording import answer_text, answer_words, events_words, listed
@@ -281,7 +280,7 @@ def _order_knobs(scenario: Scenario, rules: Rules) -> Iterator[Knob]:
         text = f"{need.event.name} only_if {need.state.name} is_{'true' if need.value else 'false'}"
         label = f"without stateDependency {text}"
         yield _switch("dependency", need.event.name, label, text, (freer, rules), need.span, 1)
-    spans = [span for _, span in conditions_of(scenario)]
+    spans = [span for _, span in scenario.conditions()]
     for (what, text, left_out), span in zip(without_conditions(scenario), spans):
         label = f"{what} without only_if {text}"
         yield _switch("condition", what, label, text, (left_out(scenario), rules), span, 1)

@@ -8,7 +8,7 @@ from typing import Union
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.conditions import Condition
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.parts import Ref
+from pursue_gen.language.refs import Ref
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,6 @@ from typing import Dict, Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language import network_names as names
-from pursue_gen.language.conditions import conditions_of
 from pursue_gen.language.scenario import Patrol, Scenario
 from pursue_gen.language.symbols import Role, Symbol
 
@@ -49,7 +48,7 @@ def _in_network(scenario: Scenario) -> Iterator[_Stated]:
         yield state.span, [names.state(state.name), names.state_value(state.name)]
     for agent in scenario.agents:
         yield agent.span, [names.agent(agent.name), names.agent_position(agent.name), names.agent_clock(agent.name)]
-        yield agent.span, [names.busy_with(agent.name)] if any(conditions_of(scenario)) else []
+        yield agent.span, [names.busy_with(agent.name)] if any(scenario.conditions()) else []
     yield from ((battery.span, [names.level(battery.agent.name)]) for battery in scenario.batteries)
 
 

@@ -16,7 +16,6 @@ from pursue_gen.language.conditions import (
     atoms,
     condition_text,
     condition_words,
-    conditions_of,
 )
 from pursue_gen.language.scenario import Always, NeverWith, Patrol, Respond, Scenario
 
@@ -24,7 +23,7 @@ from pursue_gen.language.scenario import Always, NeverWith, Patrol, Respond, Sce
 def check_conditions(scenario: Scenario) -> Iterator[Diagnostic]:
     """Findings about the conditions of a scenario whose names are all declared."""
     domains = Domains(scenario)
-    for condition, span in conditions_of(scenario):
+    for condition, span in scenario.conditions():
         impossible = [finding for atom in atoms(condition) for finding in _impossible(scenario, domains, atom, span)]
         senseless = [] if impossible else list(_without_sense(condition, span, domains))
         yield from impossible or senseless

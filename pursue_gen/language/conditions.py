@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Callable, Iterator, Optional, Tuple, Union
+from typing import Callable, Iterator, Optional, Tuple, Union
 
-if TYPE_CHECKING:
-    from pursue_gen.diagnostics import Span
-    from pursue_gen.language.scenario import Ref, Scenario
+from pursue_gen.language.refs import Ref
 
 
 @dataclass(frozen=True)
@@ -97,26 +95,6 @@ def names_in(condition: Condition) -> Iterator[Tuple[str, Ref]]:
             yield "POI", atom.place
         elif isinstance(atom, Doing):
             yield "event", atom.event
-
-
-def conditions_of(scenario: Scenario) -> Iterator[Tuple[Condition, Span]]:
-    """Every condition in a scenario, with the place of the statement that it stands in."""
-    for way in scenario.connections:
-        if way.only_if is not None:
-            yield way.only_if, way.span
-    for event in scenario.events:
-        if event.only_if is not None:
-            yield event.only_if, event.span
-    for safety in scenario.safety:
-        condition = getattr(safety, "condition", None)
-        if condition is not None:
-            yield condition, safety.span
-        for condition in getattr(safety, "conditions", ()):
-            yield condition, safety.span
-    for assumption in scenario.assumptions:
-        condition = getattr(assumption, "condition", None)
-        if condition is not None:
-            yield condition, assumption.span
 
 
 def condition_text(condition: Condition) -> str:

@@ -6,7 +6,7 @@ from typing import Any, Container, Dict, FrozenSet, Iterable, Iterator, List, Ma
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language.collisions import check_collisions
-from pursue_gen.language.conditions import conditions_of, names_in
+from pursue_gen.language.conditions import names_in
 from pursue_gen.language.labels import LABELLED, why_no_label
 from pursue_gen.language.messages import RESERVED, shown
 from pursue_gen.language.scenario import Patrol, Ref, RuleBody, Scenario
@@ -143,7 +143,7 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
     for way in scenario.connections:
         yield "POI", way.a, way.ends[0]
         yield "POI", way.b, way.ends[1]
-    for condition, _ in conditions_of(scenario):
+    for condition, _ in scenario.conditions():
         for kind, ref in names_in(condition):
             yield kind, ref.name, ref.span
     for rule in scenario.rules:

@@ -9,7 +9,7 @@ from typing import Optional, Tuple, Union
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.conditions import Condition, Not, Who
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.parts import Ref
+from pursue_gen.language.refs import Ref
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import Optional, Tuple, Union
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.conditions import Condition
 from pursue_gen.language.numbers import Number, exact
+from pursue_gen.language.refs import Ref
 
 
 @dataclass(frozen=True)
@@ -21,20 +22,6 @@ class Pose:
     qy: float
     qz: float
     qw: float
-
-
-@dataclass(frozen=True)
-class Ref:
-    """A name where it is used (not declared), with the label of what it stands for; "": it has none."""
-
-    name: str
-    span: Span
-    label: str = ""
-
-    @property
-    def shown(self) -> str:
-        """What people read."""
-        return self.label or self.name
 
 
 @dataclass(frozen=True)

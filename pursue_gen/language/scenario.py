@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Collection, Dict, Iterator, Tuple, Union
 
+from pursue_gen.diagnostics import Span
 from pursue_gen.language.assumptions import (
     AboutOne,
     Assumption,
@@ -15,6 +16,7 @@ from pursue_gen.language.assumptions import (
     NeverHolds,
     Waits,
 )
+from pursue_gen.language.conditions import Condition
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.objectives import (
     Always,
@@ -38,7 +40,6 @@ from pursue_gen.language.parts import (
     Event,
     Poi,
     Pose,
-    Ref,
     Rule,
     RuleBody,
     Sequence,
@@ -48,6 +49,7 @@ from pursue_gen.language.parts import (
     Window,
     window_of,
 )
+from pursue_gen.language.refs import Ref
 
 __all__ = [
     "AboutOne", "Agent", "Always", "Assumption", "AtMost", "Avoid", "Battery", "Both", "Choice", "Connection",
@@ -135,6 +137,23 @@ class Scenario:
             key = each.span if isinstance(each, Patrol) and each.order else number
             found[key] = (*found.get(key, ()), each)
         return tuple(found.values())
+
+    def conditions(self) -> Iterator[Tuple[Condition, Span]]:
+        """Every condition, with the place of the statement that it stands in."""
+        limited: Tuple[Union[Connection, Event], ...] = (*self.connections, *self.events)
+        for part in limited:
+            if part.only_if is not None:
+                yield part.only_if, part.span
+        for safety in self.safety:
+            condition = getattr(safety, "condition", None)
+            if condition is not None:
+                yield condition, safety.span
+            for condition in getattr(safety, "conditions", ()):
+                yield condition, safety.span
+        for assumption in self.assumptions:
+            condition = getattr(assumption, "condition", None)
+            if condition is not None:
+                yield condition, assumption.span
 
     def on_patrol(self, patrol: Patrol) -> Tuple[Agent, ...]:
         """The agents of whom one has to be at the place."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Sequence, Set, Tuple
 
 from pursue_gen.language.clauses import Domains
-from pursue_gen.language.conditions import Holds, atoms, conditions_of
+from pursue_gen.language.conditions import Holds, atoms
 from pursue_gen.language.scenario import Agent, Patrol, Scenario
 from pursue_gen.language.wording import listed
 from pursue_gen.synthesis.strategy import Strategy
@@ -43,7 +43,7 @@ def _present(scenario: Scenario) -> Set[str]:
     """The agents that objectives and conditions look at where they stand."""
     domains = Domains(scenario)
     found: Set[str] = set()
-    for condition, _ in conditions_of(scenario):
+    for condition, _ in scenario.conditions():
         for atom in atoms(condition):
             if not isinstance(atom, Holds):
                 found.update(domains.among(atom.who))

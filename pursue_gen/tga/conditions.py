@@ -6,7 +6,7 @@ from typing import Dict, FrozenSet, List, Mapping, Optional, Tuple
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import NEVER, TRUE, Clause, Clauses, Domains, Value, clauses_of, given
-from pursue_gen.language.conditions import AllOf, AnyOf, Condition, Doing, Not, atoms, conditions_of
+from pursue_gen.language.conditions import AllOf, AnyOf, Condition, Doing, Not, atoms
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.tga.network import Clause as Tests
 from pursue_gen.tga.network import Test
@@ -73,7 +73,7 @@ class Conditions:
 
     def _numbers(self, scenario: Scenario) -> List[Tuple[str, Mapping[Value, int]]]:
         wanted: Dict[str, FrozenSet[str]] = {}
-        for condition, _ in conditions_of(scenario):
+        for condition, _ in scenario.conditions():
             for atom in atoms(condition):
                 if isinstance(atom, Doing):
                     for name in self.domains.literals(atom):

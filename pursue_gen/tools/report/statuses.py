@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Dict, List, Tuple
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.conditions import Condition, condition_text, conditions_of
+from pursue_gen.language.conditions import Condition, condition_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import assumption_words
 from pursue_gen.tga.status_words import statuses
@@ -16,7 +16,7 @@ from pursue_gen.tools.simulation.meaning import holds
 def conditions(scenario: Scenario) -> Dict[str, Condition]:
     """The conditions of a scenario by their texts, each once, in its order."""
     found: Dict[str, Condition] = {}
-    for condition, _ in conditions_of(scenario):
+    for condition, _ in scenario.conditions():
         found.setdefault(condition_text(condition), condition)
     return found
 

@@ -1,0 +1,21 @@
+"""A name where it is used: what every part of a scenario refers to others by."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pursue_gen.diagnostics import Span
+
+
+@dataclass(frozen=True)
+class Ref:
+    """A name where it is used (not declared), with the label of what it stands for; "": it has none."""
+
+    name: str
+    span: Span
+    label: str = ""
+
+    @property
+    def shown(self) -> str:
+        """What people read."""
+        return self.label or self.name
