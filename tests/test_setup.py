@@ -196,7 +196,7 @@ def run(machine: Path, *words: str, name: str = "project") -> "subprocess.Comple
 
 
 def test_run_explains_itself() -> None:
-    for words in ([], ["help"], ["--help"]):
+    for words in ([], ["help"], ["--help"], ["mission", "--help"]):
         told = called([ROOT / "run", *words], ROOT, dict(os.environ))
         assert told.returncode == 0
         assert "./run mission" in told.stdout and "./run test" in told.stdout
