@@ -121,7 +121,7 @@ def _pins(network: Network, objective: Objective, duties: Sequence[Duty], everyw
                 found[robot, begin] = _fewest(left, others)
         for duty in duties:
             if _stays(automaton, duty, everywhere):
-                values = _values(automaton, dict(network.variables))
+                values = _values(network, automaton)
                 doing = [(other, e) for other in others for e in begins(network.automaton(other), channels - duty.ends)]
                 for other, begin in doing:
                     known = {**values, **{name: {value} for name, value in begin.assign}}
@@ -143,13 +143,16 @@ def _stays(robot: Automaton, duty: Duty, everywhere: Dict[str, List[str]]) -> bo
     return not can_be_covered([duty], others) and all(_is_left(duty, robot, edge) for edge in ways)
 
 
-def _values(robot: Automaton, first: Mapping[str, int]) -> Dict[str, Set[int]]:
-    """The values of a robot's variables while it does not leave the place where it begins."""
-    found = {name: {first[name]} for edge in robot.edges for name, _ in edge.assign}
+def _values(network: Network, robot: Automaton) -> Dict[str, Set[int]]:
+    """The values of the variables that only a robot sets while it does not leave the place where it begins."""
+    others = {name for a in network.automata if a is not robot for edge in a.edges for name, _ in edge.assign}
+    set_here = {name for edge in robot.edges for name, _ in edge.assign} - others
+    found = {name: {value} for name, value in network.variables if name in set_here}
     here = {robot.initial, *(e.target for e in robot.edges if e.source == robot.initial and not e.sets_off)}
     for edge in robot.edges:
         for name, value in edge.assign if {edge.source, edge.target} <= here else ():
-            found[name].add(value)
+            if name in found:
+                found[name].add(value)
     return found
 
 
