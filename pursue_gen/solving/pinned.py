@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 from typing import AbstractSet, Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.solving.contradictions import arrivals
@@ -44,7 +45,9 @@ def lost_to_pins(
         duties = all_duties.at(standing)
         if not can_be_covered(duties, everywhere):
             return (_promises(objective, _fewest(duties, everywhere)),)
-        pins = _pins(network, objective, duties, everywhere)
+        pins = _pins(network, duties, everywhere)
+        if stay is None:  # else a robot may have gone elsewhere before somebody came
+            pins.update(_kept_away(network, objective, duties, everywhere))
         for duty in duties if pins else ():
             doers = [(r, e) for r in robots for e in begins(network.automaton(r), duty.ends)]
             if doers and all(each in pins for each in doers):
@@ -109,7 +112,7 @@ def _standing(network: Network) -> Iterator[Tuple[Standing, Optional[Edge]]]:
             yield {**home, name: arrival.target}, arrival
 
 
-def _pins(network: Network, objective: Objective, duties: Sequence[Duty], everywhere: Dict[str, List[str]]) -> _Pins:
+def _pins(network: Network, duties: Sequence[Duty], everywhere: Dict[str, List[str]]) -> _Pins:
     channels = frozenset(channel for duty in duties for channel in duty.ends)
     found: _Pins = {}
     for robot in everywhere:
@@ -119,15 +122,24 @@ def _pins(network: Network, objective: Objective, duties: Sequence[Duty], everyw
             left = [duty for duty in duties if _is_left(duty, automaton, begin)]
             if not can_be_covered(left, others):
                 found[robot, begin] = _fewest(left, others)
-        for duty in duties:
-            if _stays(automaton, duty, everywhere):
-                values = _values(network, automaton)
-                doing = [(other, e) for other in others for e in begins(network.automaton(other), channels - duty.ends)]
-                for other, begin in doing:
-                    known = {**values, **{name: {value} for name, value in begin.assign}}
-                    for place in objective.bad:
-                        if _is_reached(network, place, known):
-                            found[other, begin] = (duty, Duty(place, 0, {}))
+    return found
+
+
+def _kept_away(
+    network: Network, objective: Objective, duties: Sequence[Duty], everywhere: Dict[str, List[str]]
+) -> _Pins:
+    """What robots cannot begin as it must not be where another one begins, which can never leave."""
+    channels = frozenset(channel for duty in duties for channel in duty.ends)
+    found: _Pins = {}
+    for robot, duty in product(everywhere, duties):
+        automaton = network.automaton(robot)
+        values = _values(network, automaton) if _stays(automaton, duty, everywhere) else {}
+        for other in (name for name in everywhere if values and name != robot):
+            for begin in begins(network.automaton(other), channels - duty.ends):
+                known = {**values, **{name: {value} for name, value in begin.assign}}
+                for place in objective.bad:
+                    if _is_reached(network, place, known):
+                        found[other, begin] = (duty, Duty(place, 0, {}))
     return found
 
 

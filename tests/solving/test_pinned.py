@@ -147,6 +147,38 @@ def test_nobody_begins_what_must_not_be_where_a_robot_has_to_stay(
         assert solve(network, objective, Rules().reaction, limits=LITTLE).won == (not expected)
 
 
+LATER = """
+poi "room1"
+poi "closet"
+poi "yard"
+poi "shelf"
+poi "gate"
+poi "bell"
+connect room1 and closet distance 20
+connect yard and shelf distance 1
+connect gate and bell distance 90
+event "ring" location bell
+event "open" location room1 duration 4
+event "order"
+event "drop" location shelf duration 2
+agent "bot1" controllable mobile 1 location yard can_do drop
+agent "bot2" controllable mobile 1 location room1 can_do open
+agent "guest" mobile 1 location {} can_do ring
+agent "boss" location yard can_do order
+objective: if order then drop within 60
+objective: always not bot1 at shelf or not bot2 at room1
+objective: if ring then open within 40
+"""
+"""Who goes from room1 to the closet is late for a ring that comes then; who has gone there before it may is not."""
+
+
+@pytest.mark.parametrize("place, expected", [("bell", (("obj", "obj2", "obj3"),)), ("gate", ())])
+def test_who_has_time_to_leave_before_somebody_comes_does_not_stay(
+    place: str, expected: Tuple[Tuple[str, ...], ...]
+) -> None:
+    assert lost(LATER.format(place)) == expected
+
+
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.integers(0, 10**6), st.integers(8, 40), st.integers(1, 2))
 def test_what_is_lost_as_robots_stay_near_others_is_lost(seed: int, deadline: int, people: int) -> None:
