@@ -18,6 +18,9 @@ CAREFUL = 1024
 DEFAULT_SECONDS = 60.0
 """Seconds of processor time that the commands allow themselves by default."""
 
+_FRESH = 128
+"""MiB that a process of ours has at most before it works on anything."""
+
 _SHARE = 0.8
 """The part of the available memory that may be taken; the machine has to go on."""
 
@@ -187,8 +190,12 @@ def processor_time() -> float:
 
 
 def careful_memory() -> int:
-    """The default limit on memory (MiB): a GiB, and never all that the machine has left."""
-    return max(1, min([CAREFUL, *(int(_SHARE * size) for size in _available())]))
+    """The default limit on memory (MiB): a GiB, and never all that the machine has left.
+
+    What this process (an editor's, a notebook's) holds of earlier work does not count.
+    """
+    earlier = max(0, memory_in_use() - _FRESH)
+    return max(1, min([CAREFUL + earlier, *(int(_SHARE * size) for size in _available())]))
 
 
 def _available() -> Iterator[int]:

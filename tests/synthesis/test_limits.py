@@ -330,7 +330,14 @@ def test_where_the_system_does_not_tell_the_peak_counts() -> None:
 )
 def test_no_more_than_the_machine_has(free: List[int], limit: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(limits_module, "_available", lambda: iter(free))
+    monkeypatch.setattr(limits_module, "memory_in_use", lambda: 40)
     assert careful_memory() == limit
+
+
+def test_what_a_process_holds_of_earlier_work_does_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(limits_module, "_available", lambda: iter([10**6]))
+    monkeypatch.setattr(limits_module, "memory_in_use", lambda: 2000)
+    assert careful_memory() - 2000 > CAREFUL - 200
 
 
 def test_what_is_available_is_read_from_the_machine_and_the_container() -> None:
