@@ -35,8 +35,9 @@ _WORK, _STATES = 20_000_000, 20_000
 _SHARE, _POLICIES = 0.3, 0.1
 """The part of what is left that one of them gets, and that all policies of a game get."""
 
-_LOOKS, _SYMBOLIC = 12, 6_000
-"""So many strategies with fewer commands are looked at for a game, with so many symbolic states each."""
+_LOOKS, _BLOCKS, _SYMBOLIC = 12, 20_000, 6_000
+"""So many strategies with fewer commands are looked at for a game, which have so many blocks together, with so many
+symbolic states each."""
 
 
 @dataclass(frozen=True)
@@ -133,7 +134,8 @@ def _owed(game: _Game, reaction: Fraction, budget: Budget, options: SolveOptions
     idle = _idle(game)
     found: Optional[Strategy] = None
     groups, looks = [idle] if idle else [], 0
-    while groups and looks < _LOOKS:
+    most = min(_LOOKS, _BLOCKS // len(game.strategy.blocks)) if idle else 0
+    while groups and looks < most:
         some, looks = groups.pop(), looks + 1
         fewer = _without(found or game.strategy, set(some))
         try:

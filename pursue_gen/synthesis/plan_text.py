@@ -46,35 +46,41 @@ def _is_equality(one: Constraint, other: Constraint) -> bool:
     return (
         one.left is not None
         and not (one.strict or other.strict)
-        and (other.left, other.right, other.bound) == (one.right, one.left, -one.bound)
+        and (other.left, other.right) == (one.right, one.left)
+        and other.bound == -one.bound
     )
 
 
-def constraint_texts(zone: Zone, space: str = "") -> Iterator[str]:
-    """The zone's constraints as texts, in order; a pair that fixes a value becomes one equality."""
+def constraint_texts(zone: Zone, space: str = "", known: Optional[Dict[int, str]] = None) -> Iterator[str]:
+    """The zone's constraints as texts, in order; a pair that fixes a value becomes one equality.
+
+    `known`: the texts of constraints by their identity, for constraints that stand in many zones.
+    """
+    texts = {} if known is None else known
     index = 0
     while index < len(zone):
         if index + 1 < len(zone) and _is_equality(zone[index], zone[index + 1]):
             yield _equality_text(zone[index], space)
             index += 2
         else:
-            yield constraint_text(zone[index], space)
+            constraint = zone[index]
+            yield texts.get(id(constraint)) or texts.setdefault(id(constraint), constraint_text(constraint, space))
             index += 1
 
 
 def zones_text(zones: Tuple[Zone, ...], known: Optional[Dict[int, str]] = None) -> str:
     """The zones as TIGA prints a federation: `(a && b) || (c)`, or `true`.
 
-    `known`: the texts of zones by their identity, for zones that stand in many places.
+    `known`: the texts of zones and of constraints by their identity, for those that stand in many places.
     """
     if zones == ((),):
         return ALWAYS
     texts = {} if known is None else known
-    return " || ".join(texts.get(id(zone)) or texts.setdefault(id(zone), _zone_text(zone)) for zone in zones)
+    return " || ".join(texts.get(id(zone)) or texts.setdefault(id(zone), _zone_text(zone, texts)) for zone in zones)
 
 
-def _zone_text(zone: Zone) -> str:
-    return f"({' && '.join(constraint_texts(zone)) or ALWAYS})"
+def _zone_text(zone: Zone, known: Dict[int, str]) -> str:
+    return f"({' && '.join(constraint_texts(zone, known=known)) or ALWAYS})"
 
 
 def read_constraint(text: str) -> Optional[Tuple[Constraint, ...]]:

@@ -16,6 +16,10 @@ struct Effort {
     void* of = nullptr;
 };
 
+// Every loop meets it: where the module cannot be in the first TLS block of a thread, each use would be a call.
+#ifdef __GLIBC__
+__attribute__((tls_model("initial-exec")))
+#endif
 inline thread_local Effort effort;
 
 // To be called by every loop over zones whose length is not known, with the zones that a round looks at.

@@ -100,22 +100,24 @@ inline bool apart(const Z& a, const Z& b, const Apart& by) {
 template <class Z>
 std::optional<Apart> what_parts(const Z& a, const Z& b) {
     attend(BOUNDS<Z>);
-    std::pair<int, int> tighter_a[Z::size * Z::size], tighter_b[Z::size * Z::size];
+    struct {
+        short i, j;
+    } tighter_a[Z::size * Z::size], tighter_b[Z::size * Z::size];  // not set: that would take longer than the rest
     int count_a = 0, count_b = 0;
     for (int i = 0; i < Z::size; ++i)
         for (int j = 0; j < Z::size; ++j) {
             if (a.at(i, j) < b.at(i, j)) {
                 for (int n = 0; n < count_b; ++n) {
-                    const Apart by{i, j, tighter_b[n].first, tighter_b[n].second};
+                    const Apart by{i, j, tighter_b[n].i, tighter_b[n].j};
                     if (apart(a, b, by)) return by;
                 }
-                tighter_a[count_a++] = {i, j};
+                tighter_a[count_a++] = {short(i), short(j)};
             } else if (b.at(i, j) < a.at(i, j)) {
                 for (int n = 0; n < count_a; ++n) {
-                    const Apart by{tighter_a[n].first, tighter_a[n].second, i, j};
+                    const Apart by{tighter_a[n].i, tighter_a[n].j, i, j};
                     if (apart(a, b, by)) return by;
                 }
-                tighter_b[count_b++] = {i, j};
+                tighter_b[count_b++] = {short(i), short(j)};
             }
         }
     return std::nullopt;
