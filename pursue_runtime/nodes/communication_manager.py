@@ -69,7 +69,7 @@ class CommunicationManager:
         self.background.start()
         self.log_address(host, exposed, context is not None)
         pulses = subscribe("/diagnostics", DiagnosticArray, lambda _: None, self.ending, queue_size=100)
-        Diagnostics(self.report, self.ending, Links(pulses, ending=self.ending, lost=self.master_lost))
+        Diagnostics(self.report, self.ending, Links(pulses, ending=self.ending, lost=self.master_lost).amend)
 
     def make_forwarder(self, host: str, told: Mapping[str, str]) -> Tuple[Optional[Forwarder], List[str]]:
         """The socket and the topics that go there; none without topics. Raises ServerError and ParameterError."""

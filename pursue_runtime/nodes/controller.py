@@ -61,7 +61,7 @@ class Controller:
         self.witness = Witness(lambda: self.follower.newest)
         states = subscribe_states(self.update_state, self.ending, on_malformed=self.follower.count_malformed)
         subscribe(PLAN, String, self.learn, self.ending, queue_size=10, tcp_nodelay=True)
-        Diagnostics(self.report, self.ending, Links(states, ending=self.ending, lost=self.master_lost))
+        Diagnostics(self.report, self.ending, Links(states, ending=self.ending, lost=self.master_lost).amend)
 
     def take_up(self) -> None:
         """Has the robots of the part that is played. Raises DataError where their settings are wrong."""

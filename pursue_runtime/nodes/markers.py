@@ -63,7 +63,7 @@ class MarkersNode:
         states = subscribe_states(self.on_state, self.ending, on_malformed=self.membership.count_malformed)
         subscribe(PLAN, String, self.on_plan, self.ending, queue_size=10)
         pulses = subscribe("/diagnostics", rospy.AnyMsg, lambda _: None, self.ending, queue_size=100)
-        Diagnostics(self.report, self.ending, Links(states, pulses, ending=self.ending, lost=self.master_lost))
+        Diagnostics(self.report, self.ending, Links(states, pulses, ending=self.ending, lost=self.master_lost).amend)
 
     def on_state(self, state: SystemState, publisher: str) -> None:
         """Show a state of the mission."""

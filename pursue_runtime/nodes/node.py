@@ -15,7 +15,6 @@ import traceback
 from pathlib import Path
 from types import MappingProxyType
 from typing import (
-    TYPE_CHECKING,
     Any,
     Callable,
     Dict,
@@ -38,9 +37,6 @@ from pursue_runtime.data import DataError
 from pursue_runtime.links import MASTER_PROBLEMS
 from pursue_runtime.links import REFUSED as MASTER_REFUSED
 from pursue_runtime.parameters import ParameterError
-
-if TYPE_CHECKING:
-    from pursue_runtime.nodes.links import Links
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 STALE = DiagnosticStatus.STALE  # what the node knows is old
@@ -98,13 +94,13 @@ def subscribe(
 class Diagnostics:
     """Publishes a report on /diagnostics once a second of real time: simulated time may stand still.
 
-    With `links` it includes what is wrong with the connections and the master.
+    `amend` adds what is wrong with the connections and the master (see `Links`).
     """
 
-    def __init__(self, report: Callable[[], Report], ending: Ending, links: Optional[Links] = None) -> None:
+    def __init__(self, report: Callable[[], Report], ending: Ending, amend: Callable[[Report], Report]) -> None:
         self._name = rospy.get_name().lstrip("/")
         self._report = report
-        self._links = links
+        self._amend = amend
         self._publisher = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10)
         start_thread("diagnostics", self._run, ending)
 
@@ -115,9 +111,7 @@ class Diagnostics:
 
     def publish(self) -> None:
         """Publishes the report of now."""
-        report = self._report()
-        if self._links is not None:
-            report = self._links.amend(report)
+        report = self._amend(self._report())
         values = {"ready": str(report.ready).lower(), **report.values}
         status = DiagnosticStatus(
             level=report.level,

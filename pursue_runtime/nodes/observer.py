@@ -111,7 +111,7 @@ class Observer:
         start_thread("journal", self.journal.keep_synced, self.ending)
         start_thread("heartbeat", self.keep_publishing, self.ending)
         links = Links(pulses, ending=self.ending, lost=partial(self.call, "stop"))
-        Diagnostics(self.report, self.ending, links)
+        Diagnostics(self.report, self.ending, links.amend)
 
     def _source(self) -> Source:
         """Where the data are. A mission that was under way when an observer of this launch died goes on, whatever has

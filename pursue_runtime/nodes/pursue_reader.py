@@ -66,7 +66,7 @@ class Node:
         self.orders = subscribe("local_mission", String, self.on_order, ending, queue_size=1, buff_size=1 << 20)
         topic = rospy.get_param("~state_topic", STATE)
         states = subscribe_states(self.on_state, ending, "/" + topic.lstrip("/"))
-        Diagnostics(self.report, ending, Links(states, ending=ending, lost=self.master_lost))
+        Diagnostics(self.report, ending, Links(states, ending=ending, lost=self.master_lost).amend)
         trouble = self.reader.problem()
         log("err" if trouble else "info", trouble or f"{robot.name} takes missions")
         for node in without_package(nodes, installed):

@@ -96,7 +96,7 @@ class Recorder:
         ]
         pulses = [each for each in self.subscribers if each.resolved_name == "/diagnostics"]
         links = Links(*pulses, ending=self.ending, lost=lambda _: self.ending.end(1))
-        Diagnostics(self.report, self.ending, links)
+        Diagnostics(self.report, self.ending, links.amend)
 
     def note_game(self, others: Mapping[str, str]) -> None:
         """The bag begins with what is needed to check it."""

@@ -48,7 +48,7 @@ def run(pace: Pace, scenario: str) -> int:
         for topic, act in ((EVENTS, clock.on_word), (STATE, clock.on_message))
     ]
     links = Links(states, ending=ending, lost=lambda _: ending.end(1))
-    Diagnostics(lambda: Report(True, OK, f"{clock.now:.2f} s", {"speed": pace.speed}), ending, links)
+    Diagnostics(lambda: Report(True, OK, f"{clock.now:.2f} s", {"speed": pace.speed}), ending, links.amend)
     start_thread("clock", lambda: tick(clock, publisher, memory), ending)
     return ending.wait()
 

@@ -68,7 +68,7 @@ class SimulatorNode:
         states = subscribe_states(self.on_state, self.ending, on_malformed=self.membership.count_malformed)
         pulses = subscribe("/diagnostics", rospy.AnyMsg, lambda _: None, self.ending, queue_size=100)
         links = Links(states, pulses, ending=self.ending, lost=self.master_lost)
-        Diagnostics(self.report, self.ending, links)
+        Diagnostics(self.report, self.ending, links.amend)
 
     def on_state(self, state: SystemState, publisher: str) -> None:
         """Handle a state: activities begin."""

@@ -88,7 +88,7 @@ class UI:
         subscribe(PLAN, String, self.on_plan, ending, queue_size=10, tcp_nodelay=True)
         subscribe(EVENTS, String, self.on_word, ending, queue_size=1000, tcp_nodelay=True)
         self.pulses = subscribe("/diagnostics", DiagnosticArray, self.on_diagnostics, ending, queue_size=100)
-        Diagnostics(self.report, ending, Links(self.states, self.pulses, ending=ending, lost=self.master_lost))
+        Diagnostics(self.report, ending, Links(self.states, self.pulses, ending=ending, lost=self.master_lost).amend)
 
     # Callbacks --------------------------------------------------------------------------------------------------------
 
