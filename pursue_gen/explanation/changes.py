@@ -6,7 +6,8 @@ and does not. (Where wins come and go along the way, a still smaller one may exi
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from contextlib import suppress
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Dict, Optional, Tuple
 
@@ -19,6 +20,7 @@ from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.thresholds import narrowed
 
 _SHARE = 0.5
 """The part of what is left that one attempt may take."""
@@ -131,14 +133,19 @@ def _least(knob: Knob, budget: Budget) -> Optional[_Win]:
             win = _Win(low, probe, strategy)
             break
         low = probe
-    while win is not None and win.high - win.low > 1:
-        middle = (win.low + win.high) // 2
-        try:
-            strategy = _strategy(knob.make(knob.values[middle]), budget)
-        except LimitHit:
-            break
-        win = replace(win, low=middle) if strategy is None else _Win(win.low, middle, strategy)
-    return win
+    if win is None:
+        return None
+    known = {win.high: win.strategy}
+
+    def wins(k: int) -> Optional[bool]:
+        with suppress(LimitHit):
+            strategy = _strategy(knob.make(knob.values[k]), budget)
+            known.update({} if strategy is None else {k: strategy})
+            return strategy is not None
+        return None
+
+    low, high = narrowed(win.low, win.high, wins)
+    return _Win(low, high, known[high])
 
 
 def _change(knob: Knob, win: _Win) -> Change:

@@ -25,6 +25,7 @@ from pursue_gen.synthesis.enforced import enforced
 from pursue_gen.synthesis.limits import EXPLAINING, NO_LIMITS, Limits, Listener, memory_in_use
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
+from pursue_gen.thresholds import narrowed
 
 WORK, STATES = 100_000_000, 100_000
 """The work of all games together, and the discrete states of each: ten seconds or so, the same on every machine."""
@@ -161,16 +162,16 @@ def _alone(
 def _together(scenario: Scenario, parts: Sequence[Part], rules: Rules, budget: Budget) -> List[Cost]:
     """What is decided without several parts, as few of them as are found (the first ones); empty if nothing is."""
     lesser = _without_several(scenario, parts)
-    found: List[Cost] = []
-    low, high = -1, len(lesser)  # with `low` it is not decided, with `high` it is
-    while high - low > 1:
-        k = (low + high) // 2 if found else high - 1
+    known: Dict[int, Cost] = {}
+
+    def decided(k: int) -> bool:
         without, smaller = lesser[k]
         cost = _cost(without, _game(smaller, rules), rules, budget, _EACH)
-        if cost is None and not found:
-            return []
-        found, low, high = ([cost], low, k) if cost is not None else (found, k, high)
-    return found
+        known.update({} if cost is None else {k: cost})
+        return cost is not None
+
+    last = len(lesser) - 1
+    return [known[narrowed(-1, last, decided)[1]]] if lesser and decided(last) else []
 
 
 def _without_several(scenario: Scenario, parts: Sequence[Part]) -> List[Tuple[Tuple[str, ...], Scenario]]:

@@ -176,7 +176,7 @@ class _CounterPlayer:
         self._oracle.budget = budget
         here = Position(initial_state(self._game), (Fraction(0),) * len(self._game.clocks))
         if not self._game.goal and self._horizon is None:
-            self._horizon = self._least_horizon(here)
+            self._horizon = self._oracle.horizon(here)
         self._controller = Controller(self._game, self._helpful)
         self._first, self._now = first, Fraction(0)
         self._met: Dict[Position, Fraction] = {}
@@ -233,19 +233,6 @@ class _CounterPlayer:
 
     def _end(self, end: str, steps: Sequence[CounterStep], here: Position) -> Play:
         return Play(self._game, tuple(steps), end, self._now, here)
-
-    def _least_horizon(self, start: Position) -> int:
-        """About the least time in which the environment can do its work, so that the play makes for its end."""
-        safe, lost = 0, 8
-        while not self._oracle.lost(start, Fraction(0), lost):
-            safe, lost = lost, 2 * lost
-        while lost - safe > max(1, lost // 12):
-            middle = (safe + lost) // 2
-            if self._oracle.lost(start, Fraction(0), middle):
-                lost = middle
-            else:
-                safe = middle
-        return lost + 1
 
     # One step ---------------------------------------------------------------------------------------------------------
 

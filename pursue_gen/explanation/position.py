@@ -20,6 +20,7 @@ from pursue_gen.synthesis.limits import NO_LIMITS
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Network, Objective, Sync
 from pursue_gen.tga.pauses import acting_at_most
 from pursue_gen.tga.scale import common_denominator, scaled
+from pursue_gen.thresholds import from_below
 
 _PARKED, _OVER, _PROLOGUE = "@parked", "@over", "@prologue"
 _HORIZON = "@horizon"
@@ -75,6 +76,13 @@ class PositionSolver:
             game = self.budget, begun, self._objective, self._reaction * scale
             self._known[key] = not (won_against_few(*game) if self._few else verdict_of(*game).won)
         return self._known[key]
+
+
+    def horizon(self, start: Position, most: Optional[int] = None) -> Optional[int]:
+        """About the least time in which the environment can do its work from a position that is lost, so that a play
+        can make for its end; None: it is more than `most`. Raises LimitHit at a limit."""
+        found = from_below(8, lambda time: self.lost(start, horizon=time), part=12, most=most)
+        return None if found is None else found + 1
 
 
 def won_against_few(

@@ -22,6 +22,7 @@ from pursue_gen.synthesis.limits import NO_LIMITS, Limits
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
+from pursue_gen.thresholds import narrowed
 
 STEP = Fraction(1, 20)
 """The precision, in time units: the message of a busy robot takes about so long."""
@@ -89,34 +90,25 @@ def game_margin(
 
 def _largest(wins: Callable[[Fraction], Optional[bool]], known: Fraction) -> Margin:
     """The last point of the grid where `wins`, which is None where it is not known, and the first where not."""
-    wins = _unless_limited(wins)
-    if known >= CAP or wins(CAP):
-        return Margin(max(known, CAP), None)
-    low, high = known // STEP, None
-    best = known
-    stride = 1
-    while high is None or high - low > 1:
-        middle = low + stride if high is None else (low + high) // 2
-        outcome = wins(middle * STEP) if middle * STEP < CAP else False
-        if outcome is None:
-            return Margin(best, None if high is None else high * STEP)
-        if outcome:
-            low, best, stride = middle, middle * STEP, 2 * stride
-        else:
-            high = min(middle, int(CAP / STEP))
-    return Margin(best, high * STEP)
+    end = int(CAP / STEP)
 
-
-def _unless_limited(wins: Callable[[Fraction], Optional[bool]]) -> Callable[[Fraction], Optional[bool]]:
-    """The same answers, and None instead of an error at a limit."""
-
-    def answer(delay: Fraction) -> Optional[bool]:
+    def fails(point: int) -> Optional[bool]:
         try:
-            return wins(delay)
+            won = wins(point * STEP)
         except LimitHit:
             return None
+        return None if won is None else not won
 
-    return answer
+    if known >= CAP or fails(end) is False:
+        return Margin(max(known, CAP), None)
+    low, high, stride = int(known // STEP), end, 1
+    while low + stride < high:
+        failed = fails(low + stride)
+        if failed is None:
+            return Margin(max(known, low * STEP), None)
+        low, high, stride = (low, low + stride, stride) if failed else (low + stride, high, 2 * stride)
+    low, high = narrowed(low, high, fails)
+    return Margin(max(known, low * STEP), high * STEP)
 
 
 def in_words(margin: Margin) -> str:

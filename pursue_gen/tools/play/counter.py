@@ -16,6 +16,7 @@ from pursue_gen.explanation.position import Position, PositionSolver
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import JointMove, is_bad, is_goal
 from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
+from pursue_gen.thresholds import narrowed
 from pursue_gen.tools.play.state import (
     CHANCE,
     GRAIN,
@@ -178,14 +179,8 @@ class CounterPlay:
 
     def _boundary(self, play: PlayState, limit: Fraction) -> Iterator[Fraction]:
         """The moments around the first at which it would not be lost any more if no agent did anything."""
-        low, high = 0, int(limit / GRAIN)
-        while high - low > 1:
-            middle = (low + high) // 2
-            if self._stays_lost(play, middle * GRAIN):
-                low = middle
-            else:
-                high = middle
-        yield from (k * GRAIN for k in (low, high) if k * GRAIN <= limit)
+        ends = narrowed(0, int(limit / GRAIN), lambda k: not self._stays_lost(play, k * GRAIN))
+        yield from (k * GRAIN for k in ends if k * GRAIN <= limit)
 
     def _at(self, play: PlayState, theirs: _Pairs, delay: Fraction) -> Optional[Answer]:
         """A move at that moment; what ends the game first, and nothing that leads nowhere."""
@@ -259,23 +254,7 @@ def counter_game(setup: Setup, memory: int = 0, progress: Optional[Listener] = N
     """
     budget = Budget(Limits(memory=memory), progress, phase=EXPLAINING)
     oracle = PositionSolver(setup.network, setup.objective, setup.rules.reaction, budget)
-    return CounterPlay(setup, oracle, _horizon(oracle, beginning(setup).entry) if setup.safety else None)
-
-
-def _horizon(oracle: PositionSolver, start: Position) -> Optional[int]:
-    """About the least time in which the robots can be made to lose; None: it is long."""
-    safe, lost = 0, 8
-    while not oracle.lost(start, Fraction(0), lost):
-        safe, lost = lost, 2 * lost
-        if lost > _FARTHEST:
-            return None
-    while lost - safe > max(1, lost // 12):
-        middle = (safe + lost) // 2
-        if oracle.lost(start, Fraction(0), middle):
-            lost = middle
-        else:
-            safe = middle
-    return lost + 1
+    return CounterPlay(setup, oracle, oracle.horizon(beginning(setup).entry, _FARTHEST) if setup.safety else None)
 
 
 def _lateness(reaction: Fraction) -> Tuple[Fraction, ...]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from math import ceil, floor
-from typing import Optional
+from typing import Dict, Optional
 
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.worst_case import with_clock_limit, worst_case
@@ -20,6 +20,7 @@ from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
+from pursue_gen.thresholds import narrowed
 
 _WORK = 20_000_000
 """The work of one game with a deadline: about a second."""
@@ -40,13 +41,16 @@ def sooner(
     if worst is None:
         return strategy
     begin = next(each.bound for each in network.start if (each.left, each.right) == (clock, None))
-    low, high = floor(bounds(network, objective, reaction).least), ceil(worst)
-    while high - low > 1:
-        deadline = (low + high) // 2
+    known: Dict[int, Strategy] = {}
+
+    def found(deadline: int) -> bool:
         game = with_clock_limit(network, objective, clock, ceil(begin) + deadline)
-        found = _within(game, objective, reaction, limits)
-        strategy, low, high = (strategy, deadline, high) if found is None else (found, low, deadline)
-    return strategy
+        within = _within(game, objective, reaction, limits)
+        known.update({} if within is None else {deadline: within})
+        return within is not None
+
+    _, least = narrowed(floor(bounds(network, objective, reaction).least), ceil(worst), found)
+    return known.get(least, strategy)
 
 
 def _within(game: Network, objective: Objective, reaction: Fraction, limits: Limits) -> Optional[Strategy]:
