@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import gc
 import os
 import re
 import subprocess
@@ -10,7 +11,7 @@ import sys
 import threading
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, Callable, Dict, List
+from typing import Any, Callable, Dict, Iterator, List
 
 import pytest
 
@@ -38,6 +39,14 @@ from pursue_runtime.ui.trace import TraceError
 
 ROOT = Path(__file__).resolve().parents[1]
 PATIENCE = 300
+
+
+@pytest.fixture(autouse=True)
+def _garbage() -> Iterator[None]:
+    """An error's traceback holds megabytes of what was read, in a cycle, and would do so for many tests to come."""
+    yield
+    gc.collect()
+
 
 def certificate(file: Path) -> None:
     robots = file.with_name("robots.yaml")

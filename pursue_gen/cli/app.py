@@ -69,6 +69,7 @@ _OBJECTS = 300_000
 
 def main() -> None:
     """The program `pursue-gen`."""
+    before = gc.get_threshold()
     gc.set_threshold(_OBJECTS)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # a terminal that cannot show a letter gets its code
@@ -77,6 +78,8 @@ def main() -> None:
         app(prog_name="pursue-gen")
     except KeyboardInterrupt:  # before or after the command itself
         sys.exit(INTERRUPTED)
+    finally:
+        gc.set_threshold(*before)  # who calls this in a process of his own keeps his
 
 
 def _version(wanted: bool) -> None:

@@ -33,6 +33,7 @@ def test_work_that_checks_nothing_ends_at_the_limit_on_memory() -> None:
     with pytest.raises(LimitHit) as problem, enforced(Limits(100.0, most)):
         while len(kept) < 4000:
             kept.append(bytes(range(256)) * 4096)
+    kept.clear()
     assert f"the limit of {most} MiB of memory" in problem.value.diagnostics[0].message
 
 
