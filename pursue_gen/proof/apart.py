@@ -16,7 +16,7 @@ from dataclasses import replace
 from typing import Iterator, List, Sequence, Tuple
 
 from pursue_gen.proof.independence import why_it_matters
-from pursue_gen.proof.stages import Part
+from pursue_gen.proof.stages import StagePart
 from pursue_gen.synthesis.strategy import Block, Command, Move, Place, Strategy, Zone
 from pursue_gen.tga.network import Automaton, Edge, Network
 from pursue_gen.tga.part import part_of
@@ -32,7 +32,7 @@ def kept_apart(strategy: Strategy, share: int) -> Sequence[str]:
     return tuple(dict.fromkeys(name for name, _ in avoided if name not in named | watched))
 
 
-def games_apart(share: Part, names: Sequence[str]) -> Iterator[Part]:
+def games_apart(share: StagePart, names: Sequence[str]) -> Iterator[StagePart]:
     """A game for each of these automata, beside those that the share's blocks name."""
     fault = _why_not_apart(share.strategy.blocks, [share.game.automaton(name) for name in names])
     for name in names:
@@ -44,7 +44,7 @@ def games_apart(share: Part, names: Sequence[str]) -> Iterator[Part]:
         blocks, numbers = _lifted(share.strategy.blocks, game, name, wanted.bad)
         clocks = tuple(clock for clock in share.strategy.left_out_clocks if clock in game.clocks)
         own = replace(share.strategy, blocks=blocks, left_out_clocks=clocks)
-        yield Part(share.stage, game, wanted, own, tuple(share.numbers[k] for k in numbers), fault)
+        yield StagePart(share.stage, game, wanted, own, tuple(share.numbers[k] for k in numbers), fault)
 
 
 def _why_not_apart(blocks: Sequence[Block], automata: Sequence[Automaton]) -> str:

@@ -24,7 +24,7 @@ from pursue_gen.proof.passage_times import latest
 from pursue_gen.proof.passages import Fault, played
 from pursue_gen.proof.search import Depth, Found, Searches
 from pursue_gen.proof.shares import shares_of
-from pursue_gen.proof.stages import Part, parts_of
+from pursue_gen.proof.stages import StagePart, parts_of
 from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits, Listener
 from pursue_gen.synthesis.strategy import Command, Strategy, Zone, ZoneKey, with_automata_of
 from pursue_gen.tga.network import Network, Objective
@@ -44,7 +44,7 @@ _MANY_ZONES = 8
 
 
 @dataclass(frozen=True)
-class Report:
+class ProofReport:
     """The outcome. `reason` starts with the kind of failure; `play` says in words how it comes about, the state last.
 
     `used`: the zones of the strategy that plays reach (block, 'wait' or command, zone); `states`: the symbolic states.
@@ -69,7 +69,7 @@ def verify(
     progress: Optional[Listener] = None,
     arenas: Optional[Callable[[int], Arena]] = None,
     closed: bool = False,
-) -> Report:
+) -> ProofReport:
     """Check that the strategy wins when each command takes effect up to `reaction` time units after its decision.
 
     `prompt`: the controller acts as soon as it comes into the zone of a command (the ideal player of UPPAAL-TIGA's
@@ -87,7 +87,7 @@ def verify(
     what the strategy covers (safety): that is looked at first.
     """
     if strategy.counter:
-        return Report(False, "counter-strategy: it shows why the controller loses", (), frozenset(), 0)
+        return ProofReport(False, "counter-strategy: it shows why the controller loses", (), frozenset(), 0)
     if reaction < 0:
         raise PursueError([error("SYN103", f"the reaction time is {reaction}", hint="give 0 or more time units")])
     prompt = reaction == 0 if prompt is None else prompt
@@ -96,19 +96,20 @@ def verify(
         return _with_passages(network, objective, strategy, reaction, LimitMonitor(limits, progress, PROVING))
     if strategy.in_parts:
         if strategy.stages and strategy.left_out_clocks:
-            return Report(False, "left out: a strategy in stages leaves no clock out", (), frozenset(), 0)
+            return ProofReport(False, "left out: a strategy in stages leaves no clock out", (), frozenset(), 0)
         how = limit, prompt, limits, progress, closed
         return _in_parts(network, objective, strategy, reaction, ranks, how)
     part, matters = proven_part(network, objective, strategy)
     if matters:
-        return Report(False, f"left out: the strategy does not speak of what matters: {matters}", (), frozenset(), 0)
+        why = f"left out: the strategy does not speak of what matters: {matters}"
+        return ProofReport(False, why, (), frozenset(), 0)
     if not _names_all(part, strategy):
-        return Report(False, reasons.OTHER_NAMES, (), frozenset(), 0)
+        return ProofReport(False, reasons.OTHER_NAMES, (), frozenset(), 0)
     loop = ClosedLoop(part, objective, strategy, reaction, ranks, arenas=arenas)
     searches = searches_of(loop)
     start = loop.arena.situation(loop.arena.initial).invariant
     if start is None or not start.includes(loop.arena.start):
-        return Report(False, "no start: an invariant of the initial state does not hold", (), frozenset(), 0)
+        return ProofReport(False, "no start: an invariant of the initial state does not hold", (), frozenset(), 0)
     monitor = LimitMonitor(limits, progress, PROVING)
     try:
         with monitor:
@@ -117,7 +118,7 @@ def verify(
         raise monitor.stopped("memory") from None
 
 
-def _walked(searches: Searches, prompt: bool, closed: bool, limit: int, monitor: LimitMonitor) -> Report:
+def _walked(searches: Searches, prompt: bool, closed: bool, limit: int, monitor: LimitMonitor) -> ProofReport:
     """What becomes of all plays; where the strategy fails only because zones are extrapolated, a play that is real."""
     if searches.loop.rules.must_end:
         report = _played(searches, False, False, limit, monitor)
@@ -144,16 +145,16 @@ def _names_all(part: Network, strategy: Strategy) -> bool:
 
 def _with_passages(
     network: Network, objective: Objective, strategy: Strategy, reaction: Fraction, monitor: LimitMonitor
-) -> Report:
+) -> ProofReport:
     """The outcome of a strategy with orders of passage: all of its plays are one course of events."""
     try:
         found = played(network, objective, strategy, monitor)
         latest(found, strategy, reaction)
     except Fault as fault:
-        return Report(False, f"passages: {fault}", (), frozenset(), 0)
+        return ProofReport(False, f"passages: {fault}", (), frozenset(), 0)
     used = [(b, "wait", n) for b, block in enumerate(strategy.blocks) for n in range(len(block.wait))]
     commands = [(b, k, 0) for b, block in enumerate(strategy.blocks) for k in range(len(block.commands))]
-    return Report(True, "", (), frozenset((*used, *commands)), len(found.course.events))
+    return ProofReport(True, "", (), frozenset((*used, *commands)), len(found.course.events))
 
 
 def _in_parts(
@@ -163,7 +164,7 @@ def _in_parts(
     reaction: Fraction,
     ranks: Optional[Mapping[ZoneKey, int]],
     how: Tuple[int, Optional[bool], Limits, Optional[Listener], bool],
-) -> Report:
+) -> ProofReport:
     """The outcome of all stages or shares, each of which has to win; `ranks` are those within them."""
     limit, prompt, limits, progress, closed = how
     used: Set[ZoneKey] = set()
@@ -172,7 +173,7 @@ def _in_parts(
     for part in taken_apart(network, objective, strategy):
         if part.fault:
             reason = f"left out: {called} {part.stage + 1} cannot be played: {part.fault}"
-            return Report(False, reason, (), frozenset(), states)
+            return ProofReport(False, reason, (), frozenset(), states)
         own = None if ranks is None else _ranks_of(part, ranks)
         left = max(1, limit - states), prompt, own, limits.since(start), progress
         report = verify(part.game, part.objective, part.strategy, reaction, *left, closed=closed)
@@ -180,10 +181,10 @@ def _in_parts(
         used.update((part.numbers[b], what, n) for b, what, n in report.used if part.numbers[b] >= 0)
         if not report.ok:
             return replace(report, used=frozenset(used), states=states)
-    return Report(True, "", (), frozenset(used), states)
+    return ProofReport(True, "", (), frozenset(used), states)
 
 
-def _ranks_of(played: Part, ranks: Mapping[ZoneKey, int]) -> Dict[ZoneKey, int]:
+def _ranks_of(played: StagePart, ranks: Mapping[ZoneKey, int]) -> Dict[ZoneKey, int]:
     """The ranks of the blocks of a part of a stage; where it begins is before all of them."""
     place = {number: b for b, number in enumerate(played.numbers)}
     found: Dict[ZoneKey, int] = {(place[b], part, n): rank for (b, part, n), rank in ranks.items() if b in place}
@@ -192,7 +193,7 @@ def _ranks_of(played: Part, ranks: Mapping[ZoneKey, int]) -> Dict[ZoneKey, int]:
     return found
 
 
-def pruned(strategy: Strategy, report: Report) -> Strategy:
+def pruned(strategy: Strategy, report: ProofReport) -> Strategy:
     """The strategy without the blocks, commands and zones that no play reaches."""
     used = report.used
     counts = Counter(b for b, _, _ in used)
@@ -214,7 +215,7 @@ def pruned(strategy: Strategy, report: Report) -> Strategy:
     return strategy if same else replace(strategy, blocks=tuple(blocks))
 
 
-def pruned_ranks(strategy: Strategy, report: Report, ranks: Mapping[ZoneKey, int]) -> Dict[ZoneKey, int]:
+def pruned_ranks(strategy: Strategy, report: ProofReport, ranks: Mapping[ZoneKey, int]) -> Dict[ZoneKey, int]:
     """The ranks of the zones that are left in the pruned strategy, by where they stand there."""
     found: Dict[ZoneKey, int] = {}
     blocks = 0
@@ -231,7 +232,7 @@ def pruned_ranks(strategy: Strategy, report: Report, ranks: Mapping[ZoneKey, int
     return found
 
 
-def _played(searches: Searches, prompt: bool, exact: bool, limit: int, monitor: LimitMonitor) -> Report:
+def _played(searches: Searches, prompt: bool, exact: bool, limit: int, monitor: LimitMonitor) -> ProofReport:
     """What becomes of all plays when the strategy is played so; `exact`: zones are not extrapolated."""
     depth = Depth(prompt, exact, limit, _MANY_ZONES)
     if searches.loop.rules.must_end and searches.loop.ranks is None:
@@ -239,7 +240,7 @@ def _played(searches: Searches, prompt: bool, exact: bool, limit: int, monitor: 
     return _report(searches.loop.arena, searches.everything(depth, monitor))
 
 
-def _safe(searches: Searches, closed: bool, limit: int, monitor: LimitMonitor) -> Report:
+def _safe(searches: Searches, closed: bool, limit: int, monitor: LimitMonitor) -> ProofReport:
     """The same for a safety game, where it may be quicker to see that no play leaves what a strategy covers.
 
     Nor does extrapolation lead out of it then, as it may on a walk.
@@ -263,14 +264,14 @@ def _size(strategy: Strategy) -> int:
     return sum(len(b.wait) + sum(len(c.zones) for c in b.commands) for b in strategy.blocks)
 
 
-def _report(arena: Arena, found: Found) -> Report:
+def _report(arena: Arena, found: Found) -> ProofReport:
     """The outcome of a search, and of a failure the play that leads to it."""
     failure = found.failure
     if failure is None:
-        return Report(True, "", (), found.used, found.states)
+        return ProofReport(True, "", (), found.used, found.states)
     network, point = arena.network, sample(failure.zone)
     places = [f"{automaton.name}.{location}" for automaton, location in zip(network.automata, failure.state[0])]
     places += [f"{name}={value}" for (name, _), value in zip(network.variables, failure.state[1])]
     places += [f"{name}={point[x - 1] / arena.scale}" for name, x in arena.clock.items()]
     play = (*map(in_words, failure.play), "then: " + " ".join(places))
-    return Report(False, failure.reason, play, found.used, found.states)
+    return ProofReport(False, failure.reason, play, found.used, found.states)

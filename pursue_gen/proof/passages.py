@@ -64,7 +64,7 @@ def played(network: Network, objective: Objective, strategy: Strategy, monitor: 
     why = why_it_matters(alive, wanted, part, extent.places)
     if why:
         raise Fault(f"it does not speak of what matters: {why}")
-    search = _Search(part, wanted, strategy, taken_over(network), monitor)
+    search = _CommandedSearch(part, wanted, strategy, taken_over(network), monitor)
     search.follow()
     search.check()
     found = Played(part, wanted, search.course)
@@ -87,7 +87,7 @@ def _part(alive: Network, wanted: Objective, strategy: Strategy) -> Network:
     return part_of(alive, automata, variables)
 
 
-class _Search:
+class _CommandedSearch:
     def __init__(
         self, part: Network, objective: Objective, strategy: Strategy, taken: AbstractSet[str], monitor: LimitMonitor
     ) -> None:

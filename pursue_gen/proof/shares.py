@@ -19,7 +19,7 @@ from pursue_gen.language.network_names import LOSE
 from pursue_gen.proof.apart import games_apart, kept_apart
 from pursue_gen.proof.independence import why_it_matters, with_clocks_of
 from pursue_gen.proof.relaxed_reachability import Commanded, Extent, commanded, live
-from pursue_gen.proof.stages import Part
+from pursue_gen.proof.stages import StagePart
 from pursue_gen.proof.watched import why_it_may_miss
 from pursue_gen.synthesis.strategy import Block, Place, Strategy
 from pursue_gen.tga.hidden import HIDDEN, has_hidden, with_hidden
@@ -32,9 +32,9 @@ Names = Tuple[FrozenSet[str], FrozenSet[str]]
 """The automata and the variables that a block names."""
 
 
-def shares_of(network: Network, objective: Objective, strategy: Strategy) -> Iterator[Part]:
-    """The shares as games of their own, in their order (`Part.stage` is the number of the share, from 0). After one
-    with a fault there are no more."""
+def shares_of(network: Network, objective: Objective, strategy: Strategy) -> Iterator[StagePart]:
+    """The shares as games of their own, in their order (`StagePart.stage` is the number of the share, from 0). After
+    one with a fault there are no more."""
     for known, parts in _latest:
         if known[2] is strategy and known == (network, objective, strategy):
             yield from parts
@@ -46,11 +46,11 @@ def shares_of(network: Network, objective: Objective, strategy: Strategy) -> Ite
     _latest[:] = [((network, objective, strategy), parts)]
 
 
-_latest: List[Tuple[Tuple[Network, Objective, Strategy], List[Part]]] = []
+_latest: List[Tuple[Tuple[Network, Objective, Strategy], List[StagePart]]] = []
 """What was taken apart last: one strategy is checked several times in a row."""
 
 
-def _taken_apart(network: Network, objective: Objective, strategy: Strategy) -> Iterator[Part]:
+def _taken_apart(network: Network, objective: Objective, strategy: Strategy) -> Iterator[StagePart]:
     """The same, looked at anew."""
     fault = _misplaced(network, objective, strategy)
     numbers = [strategy.numbers_of(k, avoided[0]) for k, avoided in enumerate(strategy.shares) if avoided]
@@ -63,7 +63,7 @@ def _taken_apart(network: Network, objective: Objective, strategy: Strategy) -> 
     watched = {watcher.objective for some in watchers for watcher in some}
     fault = fault or _unguarded(objective, watched.union(*named), extent)
     if fault:
-        yield Part(0, network, objective, strategy, (), fault)
+        yield StagePart(0, network, objective, strategy, (), fault)
         return
     for k, blocks in enumerate(shares):
         automata, variables = named[k], names_of(blocks[0])[1]
@@ -80,7 +80,7 @@ def _taken_apart(network: Network, objective: Objective, strategy: Strategy) -> 
             beside = automata.difference(apart[k]) | {watcher.name}
             fault = fault or why_it_may_miss(game, watcher, beside, variables)
         seen = with_hidden(game, part)
-        whole = Part(k, seen, wanted, _beside_hidden(own) if has_hidden(seen) else own, numbers[k], fault)
+        whole = StagePart(k, seen, wanted, _beside_hidden(own) if has_hidden(seen) else own, numbers[k], fault)
         for own_game in games_apart(whole, apart[k]) if apart[k] and not fault else (whole,):
             yield own_game
             if own_game.fault:

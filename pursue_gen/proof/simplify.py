@@ -36,7 +36,7 @@ WAIT = "wait"
 
 
 @dataclass(frozen=True)
-class _Part:
+class _BoundedZone:
     """A zone of an action within the invariant, and the bounds that make it there."""
 
     zone: Dbm
@@ -63,7 +63,7 @@ class _Place:
     invariant: Dbm
     late: int
     origins: Dict[Action, Tuple[_Origin, ...]]
-    parts: Dict[Action, List[_Part]]
+    parts: Dict[Action, List[_BoundedZone]]
 
     def may_have(self, action: Action, zone: Dbm) -> bool:
         """True if the action may have this zone, too: no play notices."""
@@ -166,7 +166,7 @@ def _simplified_block(units: _Units, b: int, block: Block, ranks: Mapping[ZoneKe
     for action, some in zones.items():
         within = ((n, invariant.constrained_all(units.bounds(zone))) for n, zone in enumerate(some))
         origins[action] = tuple(_Origin(zone, ranks.get((b, action, n))) for n, zone in within if zone is not None)
-    parts = {action: [_Part(origin.zone) for origin in some] for action, some in origins.items()}
+    parts = {action: [_BoundedZone(origin.zone) for origin in some] for action, some in origins.items()}
     place = _Place(invariant, units.late, origins, parts)
     commands_first: List[Action] = [*range(len(block.commands)), WAIT]
     for action in commands_first:
@@ -205,12 +205,12 @@ def _merge(place: _Place, action: Action) -> None:
         k += 1
 
 
-def _together(place: _Place, action: Action, parts: Sequence[_Part]) -> Optional[_Part]:
+def _together(place: _Place, action: Action, parts: Sequence[_BoundedZone]) -> Optional[_BoundedZone]:
     """The parts of the action as one, or None."""
     hull = parts[0].zone
     for part in parts[1:]:
         hull = hull.hull(part.zone)
-    return _Part(hull) if place.may_have(action, hull) else None
+    return _BoundedZone(hull) if place.may_have(action, hull) else None
 
 
 def _relax(place: _Place, action: Action) -> None:
@@ -223,7 +223,7 @@ def _relax(place: _Place, action: Action) -> None:
             larger = place.invariant.constrained_all(fewer)
             if larger is not None and (larger == zone or place.may_have(action, larger)):
                 kept, zone = fewer, larger
-        parts[k] = _Part(zone, tuple(kept))
+        parts[k] = _BoundedZone(zone, tuple(kept))
 
 
 def _worth(bound: Bound) -> Tuple[int, int, int]:

@@ -28,7 +28,7 @@ from pursue_gen.tga.scale import common_denominator
 
 
 @dataclass(frozen=True)
-class Part:
+class StagePart:
     """A part of a stage as a game: it is won if the strategy wins the game, unless there is a `fault`.
 
     `stage` counts from 0. `numbers`: for each block of the strategy its number in the whole one; -1 for the one in
@@ -43,7 +43,7 @@ class Part:
     fault: str = ""
 
 
-def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iterator[Part]:
+def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iterator[StagePart]:
     """The parts of all stages, in the order of the stages. After one with a fault there are no more."""
     fault = _misplaced(network, objective, strategy)
     known = at_start(network)
@@ -52,12 +52,12 @@ def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iter
         blocks = {place: [strategy.blocks[n] for n in numbers[place]] for place in milestones}
         fault = fault or _misnamed(network, strategy, stage, blocks, known)
         if fault:
-            yield Part(stage, network, objective, strategy, (), fault)
+            yield StagePart(stage, network, objective, strategy, (), fault)
             return
         alive, extent = live(network, commanded(block for some in blocks.values() for block in some), known.extent)
         following = after_stage(network, known, blocks)
         if following is None:
-            yield Part(stage, network, objective, strategy, (), "it may begin in too many states")
+            yield StagePart(stage, network, objective, strategy, (), "it may begin in too many states")
             return
         # That nobody in a part stops time until it has ended is shown there.
         busy = {name for own in blocks.values() for name in _names(own[0])[0]}
@@ -72,14 +72,14 @@ def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iter
             if wanted.avoids and len(milestones) > 1:
                 fault = "where one part has ended before the others, nobody guards against what is to be avoided"
             if fault:
-                yield Part(stage, part, wanted, strategy, (), fault)
+                yield StagePart(stage, part, wanted, strategy, (), fault)
                 return
             own = with_edges(blocks[place], ending.goal[0], ending.changed)
             if stage == 0:
-                yield Part(stage, ending.network, wanted, Strategy(own), numbers[place])
+                yield StagePart(stage, ending.network, wanted, Strategy(own), numbers[place])
             else:
                 game = beginning_in(ending.network, starts)
-                yield Part(stage, game, wanted, _begun(ending.network, own), (-1, *numbers[place]))
+                yield StagePart(stage, game, wanted, _begun(ending.network, own), (-1, *numbers[place]))
         known = following
         lost = [place for place in milestones if not is_sure(known, place)]
         fault = f"{'.'.join(lost[0])} may be lost before the stage ends" if lost else ""

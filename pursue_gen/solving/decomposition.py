@@ -52,7 +52,7 @@ def won_by_some(
 ) -> Optional[Found]:
     """A proven strategy for some of the robots, or one in stages; None where none is found with little work."""
     budget = Budget(replace(options.limits, work=WORK), options.progress, options.engine, whole=True)
-    search = _Search(network, objective, reaction, options, budget)
+    search = _StagesSearch(network, objective, reaction, options, budget)
     try:
         strategy = search.found()
     except (NotProven, LimitHit):
@@ -75,7 +75,7 @@ def works_in_parallel(network: Network, goal: Place) -> bool:
 
 
 @dataclass(frozen=True)
-class _Part:
+class _Subtask:
     """A part of a stage: where it ends, who can bring it there, what was reached before, and who has something to end
     that no other part ends. `goal` None: the whole game, of an objective without a goal or with several locations."""
 
@@ -85,7 +85,7 @@ class _Part:
     ending: FrozenSet[str] = frozenset()
 
 
-class _Search:
+class _StagesSearch:
     def __init__(
         self, network: Network, objective: Objective, reaction: Fraction, options: SolveOptions, budget: Budget
     ) -> None:
@@ -104,13 +104,13 @@ class _Search:
     def found(self) -> Optional[Strategy]:
         """The first strategy that is found; raises PursueError at a limit."""
         if len(self._objective.goal) != 1:
-            return self._proven((), self._part(_Part(None, frozenset(self._robots)), at_start(self._network)))
+            return self._proven((), self._part(_Subtask(None, frozenset(self._robots)), at_start(self._network)))
         (goal,) = self._objective.goal
         goals = subgoals(self._network, goal)
         first = protections(self._network, self._objective.bad)
         self._subgoals = [*first, *goals]
         if len(goals) == 1:
-            blocks = self._part(_Part(goal, goals[0].agents), at_start(self._network))
+            blocks = self._part(_Subtask(goal, goals[0].agents), at_start(self._network))
             if blocks is not None:
                 return self._proven((), blocks)
         for stages in self._orders(first, goals):
@@ -143,7 +143,7 @@ class _Search:
             own: Dict[Place, List[Block]] = {}
             ending = self._under_way(known).difference(*(goal.agents for goal in stage))
             for goal in (goal for goal in stage if not is_sure(known, goal.place)):
-                found = self._part(_Part(goal.place, goal.agents, tuple(milestones), ending), known)
+                found = self._part(_Subtask(goal.place, goal.agents, tuple(milestones), ending), known)
                 if not found:
                     return None
                 own[goal.place] = found
@@ -176,7 +176,7 @@ class _Search:
             if edge.source in known.extent.places[automaton.name] and edge.is_end and is_controllers(edge, self._taken)
         )
 
-    def _part(self, part: _Part, known: Known) -> Optional[List[Block]]:
+    def _part(self, part: _Subtask, known: Known) -> Optional[List[Block]]:
         """The blocks of a part of a stage; None where no team wins it with little work."""
         for team in self._teams(part, known):
             found = self._with_team(part, team, known)
@@ -184,7 +184,7 @@ class _Search:
                 return found
         return None
 
-    def _teams(self, part: _Part, known: Known) -> Iterator[FrozenSet[str]]:
+    def _teams(self, part: _Subtask, known: Known) -> Iterator[FrozenSet[str]]:
         """The teams to try, the smallest first: some of those who can do it, and all who guard against what is bad."""
         guards: FrozenSet[str] = frozenset()
         alive, extent = self._alive(part, self._robots, known)
@@ -201,7 +201,7 @@ class _Search:
         teams = (guards.union(some[:size]) for size in sizes)
         yield from (team for team in teams if not (is_only and team.issuperset(self._robots)))
 
-    def _with_team(self, part: _Part, team: Collection[str], known: Known) -> Optional[List[Block]]:
+    def _with_team(self, part: _Subtask, team: Collection[str], known: Known) -> Optional[List[Block]]:
         """The same with this team; None where it does not win."""
         alive, extent = self._alive(part, team, known)
         wanted = self._objective
@@ -236,11 +236,11 @@ class _Search:
             return blocks
         return list(with_edges(blocks, wanted.goal[0][0], {there: here for here, there in changed.items()}))
 
-    def _alive(self, part: _Part, team: Collection[str], known: Known) -> Tuple[Network, Extent]:
+    def _alive(self, part: _Subtask, team: Collection[str], known: Known) -> Tuple[Network, Extent]:
         """What can happen in a stage in which only this team gets commands."""
         return live(self._network, self._allowed(part, team), known.extent)
 
-    def _allowed(self, part: _Part, team: Collection[str]) -> Commanded:
+    def _allowed(self, part: _Subtask, team: Collection[str]) -> Commanded:
         """What may be commanded in a stage: what the team does, but for what undoes a milestone or is for another one.
 
         The commands of objectives come last.

@@ -116,11 +116,11 @@ def fastest(
         # Who may be late has no advantage of it, and commands that come at once make a smaller game.
         prompt = bounds(network, objective, Fraction(0), known)
         coarse = common_denominator(network.times)
-        search = _Search(counted, objective, Fraction(0), budget.split(0.5))
+        search = _LeastTimeSearch(counted, objective, Fraction(0), budget.split(0.5))
         search.run(int(prompt.least * coarse), None if prompt.most is None else int(prompt.most * coarse))
         low = max(low, search.low * (unit // coarse))
     near = low > first.least * unit
-    search = _Search(counted, objective, reaction, budget)
+    search = _LeastTimeSearch(counted, objective, reaction, budget)
     search.run(low, None if first.most is None else int(first.most * unit), near)
     search.leave_room()
     most = None if search.high is None else Fraction(search.high, unit)
@@ -128,7 +128,7 @@ def fastest(
     return Guarantee(worst, Fraction(search.low, unit), most), search.faster
 
 
-class _Search:
+class _LeastTimeSearch:
     """The bisection: `low` <= k * v is proven, k * v <= `high` as well (None: nothing known)."""
 
     def __init__(self, network: Network, objective: Objective, reaction: Fraction, budget: Budget) -> None:

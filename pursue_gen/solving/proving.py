@@ -7,7 +7,7 @@ from typing import Callable, Mapping, Optional
 
 from pursue_gen.diagnostics import error
 from pursue_gen.outcomes import LimitHit, NotProven
-from pursue_gen.proof.checker import LIMIT, Report, pruned, pruned_ranks, verify
+from pursue_gen.proof.checker import LIMIT, ProofReport, pruned, pruned_ranks, verify
 from pursue_gen.proof.independence import named_part
 from pursue_gen.proof.simplify import simplified
 from pursue_gen.solving.options import DEFAULT, SolveOptions
@@ -68,6 +68,6 @@ def prove(
     return pruned(fewer, again) if again.ok else kept
 
 
-def play_that_shows(report: Report) -> str:
+def play_that_shows(report: ProofReport) -> str:
     """The play that breaks a strategy, as more lines of a hint; "" where no play was needed to refuse it."""
     return "; the play that shows it:" + "".join(f"\n      {step}" for step in report.play) if report.play else ""

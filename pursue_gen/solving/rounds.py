@@ -59,7 +59,7 @@ Round = Tuple[int, ...]
 """Numbers of visits in the order of a robot's round; the first one is its first."""
 
 
-class Cost(NamedTuple):
+class RoundCost(NamedTuple):
     """Of a round the longest time that a visit waits, as a part of its period; how long once around takes, and how long
     it takes from the start until all visits have been made."""
 
@@ -75,20 +75,20 @@ def rounds(robots: Sequence[Robot], visits: Sequence[Visit], enough: Time = 0.0)
     """
     if any(not visit.robots for visit in visits):
         return None
-    return _Search(robots, visits, enough).found()
+    return _RoundsSearch(robots, visits, enough).found()
 
 
-def cost(robot: Robot, visits: Sequence[Visit], some: Round) -> Cost:
+def cost(robot: Robot, visits: Sequence[Visit], some: Round) -> RoundCost:
     """What a round costs that begins with its first visit."""
     if not some:
-        return Cost(0.0, 0.0, 0.0)
+        return RoundCost(0.0, 0.0, 0.0)
     length, longest = 0.0, robot.time(robot.start, visits[some[0]].place)
     period = min(visits[k].period for k in some)
     for k, following in zip(some, (*some[1:], some[0])):
         step = robot.time(visits[k].place, visits[following].place)
         length += step
     longest += length - robot.time(visits[some[-1]].place, visits[some[0]].place)
-    return Cost(max(longest, length - robot.stay) / period, length, longest)
+    return RoundCost(max(longest, length - robot.stay) / period, length, longest)
 
 
 def least_wait(robots: Sequence[Robot], visits: Sequence[Visit]) -> Time:
@@ -142,7 +142,7 @@ def _least_time(robots: Sequence[Robot], a: str, b: str) -> Time:
     return min(min(robot.time(a, b), robot.time(b, a)) for robot in robots)
 
 
-class _Search:
+class _RoundsSearch:
     def __init__(self, robots: Sequence[Robot], visits: Sequence[Visit], enough: Time) -> None:
         self._robots, self._visits, self._enough = robots, visits, enough
         self._steps = _STEPS
@@ -160,10 +160,10 @@ class _Search:
         found = self._improved(list(best[1]))
         return None if max(self._costs(found)).part == _NEVER else tuple(found)
 
-    def _costs(self, some: Sequence[Round]) -> List[Cost]:
+    def _costs(self, some: Sequence[Round]) -> List[RoundCost]:
         return [self._cost(robot, each) for robot, each in enumerate(some)]
 
-    def _cost(self, robot: int, some: Round) -> Cost:
+    def _cost(self, robot: int, some: Round) -> RoundCost:
         self._steps -= len(some) + 1
         return cost(self._robots[robot], self._visits, some)
 
@@ -287,9 +287,9 @@ class _Search:
                 costs[robot] = self._cost(robot, some[robot])
         return some
 
-    def _given_away(self, some: Sequence[Round], costs: Sequence[Cost], worst: int) -> Optional[Dict[int, Round]]:
+    def _given_away(self, some: Sequence[Round], costs: Sequence[RoundCost], worst: int) -> Optional[Dict[int, Round]]:
         """The change of two rounds that makes the longer of them shortest, if it is shorter than now."""
-        best: Tuple[Cost, Optional[Dict[int, Round]]] = (costs[worst], None)
+        best: Tuple[RoundCost, Optional[Dict[int, Round]]] = (costs[worst], None)
         mine = some[worst]
         for at, end in ((at, at + size) for size in _GIVEN for at in range(len(mine) + 1 - size)):
             given, fewer = mine[at:end], (*mine[:at], *mine[end:])

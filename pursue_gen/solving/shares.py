@@ -94,7 +94,7 @@ def won_in_shares(
         work = min(effort.work, left)
         if work < 1 or not (effort.free or pauses(network)):
             continue
-        search = _Search(network, objective, reaction, options.since(start), replace(effort, work=work), known)
+        search = _SharesSearch(network, objective, reaction, options.since(start), replace(effort, work=work), known)
         with suppress(LimitHit):
             strategy = search.found()
             if strategy is not None:
@@ -103,7 +103,7 @@ def won_in_shares(
     return None
 
 
-class _Search:
+class _SharesSearch:
     """`known`: what is known from less effort."""
 
     def __init__(

@@ -27,12 +27,12 @@ class Subgoal:
 
 def subgoals(network: Network, goal: Place) -> Tuple[Subgoal, ...]:
     """The subgoals of a goal in an order in which they can be met; the goal itself is the last."""
-    return _Search(network).of(goal)
+    return _SubgoalSearch(network).of(goal)
 
 
 def protections(network: Network, bad: Iterable[Place]) -> Tuple[Subgoal, ...]:
     """The values after which nobody can do what leads to the locations, each given by a controllable agent."""
-    search = _Search(network)
+    search = _SubgoalSearch(network)
     return tuple(dict.fromkeys(subgoal for place in bad for subgoal in search.against(place)))
 
 
@@ -42,7 +42,7 @@ def commanded_agents(network: Network) -> Tuple[str, ...]:
     return tuple(a.name for a in network.automata if is_agent(a) and any(is_controllers(e, taken) for e in a.edges))
 
 
-class _Search:
+class _SubgoalSearch:
     def __init__(self, network: Network) -> None:
         self._network = network
         self._commanded = set(commanded_agents(network))

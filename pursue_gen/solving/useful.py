@@ -14,14 +14,15 @@ def useful(network: Network, team: AbstractSet[str], places: Iterable[Place]) ->
     """The edges of these agents that may matter for whether the places are reached, each with its agent's name, and all
     of the automata that are no agents. Whoever leaves out the others may miss a win, but plays by the rules."""
     watching = {name for name, _ in places}
-    search = _Search([a for a in network.automata if a.name in team], [a for a in network.automata if not is_agent(a)])
+    others = [a for a in network.automata if not is_agent(a)]
+    search = _UseSearch([a for a in network.automata if a.name in team], others)
     search.need(edge for automaton in network.automata if automaton.name in watching for edge in automaton.edges)
     while search.grow():
         pass
     return search.found
 
 
-class _Search:
+class _UseSearch:
     """What is needed; it only grows."""
 
     def __init__(self, team: List[Automaton], others: List[Automaton]) -> None:

@@ -58,10 +58,10 @@ def shortened(text: str, most: int = _MESSAGE) -> str:
 
 def read_markup(text: str, file: str) -> Element:
     """The outermost element of the text. Raises PursueError where it is not well-formed XML, or refused as above."""
-    return _Reader(text, file).root()
+    return _MarkupReader(text, file).root()
 
 
-class _Reader:
+class _MarkupReader:
     """Builds the tree while expat reads."""
 
     def __init__(self, text: str, file: str) -> None:

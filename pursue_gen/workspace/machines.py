@@ -80,7 +80,7 @@ def read_machines(file: Path, nodes: Sequence[str]) -> Tuple[Machines, Tuple[Dia
 
 def parse_machines(text: str, file: str, nodes: Sequence[str]) -> Tuple[Machines, Tuple[Diagnostic, ...]]:
     """The same for a text; `file` is its name in messages."""
-    reader = _Reader(file, nodes)
+    reader = _MachinesReader(file, nodes)
     found = reader.read(compose_yaml(text, file, "TRN040", _EXAMPLE))
     if reader.problems:
         raise PursueError(in_order(reader.problems))
@@ -92,7 +92,7 @@ def parse_machines(text: str, file: str, nodes: Sequence[str]) -> Tuple[Machines
     return found, (warning("TRN043", message, Span(file, 1, 1, 1, 1), "name them under a machine's nodes"),)
 
 
-class _Reader:
+class _MachinesReader:
     """Reads PyYAML's tree once; collects the errors, and the machine of each node."""
 
     def __init__(self, file: str, nodes: Sequence[str]) -> None:

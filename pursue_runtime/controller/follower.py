@@ -19,7 +19,7 @@ Log = Callable[[str, str], None]
 """Takes a level (info, warn, err) and a sentence."""
 
 
-class Part(NamedTuple):
+class MissionPart(NamedTuple):
     """A controller's part of a mission: its strategy (None: it has no part in it), and its robots' poses."""
 
     mission: str
@@ -34,15 +34,15 @@ class Part(NamedTuple):
         return [agent for agent in self.strategy.agents if agent not in self.strategy.objectives]
 
 
-def read_part(source: Source) -> Part:
+def read_part(source: Source) -> MissionPart:
     """Read a part from one source. Raises DataError."""
     if source.empty:
-        return Part(source.mission, None, Poses({}, {}, {}))
+        return MissionPart(source.mission, None, Poses({}, {}, {}))
     try:
         poses = read_poses(source.read(POSES))
     except DataError as problem:
         raise DataError(f"in {source.folder}: {problem}") from problem
-    return Part(source.mission, Strategy(source.read("strategy.yaml")), poses)
+    return MissionPart(source.mission, Strategy(source.read("strategy.yaml")), poses)
 
 
 class Follower:
@@ -61,7 +61,7 @@ class Follower:
         again: bool = False,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self.part: Optional[Part] = None
+        self.part: Optional[MissionPart] = None
         self.scheduler: Optional[CommandScheduler] = None
         self.trouble = self._logged = ""
         self._missions, self._name, self._package, self._log = missions, name, package, log
@@ -133,7 +133,7 @@ class Follower:
             raise DataError(f"it lacks or misspells something: {problem!r}") from problem
         return player.add_plan(int(plan["plan"]), strategy, now)
 
-    def report(self) -> Tuple[Optional[SystemState], Optional[CommandScheduler], Optional[Part], str]:
+    def report(self) -> Tuple[Optional[SystemState], Optional[CommandScheduler], Optional[MissionPart], str]:
         """Return the newest state of any mission, the scheduler, the part, and what is wrong ("": nothing)."""
         state = self._filter.newest
         over = state is not None and state.status in ENDED and not self._filter.joined
@@ -163,7 +163,7 @@ class Follower:
         strategy = self.part.strategy if self.part else None
         return strategy_problem(strategy, state) if strategy is not None and state.status in LIVE else ""
 
-    def _use(self, part: Optional[Part]) -> None:
+    def _use(self, part: Optional[MissionPart]) -> None:
         self.part, self.trouble = part, ""
         self.scheduler = CommandScheduler(part.strategy, self._name) if part and part.strategy is not None else None
         if part:

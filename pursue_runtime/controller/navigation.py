@@ -17,7 +17,7 @@ from pursue_runtime.controller.goal import (
     GoalTracker,
     Movement,
 )
-from pursue_runtime.controller.reports import Report
+from pursue_runtime.controller.reports import RepeatedReport
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.trip import Trip
 from pursue_runtime.controller.view import Due, View
@@ -67,10 +67,10 @@ class Navigation:
         self._goal = GoalTracker(settings)
         self._at = Whereabouts(settings)
         self._actions: List[Order] = []  # they wait until the robot is known to be at its place
-        self._given: List[Tuple[Order, Report]] = []  # they are sent again until they are acknowledged
+        self._given: List[Tuple[Order, RepeatedReport]] = []  # they are sent again until they are acknowledged
         self.reaction = 0.0
         """The seconds that the strategy allows a command: reports are sent again by it; 0: not known."""
-        self._report: Optional[Report] = None
+        self._report: Optional[RepeatedReport] = None
         self._doubt: Optional[float] = None  # since when it is not known to be where the state has it
         self._was_sent_away = False  # by another node, from where the state has it
 
@@ -183,7 +183,7 @@ class Navigation:
             goal = self._due_goal(trip, now, real)
         for order in [order for order in self._actions if self._may_act(order, now)]:
             self._actions.remove(order)
-            self._given.append((order, Report(Word("", order.event, order.seq), self.reaction)))
+            self._given.append((order, RepeatedReport(Word("", order.event, order.seq), self.reaction)))
         actions = [order for order, sent in self._given if sent.due(now, real) and self._may_act(order, now)]
         word = self._report.due(now, real) if self._report is not None else None
         return Due(goal, tuple(actions), word)
@@ -224,7 +224,7 @@ class Navigation:
             if (self._view.displaced or self._reports(DISPLACED)) and not self._reports(BACK):
                 self.trouble = ""
                 self._log("info", f"{self.name} is at {post.poi}")
-                self._report = Report(self._word(BACK), self.reaction)
+                self._report = RepeatedReport(self._word(BACK), self.reaction)
             return
         self._at.on_departure()  # it may pass its place again without standing there
         self._doubt = now if self._doubt is None else self._doubt
@@ -236,7 +236,7 @@ class Navigation:
             self.trouble = f"was sent away from {marked(post.poi)} by another node"
         if not self._view.displaced and not self._reports(DISPLACED):
             self._log("warn", f"{self.name} {in_words(self.trouble)}, where the state has it")
-            self._report = Report(self._word(DISPLACED, self.trouble), self.reaction)
+            self._report = RepeatedReport(self._word(DISPLACED, self.trouble), self.reaction)
 
     @property
     def _is_acting(self) -> bool:
@@ -336,7 +336,7 @@ class Navigation:
         self._at.on_arrival(poi)
         trip.has_arrived, trip.goal_at, trip.cancelled, self.trouble = True, None, None, ""
         word = Word("", f"{self.name}_{trip.movement.location}2{poi}", as_of=self._as_of)
-        self._report = Report(word, self.reaction)
+        self._report = RepeatedReport(word, self.reaction)
 
     def _on_failure(self, trip: Trip, answer: Answer, now: float) -> None:
         meaning = meaning_of(answer)
@@ -352,7 +352,8 @@ class Navigation:
         else:
             self.trouble = what + (f", in {trip.attempts} attempts" if trip.attempts > 1 else "")
             self._log("err", f"{self.name} {in_words(self.trouble)}{own_text}")
-            self._report = Report(self._word(FAILED if trip.is_return else meaning.event, self.trouble), self.reaction)
+            word = self._word(FAILED if trip.is_return else meaning.event, self.trouble)
+            self._report = RepeatedReport(word, self.reaction)
 
     def _on_cancelled(self, trip: Trip, answer: Answer, now: float) -> None:
         """Wait for the status that shows whether a goal of another node has taken the place of ours."""
@@ -375,7 +376,7 @@ class Navigation:
         self.trouble = trip.describe(f"{CANCELLED[answer.status]} by another node{often}", answer.text)
         self._log("warn", f"{self.name} {in_words(self.trouble)}; it is held until {self.name}:{RESUME} is published")
         trip.cancelled, trip.is_held = None, True
-        self._report = Report(self._word(HELD, self.trouble), self.reaction)
+        self._report = RepeatedReport(self._word(HELD, self.trouble), self.reaction)
 
     # Reports ----------------------------------------------------------------------------------------------------------
 

@@ -8,7 +8,7 @@ from pursue_runtime.resend import resend_timeout
 from pursue_runtime.words import RobotReport, Word, format_report, format_word
 
 
-class Report:
+class RepeatedReport:
     """A word that is published until it is confirmed. From the second time on it carries the time of the first."""
 
     def __init__(self, word: Union[Word, RobotReport], reaction: float = 0.0) -> None:

@@ -24,7 +24,17 @@ from pursue_runtime.manager.forwarder import Forwarder
 from pursue_runtime.manager.manager import LOCAL_MISSION, MISSION_STATUS, Manager, RequestLog, topic_names
 from pursue_runtime.manager.server import Limits, Server, tls
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, Report, lower_priority, run_node, subscribe
+from pursue_runtime.nodes.node import (
+    ERROR,
+    OK,
+    WARN,
+    Diagnostics,
+    Ending,
+    NodeReport,
+    lower_priority,
+    run_node,
+    subscribe,
+)
 from pursue_runtime.parameters import number, whole
 from pursue_runtime.slots import is_loopback
 from pursue_runtime.trusted_keys import KeyFolder
@@ -113,7 +123,7 @@ class CommunicationManager:
         if self.forwarder is not None:
             self.background.call(self.forwarder.send, topic, message.data, latched)
 
-    def report(self) -> Report:
+    def report(self) -> NodeReport:
         """For /diagnostics. Ready: a mission that came now would be taken."""
         how, sentence = self.manager.condition()
         values: Dict[str, object] = {"robot": self.manager.robot, "port": self.server.port}
@@ -121,7 +131,7 @@ class CommunicationManager:
             values["subscribers"] = self.forwarder.subscribers
         values.update(sorted(self.record.counts().items()))
         trusted = self.manager.trusts_any_key and self.manager.reader_connected
-        return Report(trusted, {"error": ERROR, "warn": WARN}.get(how, OK), sentence, values)
+        return NodeReport(trusted, {"error": ERROR, "warn": WARN}.get(how, OK), sentence, values)
 
     def master_lost(self, why: str) -> None:
         """End the node, which is then started again: another master would not know it."""

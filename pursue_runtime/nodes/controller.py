@@ -21,7 +21,7 @@ from pursue_runtime.missions import Missions, own_source
 from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.exeggutor import LOGS, Exeggutor
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, Report, run_node, subscribe
+from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, run_node, subscribe
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.nodes.state_printer import StatePrinter
 from pursue_runtime.nodes.witness import Witness
@@ -161,7 +161,7 @@ class Controller:
         rospy.logerr("ends here: %s", why)
         self.ending.end(1)
 
-    def report(self) -> Report:
+    def report(self) -> NodeReport:
         """Return the report for /diagnostics: ready when the observer and this node are connected both ways."""
         with self.lock:
             state, scheduler, part, trouble = self.follower.report()
@@ -172,21 +172,21 @@ class Controller:
             values["refused"] = refused = self.follower.refused
             values["malformed"] = self.follower.malformed
         if refused:
-            return Report(False, ERROR, f"refused {refused}", values)
+            return NodeReport(False, ERROR, f"refused {refused}", values)
         if trouble:
-            return Report(False, WARN, trouble, values)
+            return NodeReport(False, WARN, trouble, values)
         if state is None:
-            return Report(False, WARN, "no state from the observer yet", values)
+            return NodeReport(False, WARN, "no state from the observer yet", values)
         if self.observer not in self.exegg.observers():
-            return Report(False, WARN, "the observer has not connected yet", values)
+            return NodeReport(False, WARN, "the observer has not connected yet", values)
         if scheduler is None:
-            return Report(True, OK, f"{state.status}; no part in mission {part.mission if part else ''}", values)
+            return NodeReport(True, OK, f"{state.status}; no part in mission {part.mission if part else ''}", values)
         if state.status in (LOST, STOPPED):
-            return Report(True, ERROR, state.status, values)
+            return NodeReport(True, ERROR, state.status, values)
         troubles = self.exegg.troubles()
         sentences = [f"{robot} {in_words(text)}" for robot, text in troubles.items()]
         values.update(trouble_values(troubles))
-        return Report(True, WARN if troubles else OK, "; ".join([state.status, *sentences]), values)
+        return NodeReport(True, WARN if troubles else OK, "; ".join([state.status, *sentences]), values)
 
     def run(self) -> int:
         """Run until the mission ends; return the exit status."""

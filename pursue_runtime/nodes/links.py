@@ -36,7 +36,7 @@ from pursue_runtime.links import (
     Peers,
     Unanswered,
 )
-from pursue_runtime.nodes.node import ERROR, STALE, WARN, Ending, Report, start_thread, worse
+from pursue_runtime.nodes.node import ERROR, STALE, WARN, Ending, NodeReport, start_thread, worse
 
 PERIOD = 1.0
 """Seconds between two looks at the connections."""
@@ -98,7 +98,7 @@ class Links:
         for task in (self._watch_links, self._watch_master):
             start_thread(task.__name__.strip("_"), task, ending)
 
-    def amend(self, report: Report) -> Report:
+    def amend(self, report: NodeReport) -> NodeReport:
         """The node's report with what is wrong with the master and the connections."""
         with self._lock:
             silent, trouble = self._peers.silent(time.monotonic()), MASTER_PROBLEMS[self._master.found]
@@ -111,7 +111,7 @@ class Links:
         if trouble:
             level = worse(level, WARN if self._master.found == UNREACHABLE else ERROR)
             message += f"; {trouble}"
-        return Report(report.ready, level, message, values)
+        return NodeReport(report.ready, level, message, values)
 
     # Connections ------------------------------------------------------------------------------------------------------
 

@@ -22,7 +22,7 @@ from pursue_runtime.nodes.node import (
     WARN,
     Diagnostics,
     Ending,
-    Report,
+    NodeReport,
     lower_priority,
     restart_process,
     run_node,
@@ -127,7 +127,7 @@ class MarkersNode:
         rospy.logerr("ends here: %s", why)
         self.ending.end(1)
 
-    def report(self) -> Report:
+    def report(self) -> NodeReport:
         """Return the report for /diagnostics."""
         with self.lock:
             values: Dict[str, object] = {"mission": self.membership.source.mission, "markers": len(self.shown)}
@@ -135,10 +135,10 @@ class MarkersNode:
         refused, trouble = self.membership.refused, self.membership.trouble
         values.update(self.membership.counts)
         if refused:
-            return Report(False, ERROR, f"refused {refused}", values)
+            return NodeReport(False, ERROR, f"refused {refused}", values)
         if trouble or state is None:
-            return Report(False, WARN, trouble or "no state from the observer yet", values)
-        return Report(True, OK, state.status, values)
+            return NodeReport(False, WARN, trouble or "no state from the observer yet", values)
+        return NodeReport(True, OK, state.status, values)
 
     def run(self) -> int:
         """Run until the node is ended, also after the mission: its end is shown, and the next mission; return 0."""

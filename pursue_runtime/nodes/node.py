@@ -47,7 +47,7 @@ def worse(level: int, other: int) -> int:
     return max(level, other, key=(OK, WARN, STALE, ERROR).index)
 
 
-class Report(NamedTuple):
+class NodeReport(NamedTuple):
     """How a node is: one of the standard levels, a sentence, and values (`ready` is added)."""
 
     ready: bool
@@ -97,7 +97,9 @@ class Diagnostics:
     `amend` adds what is wrong with the connections and the master (see `Links`).
     """
 
-    def __init__(self, report: Callable[[], Report], ending: Ending, amend: Callable[[Report], Report]) -> None:
+    def __init__(
+        self, report: Callable[[], NodeReport], ending: Ending, amend: Callable[[NodeReport], NodeReport]
+    ) -> None:
         self._name = rospy.get_name().lstrip("/")
         self._report = report
         self._amend = amend

@@ -33,7 +33,7 @@ from pursue_runtime.nodes.node import (
     WARN,
     Diagnostics,
     Ending,
-    Report,
+    NodeReport,
     restart_process,
     run_node,
     start_thread,
@@ -328,7 +328,7 @@ class Observer:
         with contextlib.suppress(rospy.ROSException):
             publisher.publish(what)
 
-    def report(self) -> Report:
+    def report(self) -> NodeReport:
         """Return the report for /diagnostics: ready as soon as a node is connected that publishes words."""
         with self.lock:
             mission = self.mission
@@ -344,7 +344,7 @@ class Observer:
             message = mission.status + (f": {in_words(mission.reason)}" if mission.reason else "")
             warns = mission.late or mission.lost or mission.ways.blocked or mission.status == HOLDING
             level = ERROR if mission.status in (LOST, STOPPED) else WARN if warns else OK
-        return Report(self.words.get_num_connections() > 0, level, message, values)
+        return NodeReport(self.words.get_num_connections() > 0, level, message, values)
 
     def run(self) -> int:
         """Runs until the mission ends; returns the exit status."""

@@ -26,7 +26,7 @@ from pursue_runtime.data import Package
 from pursue_runtime.folders import keys_folder, missions_folder
 from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import OK, WARN, Diagnostics, Ending, Report, run_node, subscribe
+from pursue_runtime.nodes.node import OK, WARN, Diagnostics, Ending, NodeReport, run_node, subscribe
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import number, whole
 from pursue_runtime.reader.contents import StoreError
@@ -105,7 +105,7 @@ class Node:
         rospy.logerr("ends here: %s", why)
         self.ending.end(1)
 
-    def report(self) -> Report:
+    def report(self) -> NodeReport:
         """For /diagnostics. It is ready as soon as it is connected with communication_manager."""
         with self.lock:
             status, trouble = self.reader.status(), self.reader.problem()
@@ -114,7 +114,7 @@ class Node:
         for name in ("current", "next", "prepared"):
             values[name] = "" if status[name] is None else mission_id(status[name])
         ready = self.orders.get_num_connections() > 0
-        return Report(ready, WARN if trouble else OK, trouble or "takes missions", values)
+        return NodeReport(ready, WARN if trouble else OK, trouble or "takes missions", values)
 
 
 def robot_name() -> str:

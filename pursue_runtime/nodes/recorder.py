@@ -32,7 +32,7 @@ from pursue_runtime.nodes.node import (
     WARN,
     Diagnostics,
     Ending,
-    Report,
+    NodeReport,
     lower_priority,
     restart_process,
     run_node,
@@ -117,15 +117,15 @@ class Recorder:
             if state.status in ENDED:
                 self.ending.end(0 if state.status == WON else 1)
 
-    def report(self) -> Report:
+    def report(self) -> NodeReport:
         """For /diagnostics. It is ready when nothing of a mission that starts now would be missed."""
         values = {"mission": self.membership.source.mission, "messages": self.count, "file": self.path}
         if self.membership.trouble:
-            return Report(False, WARN, self.membership.trouble, values)
+            return NodeReport(False, WARN, self.membership.trouble, values)
         if self.status not in ("", WAITING):
-            return Report(True, OK, "recording", values)
+            return NodeReport(True, OK, "recording", values)
         why = self.missing() if self.status else "no state from the observer yet"
-        return Report(not why, WARN if why else OK, why or "recording", values)
+        return NodeReport(not why, WARN if why else OK, why or "recording", values)
 
     def missing(self) -> str:
         """Why a mission should not start yet."""

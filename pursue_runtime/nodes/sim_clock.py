@@ -19,7 +19,7 @@ from rosgraph_msgs.msg import Clock
 from pursue_runtime.data import Package
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import OK, Diagnostics, Ending, Report, run_node, start_thread, subscribe
+from pursue_runtime.nodes.node import OK, Diagnostics, Ending, NodeReport, run_node, start_thread, subscribe
 from pursue_runtime.simulator.clock import ClockFile, Pace, SimClock, read_pace, send_whole
 from pursue_runtime.words import EVENTS, STATE
 
@@ -48,7 +48,7 @@ def run(pace: Pace, scenario: str) -> int:
         for topic, act in ((EVENTS, clock.on_word), (STATE, clock.on_message))
     ]
     links = Links(states, ending=ending, lost=lambda _: ending.end(1))
-    Diagnostics(lambda: Report(True, OK, f"{clock.now:.2f} s", {"speed": pace.speed}), ending, links.amend)
+    Diagnostics(lambda: NodeReport(True, OK, f"{clock.now:.2f} s", {"speed": pace.speed}), ending, links.amend)
     start_thread("clock", lambda: tick(clock, publisher, memory), ending)
     return ending.wait()
 

@@ -25,7 +25,7 @@ from pursue_runtime.nodes.node import (
     WARN,
     Diagnostics,
     Ending,
-    Report,
+    NodeReport,
     lower_priority,
     restart_process,
     run_node,
@@ -115,7 +115,7 @@ class SimulatorNode:
         rospy.logerr("ends here: %s", why)
         self.ending.end(1)
 
-    def report(self) -> Report:
+    def report(self) -> NodeReport:
         """Return the report for /diagnostics: ready when the observer and this node are connected both ways, and each
         robot has a controller."""
         with self.lock:
@@ -125,14 +125,14 @@ class SimulatorNode:
         refused = self.membership.refused
         values.update(self.membership.counts)
         if refused:
-            return Report(False, ERROR, f"refused {refused}", values)
+            return NodeReport(False, ERROR, f"refused {refused}", values)
         if self.membership.trouble:
-            return Report(False, WARN, self.membership.trouble, values)
+            return NodeReport(False, WARN, self.membership.trouble, values)
         if not observer or observer not in listeners(self.events):
-            return Report(False, WARN, "not connected to the observer yet", values)
+            return NodeReport(False, WARN, "not connected to the observer yet", values)
         if unconnected:
-            return Report(False, WARN, f"no publisher on {unconnected[0]} yet", values)
-        return Report(True, OK, status, values)
+            return NodeReport(False, WARN, f"no publisher on {unconnected[0]} yet", values)
+        return NodeReport(True, OK, status, values)
 
     def run(self) -> int:
         """Runs until the mission ends; returns the exit status."""

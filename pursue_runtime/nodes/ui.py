@@ -23,7 +23,7 @@ from pursue_runtime.nodes.node import (
     WARN,
     Diagnostics,
     Ending,
-    Report,
+    NodeReport,
     init_node,
     lower_priority,
     restart_process,
@@ -272,7 +272,7 @@ class UI:
             self.conclude(STOPPED if self.phase == RUNNING else NOT_STARTED, f"The mission cannot go on: {why}.")
             self.ending.end(self.verdict[0] if self.verdict is not None else 1)
 
-    def report(self) -> Report:
+    def report(self) -> NodeReport:
         """For /diagnostics."""
         with self.lock:
             missing = self.missing()
@@ -282,7 +282,8 @@ class UI:
         values.update({"mission": self.membership.source.mission, **self.membership.counts})
         trouble = f"refused {refused}" if refused else trouble
         level = ERROR if refused or (verdict and verdict[0]) else WARN if missing or trouble else OK
-        return Report(self.connected() and not trouble, level, verdict[1] if verdict else trouble or self.phase, values)
+        message = verdict[1] if verdict else trouble or self.phase
+        return NodeReport(self.connected() and not trouble, level, message, values)
 
     def run(self) -> int:
         """Runs until the mission ends; returns the exit status."""

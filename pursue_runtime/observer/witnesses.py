@@ -14,7 +14,7 @@ SAME = 1e-3
 """Seconds by which two nodes may see the reset of a clock apart: stamps and clocks are rounded in messages."""
 
 
-class Finding(NamedTuple):
+class Restart(NamedTuple):
     """How a restarted observer goes on: from the state to `adopt`; else with a safe stop for the reason `stop`; else
     from where its journal leads."""
 
@@ -29,7 +29,7 @@ def find_state(
     seen: Mapping[str, SystemState],
     begun: bool = True,
     reached: Rank = (0, False),
-) -> Finding:
+) -> Restart:
     """Return where the mission is, from the state to which the journal leads and those that other nodes have seen last.
 
     `damage`: why the journal is not complete ("": it is); `after`: states up to that moment (seconds) are of an earlier
@@ -41,25 +41,25 @@ def find_state(
         damage = f"it leads to state {own.seq}, and the mission had {_words(reached)}"
     why = f"the observer was restarted, and its journal is not complete ({damage})" if damage else ""
     if own.status in ENDED and not damage:
-        return Finding()
+        return Restart()
     newest = _newest({node: state for node, state in seen.items() if _counts(state, own, after)})
     if not newest:
-        return Finding(stop=f"{why}; no other node has seen a state of this mission" if why else "")
+        return Restart(stop=f"{why}; no other node has seen a state of this mission" if why else "")
     nodes = " and ".join(sorted(newest))
     state, *others = sorted(newest.values(), key=lambda state: -state.stamp)
     if not begun and not why and own.status == WAITING:
-        return Finding(stop=other_launch(nodes, state) if state.status in LIVE else "")
+        return Restart(stop=other_launch(nodes, state) if state.status in LIVE else "")
     if why and _rank(state) < known:
         before = f"it leads to state {own.seq}" if known == _rank(own) else f"the mission had {_words(reached)}"
-        return Finding(stop=f"{why}; {before}, and {nodes} know of state {state.seq} only")
+        return Restart(stop=f"{why}; {before}, and {nodes} know of state {state.seq} only")
     if not why and _rank(state) < _rank(own):
-        return Finding()
+        return Restart()
     if any(_differs(state, other) for other in others):
-        return Finding(stop=f"{why or 'the observer was restarted'}; {nodes} have seen different states {state.seq}")
+        return Restart(stop=f"{why or 'the observer was restarted'}; {nodes} have seen different states {state.seq}")
     if not why and _rank(state) == _rank(own):
         contradicts = _place(state) != _place(own)
-        return Finding(stop=unknown_state(own, nodes, state)) if contradicts else Finding()
-    return Finding(adopt=state)
+        return Restart(stop=unknown_state(own, nodes, state)) if contradicts else Restart()
+    return Restart(adopt=state)
 
 
 def mission_seen(seen: Mapping[str, SystemState], after: float) -> Optional[str]:

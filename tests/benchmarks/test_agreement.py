@@ -18,7 +18,7 @@ from benchmarks.opinions import Opinions
 from benchmarks.random_games import random_game
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.outcomes import LimitHit, Lost, NotProven
-from pursue_gen.proof.checker import Report
+from pursue_gen.proof.checker import ProofReport as Report
 from pursue_gen.solving.rules import IDEAL
 from pursue_gen.tga.network import Kind
 

@@ -15,7 +15,7 @@ from benchmarks.families import clean_by_robots
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.proof import checker
-from pursue_gen.proof.checker import Report, pruned, verify
+from pursue_gen.proof.checker import ProofReport, pruned, verify
 from pursue_gen.proof.closed_loop import ClosedLoop
 from pursue_gen.proof.native.search import searches_of
 from pursue_gen.proof.search import Depth
@@ -97,11 +97,11 @@ def moves(net: Network, *numbers: Tuple[str, int]) -> Tuple[Move, ...]:
 
 def checked(
     net: Network, objective: Objective, *blocks: Block, reaction: Fraction = Fraction(0), prompt: bool = False
-) -> Report:
+) -> ProofReport:
     return verify(net, objective, Strategy(blocks), reaction, prompt=prompt)
 
 
-def kind(report: Report) -> str:
+def kind(report: ProofReport) -> str:
     """'ok' or the kind of failure."""
     assert report.ok == (report.reason == "")
     return "ok" if report.ok else report.reason.split(":")[0]
@@ -415,7 +415,7 @@ def published(reference_dir: Path, name: str) -> Tuple[Network, Objective, Strat
     return net, objective, read_plan((folder / "UPPAAL_plan.txt").read_text(errors="replace"), net, f"{name}/plan")
 
 
-def used_blocks(report: Report) -> Set[int]:
+def used_blocks(report: ProofReport) -> Set[int]:
     return {b for b, _, _ in report.used}
 
 

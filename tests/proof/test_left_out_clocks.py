@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, assume, event, given, settings
 from hypothesis import strategies as st
 
-from pursue_gen.proof.checker import Report, pruned, verify
+from pursue_gen.proof.checker import ProofReport, pruned, verify
 from pursue_gen.proof.independence import named_part
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
@@ -31,7 +31,7 @@ def guest(*edges: Edge, stays: Tuple[ClockBound, ...] = ()) -> Automaton:
     return Automaton("O", places, "here", (calls, *edges))
 
 
-def said(other: Automaton, clocks: Tuple[str, ...] = ("y",)) -> Report:
+def said(other: Automaton, clocks: Tuple[str, ...] = ("y",)) -> ProofReport:
     """What the checker says of one who waits for 7 time units, whatever the other does."""
     wait = block({"A": "start", "O": "here"}, LATER.wait, (since("x", 7), "A", GO))
     network = Network(("x", "y", "z"), (), ("call",), (BOT, other))

@@ -8,7 +8,7 @@ from typing import Dict, Tuple
 
 import pytest
 
-from pursue_gen.proof.checker import Report, verify
+from pursue_gen.proof.checker import ProofReport, verify
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone
 from pursue_gen.tga.network import (
     Automaton,
@@ -51,7 +51,7 @@ def before(clock: str, bound: int) -> Zone:
 LATER = block({"A": "start"}, (before("x", 7),), (since("x", 7), "A", GO))
 
 
-def beside(other: Automaton) -> Report:
+def beside(other: Automaton) -> ProofReport:
     """What the checker says of one who waits for 7 time units while the other is left out."""
     return verify(Network(("x", "z"), (), (), (BOT, other)), REACH, Strategy((LATER,)))
 
@@ -196,7 +196,7 @@ def test_no_edge_gives_a_value_that_it_takes_back_at_once() -> None:
     turn = replace(network.automata[0].edges[0], controllable=False)
     places = (Location("off", (ClockBound("x", "<=", 2),)), Location("on"))
 
-    def waiting(*edges: Edge) -> Report:
+    def waiting(*edges: Edge) -> ProofReport:
         game = with_switch(network, *edges)
         game = replace(game, automata=(replace(game.automata[0], locations=places), *game.automata[1:]))
         strategy = until_it_is_on(game)

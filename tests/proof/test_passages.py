@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.proof.checker import Report, verify
+from pursue_gen.proof.checker import ProofReport, verify
 from pursue_gen.proof.passage_times import latest
 from pursue_gen.proof.passages import Fault
 from pursue_gen.proof.passages import played as played_course
@@ -69,7 +69,7 @@ def strategy_for(game: Game, reaction: Fraction = DELAY) -> Optional[Strategy]:
     return None if found is None else found[1]
 
 
-def judged(game: Game, strategy: Strategy, reaction: Fraction = DELAY) -> Optional[Report]:
+def judged(game: Game, strategy: Strategy, reaction: Fraction = DELAY) -> Optional[ProofReport]:
     try:
         return verify(*game, strategy, reaction)
     except PursueError:

@@ -14,7 +14,7 @@ from benchmarks.lab_scenarios import Size, lab_scenario
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.proof.checker import LIMIT, Report, verify
+from pursue_gen.proof.checker import LIMIT, ProofReport, verify
 from pursue_gen.proof.shares import names_of
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
@@ -137,7 +137,7 @@ def in_shares(text: str, reaction: Fraction = LATE) -> Tuple[Network, Objective,
     return network, objective, found.strategy
 
 
-def as_a_whole(network: Network, objective: Objective, strategy: Strategy, limit: int = LIMIT) -> Report:
+def as_a_whole(network: Network, objective: Objective, strategy: Strategy, limit: int = LIMIT) -> ProofReport:
     """The report on the strategy with blocks that name everything, by the native checker: it is the judge here, and not
     what is tested."""
     whole = replace(of_the_whole(with_watchers(network, strategy.watchers), strategy), watchers=strategy.watchers)

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.language import load
-from pursue_gen.proof.checker import Report, pruned, pruned_ranks, verify
+from pursue_gen.proof.checker import ProofReport, pruned, pruned_ranks, verify
 from pursue_gen.proof.margin import strategy_margin
 from pursue_gen.proof.simplify import simplified
 from pursue_gen.solving.rules import IDEAL, Rules, played
@@ -122,7 +122,7 @@ def test_ranks_stand_where_their_zones_stand_once_others_are_pruned() -> None:
     whole = Block(state, (early, late), (Command((early, late), GO), Command((late,), GO)))
     strategy = Strategy((whole,) * 4)
     used = {(0, "wait", 1), (1, "wait", 1), (1, 1, 0), (3, 0, 1)}  # of the third block nothing is left
-    report = Report(True, "", (), frozenset(used), 1)
+    report = ProofReport(True, "", (), frozenset(used), 1)
     where: List[Tuple[Union[str, int], int]] = [("wait", 0), ("wait", 1), (0, 0), (0, 1), (1, 0)]
     ranks = {(b, part, n): 100 * b + 10 * where.index((part, n)) for b in range(4) for part, n in where}
     kept, left = pruned(strategy, report), pruned_ranks(strategy, report, ranks)

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from benchmarks.families import deliver_by_robots, hand_to_visitors
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
-from pursue_gen.proof.checker import Report, pruned, verify
+from pursue_gen.proof.checker import ProofReport, pruned, verify
 from pursue_gen.proof.moves import Arena, JointMove, State
 from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.solving.decomposition import won_by_some
@@ -44,7 +44,7 @@ def in_stages(text: str, reaction: Fraction = DELAY) -> Tuple[Network, Objective
     return network, objective, found.strategy
 
 
-def wins_as_a_whole(network: Network, objective: Objective, strategy: Strategy) -> Report:
+def wins_as_a_whole(network: Network, objective: Objective, strategy: Strategy) -> ProofReport:
     """The report on the same strategy without stages, by the native checker: it is the judge here, and not what is
     tested."""
     with natively():

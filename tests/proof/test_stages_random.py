@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.proof.checker import Report, verify
+from pursue_gen.proof.checker import ProofReport, verify
 from pursue_gen.synthesis.strategy import Strategy
 from tests.oracle.checker import in_python
 from tests.proof.staged_games import Game, damaged, games, staged
@@ -26,7 +26,7 @@ def twin() -> None:
     """Each test uses both checkers."""
 
 
-def judged(game: Game, strategy: Strategy, reaction: Fraction = Fraction(0)) -> Optional[Report]:
+def judged(game: Game, strategy: Strategy, reaction: Fraction = Fraction(0)) -> Optional[ProofReport]:
     """What both checkers say; None where the strategy speaks of clocks that its stage does not have."""
     network, objective = game
     try:

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
 from pursue_gen.proof import checker, search
-from pursue_gen.proof.checker import Report, pruned, pruned_ranks, verify
+from pursue_gen.proof.checker import ProofReport, pruned, pruned_ranks, verify
 from pursue_gen.proof.closed_loop import ClosedLoop
 from pursue_gen.proof.margin import strategy_margin
 from pursue_gen.proof.native.search import searches_of
@@ -244,7 +244,7 @@ def test_what_does_not_fit_together_is_refused_by_both_with_the_same_words(one: 
     with in_python():
         expected = outcome()
     found = outcome()
-    assert found == expected and not (isinstance(found, Report) and found.ok)
+    assert found == expected and not (isinstance(found, ProofReport) and found.ok)
 
 
 def test_where_the_native_searches_cannot_be_done_python_does_them() -> None:

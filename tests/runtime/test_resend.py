@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_runtime.controller.reports import Report
+from pursue_runtime.controller.reports import RepeatedReport
 from pursue_runtime.resend import LAST_TIMEOUT, REPEATS, SHORTEST, StateRepeats, resend_interval, resend_timeout
 from pursue_runtime.state import HOLDING, SystemState
 from pursue_runtime.words import Word, parse_word
@@ -72,7 +72,7 @@ def test_a_state_that_was_published_again_meanwhile_is_repeated_as_it_was_then()
 
 
 def test_a_report_of_a_robot_is_repeated_within_the_reaction_until_the_state_shows_it() -> None:
-    report = Report(Word("bot", "bot_going_a_to_b2b", as_of=3), 0.1)
+    report = RepeatedReport(Word("bot", "bot_going_a_to_b2b", as_of=3), 0.1)
     assert report.due(100.0, 5.0) == "bot:bot_going_a_to_b2b#3"
     assert report.due(100.01, 5.01) is None
     assert report.next_moment() == pytest.approx(5.02)

@@ -16,7 +16,7 @@ from pursue_gen.language import parse
 from pursue_gen.language.objectives import WhyGivenUp
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import promise_words
-from pursue_gen.proof.checker import Report
+from pursue_gen.proof.checker import ProofReport
 from pursue_gen.solving import optional, proving
 from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.optional import promised, promised_of, try_plan_of
@@ -105,7 +105,7 @@ def test_an_optional_objective_whose_strategy_the_checker_refuses_is_not_called_
 ) -> None:
     verify = proving.verify
 
-    def refusing(network: Network, objective: Objective, *rest: Any, **more: Any) -> Report:
+    def refusing(network: Network, objective: Objective, *rest: Any, **more: Any) -> ProofReport:
         report = verify(network, objective, *rest, **more)
         return report if len(objective.goal) == 1 else replace(report, ok=False, reason="no block says what to do")
 

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError, render
 from pursue_gen.language import load, parse
-from pursue_gen.proof.checker import Report, verify
+from pursue_gen.proof.checker import ProofReport, verify
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import IDEAL
@@ -247,14 +247,15 @@ def test_one_allowance_is_for_the_solver_and_the_checker(game: Game, eager: None
     solution(*game, IDEAL, SolveOptions(Limits(600, 1 << 20), progress=heard.append))
     phases = [p.phase for p in heard]
     assert phases == sorted(phases, reverse=True) and set(phases) == {SOLVING, PROVING}
-    with mock.patch("pursue_gen.solving.proving.verify", return_value=Report(True, "", (), frozenset(), 1)) as checker:
+    report = ProofReport(True, "", (), frozenset(), 1)
+    with mock.patch("pursue_gen.solving.proving.verify", return_value=report) as checker:
         solution(*game, IDEAL, SolveOptions(Limits(600)))
     given_limits = checker.call_args[1]["limits"]
     assert given_limits.seconds == 600 and 0 < given_limits.spent < 600
 
 
 def test_what_the_checker_does_not_decide_is_no_defeat(game: Game, strategy: Strategy) -> None:
-    undecided = Report(False, "limit: not decided within 7 symbolic states", (), frozenset(), 7)
+    undecided = ProofReport(False, "limit: not decided within 7 symbolic states", (), frozenset(), 7)
     checker = mock.patch("pursue_gen.solving.proving.verify", return_value=undecided)
     with checker, pytest.raises(PursueError) as failure:
         prove(*game, strategy, Fraction(0))

@@ -69,7 +69,7 @@ def read_bag(stream: BinaryIO, wanted: Callable[[str], bool]) -> Bag:
     stream.seek(0)
     if stream.read(len(MAGIC)) != MAGIC:
         raise Damage(f"it does not begin with {MAGIC.decode().strip()}")
-    reader = _Reader(wanted, MOST_TIMES * size + MOST_KEPT)
+    reader = _BagReader(wanted, MOST_TIMES * size + MOST_KEPT)
     try:
         reader.run(_Source(stream, size, is_chunk=False), "")
     except _Full as full:
@@ -119,7 +119,7 @@ class _Source:
         return int.from_bytes(self.take(4, 4, "a length"), "little")
 
 
-class _Reader:
+class _BagReader:
     def __init__(self, wanted: Callable[[str], bool], most_unpacked: int) -> None:
         self.messages: List[Message] = []
         self.problems: List[str] = []

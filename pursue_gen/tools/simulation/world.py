@@ -12,7 +12,7 @@ from pursue_gen.tools.simulation.connections import drawn_share
 from pursue_gen.tools.simulation.event_queue import EventQueue, Timer
 from pursue_gen.tools.simulation.faults import Breakdown, FaultPlan
 from pursue_gen.tools.simulation.stage import Stage
-from pursue_runtime.controller.reports import Report
+from pursue_runtime.controller.reports import RepeatedReport
 from pursue_runtime.locations import action_of, is_action, is_movement, is_under_way
 from pursue_runtime.orders import Order, parse_orders
 from pursue_runtime.resend import resend_timeout
@@ -61,7 +61,7 @@ class SimulatedAgent:
         self._activities = 0
         self._broken = False
         self._failed = -1  # the number of the state in which it came to what it has failed to finish
-        self._report: Optional[Report] = None  # that it has failed, or could finish that after all
+        self._report: Optional[RepeatedReport] = None  # that it has failed, or could finish that after all
         self._report_timer = Timer(events, self._say)
         self._stamp = 0.0
         self._receipts: Dict[int, int] = {}  # the orders that no state shows as acknowledged: how often each was said
@@ -145,7 +145,7 @@ class SimulatedAgent:
         self._broken, self._failed = True, begun
         self._fault_plan.count("failed" if breakdown.reported else "silent")
         if breakdown.reported:
-            self._report = Report(RobotReport(self.agent, FAILED, as_of=begun), self._promised)
+            self._report = RepeatedReport(RobotReport(self.agent, FAILED, as_of=begun), self._promised)
             self._say()
         if breakdown.back is not None:
             self._events.schedule(self._events.now + breakdown.back, lambda: self._repair(begun))
@@ -155,11 +155,11 @@ class SimulatedAgent:
         self._broken = False
         window = self._window()
         if window is not None and self._since == begun:
-            self._report = Report(report_of(self._stage.model, self.agent, window.event, begun), self._promised)
+            self._report = RepeatedReport(report_of(self._stage.model, self.agent, window.event, begun), self._promised)
             self._say()
 
     def _say(self) -> None:
-        """Report that it has failed, or that it has finished what it was at; again until a state shows it."""
+        """RepeatedReport that it has failed, or that it has finished what it was at; again until a state shows it."""
         report, now = self._report, self._events.now
         word = report.due(now, now) if report is not None else None
         if word is not None:

@@ -52,14 +52,14 @@ def _placed(poi: Poi, given: GivenPoses) -> Poi:
 def read_poses(file: Path, points: Tuple[str, ...], robots: Tuple[str, ...] = ()) -> GivenPoses:
     """The poses in a poses.yaml; `points` and `robots` are the names that it may have. Raises as `with_poses`."""
     text = read_text(file, "a file of poses, such as config/poses.yaml of a workspace's UI")
-    reader = _Reader(str(file), points, robots)
+    reader = _PosesReader(str(file), points, robots)
     poses = reader.poses(compose_yaml(text, str(file), "TRN011", _FORM))
     if reader.findings:
         raise PursueError(reader.findings)
     return poses
 
 
-class _Reader:
+class _PosesReader:
     """Walks over YAML's nodes, which know their places, and gathers what is wrong."""
 
     def __init__(self, file: str, points: Tuple[str, ...], robots: Tuple[str, ...]) -> None:

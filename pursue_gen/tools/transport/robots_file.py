@@ -36,7 +36,7 @@ def read_robots(file: Path) -> Tuple[Robot, ...]:
     hint = f"write {_EXAMPLE}"
     if len(text) > _LARGEST:
         raise PursueError([error("TRN021", f"{file} has more than {_LARGEST} letters", hint=hint)])
-    reader = _Reader(file)
+    reader = _RobotsReader(file)
     robots = reader.robots(compose_yaml(text, str(file), "TRN021", hint))
     if reader.findings:
         raise PursueError(reader.findings)
@@ -54,7 +54,7 @@ def chosen(robots: Sequence[Robot], names: str, file: Path) -> Tuple[Robot, ...]
     return tuple(robot for robot in robots if robot.name in wanted)
 
 
-class _Reader:
+class _RobotsReader:
     """Goes through the tree and collects what is wrong."""
 
     def __init__(self, file: Path) -> None:

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from pursue_runtime.controller.reports import Report
+from pursue_runtime.controller.reports import RepeatedReport
 from pursue_runtime.words import FAILED, RobotReport, Word, parse_report, parse_word
 
 
 def test_what_is_published_again_carries_the_time_of_the_first() -> None:
-    report = Report(Word("", "bot_going_a_to_b2b", as_of=7), reaction=0.1)
+    report = RepeatedReport(Word("", "bot_going_a_to_b2b", as_of=7), reaction=0.1)
     assert report.next_moment() is None
     assert report.due(1000.25, 50.0) == "bot_going_a_to_b2b#7"
     for number in range(40):
@@ -20,7 +20,7 @@ def test_what_is_published_again_carries_the_time_of_the_first() -> None:
 
 
 def test_it_is_published_at_once_when_an_observer_appears_however_often_it_was() -> None:
-    report = Report(RobotReport("bot", FAILED, "no way", 3), reaction=0.1)
+    report = RepeatedReport(RobotReport("bot", FAILED, "no way", 3), reaction=0.1)
     real = 10.0
     for _ in range(30):  # it has waited for long: the next one would come seconds later
         report.due(500.0, real)
@@ -35,7 +35,7 @@ def test_it_is_published_at_once_when_an_observer_appears_however_often_it_was()
 
 
 def test_what_is_confirmed_or_was_never_due_is_not_published_for_an_observer_that_appears() -> None:
-    report = Report(Word("", "done", as_of=1))
+    report = RepeatedReport(Word("", "done", as_of=1))
     report.due(1.0, 1.0)
     report.confirmed = True
     report.say_again()
@@ -43,5 +43,5 @@ def test_what_is_confirmed_or_was_never_due_is_not_published_for_an_observer_tha
 
 
 def test_a_report_without_a_number_has_no_time() -> None:
-    report = Report(Word("", "done"))
+    report = RepeatedReport(Word("", "done"))
     assert [report.due(1.0, real) for real in (1.0, 100.0)] == ["done", "done"]

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from pursue_runtime.observer.journal import last_mission
 from pursue_runtime.observer.records import format_record, read_records
-from pursue_runtime.observer.witnesses import Finding, find_state
+from pursue_runtime.observer.witnesses import Restart, find_state
 from pursue_runtime.state import SystemState
 from tests.runtime.observer.test_journal import HEADER, MISSION, PLAY, Life, path
 
@@ -31,7 +31,7 @@ def cut(path: Path, records: int) -> None:
     assert not read_records(str(path)).damage
 
 
-def found(life: Life, **seen: SystemState) -> Finding:
+def found(life: Life, **seen: SystemState) -> Restart:
     """How a restarted observer goes on."""
     journal = life.journal
     return find_state(life.mission.state(2000.0), journal.damage, journal.after, seen, True, journal.reached)
@@ -74,7 +74,7 @@ def test_a_journal_that_is_ahead_of_its_mark_is_whole(path: Path) -> None:
     life.play(*PLAY[2:5], first=2)
     os.replace(path.with_name("kept"), mark_of(path))
     again = Life(path)
-    assert again.journal.is_open and found(again) == Finding() and again.state() == life.state()
+    assert again.journal.is_open and found(again) == Restart() and again.state() == life.state()
     cut(path, 3)
     assert Life(path).journal.damage, "the mark is up to date again"
 
@@ -91,7 +91,7 @@ def test_a_whole_journal_needs_no_mark(path: Path, content: Any) -> None:
     if content is not None:
         mark_of(path).write_bytes(content)
     life = Life(path)
-    assert life.journal.is_open and life.state() == before.state() and found(life) == Finding()
+    assert life.journal.is_open and life.state() == before.state() and found(life) == Restart()
     life.play(*PLAY[4:], first=4)
     if content is None:
         cut(path, 3)
@@ -132,7 +132,7 @@ def test_another_launch_begins_anew(path: Path) -> None:
     Life(path).play(*PLAY[:4])
     cut(path, 2)
     life = Life(path, {**HEADER, "launch": "z"})
-    assert found(life) == Finding() and life.journal.is_open
+    assert found(life) == Restart() and life.journal.is_open
     life.play(*PLAY[:4])
     assert Life(path, {**HEADER, "launch": "z"}).state() == life.state()
 
@@ -141,7 +141,7 @@ def test_the_next_mission_of_a_launch_begins_at_0(path: Path) -> None:
     Life(path).play(*PLAY[:3], ("hear", "_stop_"))
     Life(path).journal.end(1005.0)
     life = Life(path)
-    assert found(life) == Finding() and life.mission.status == "waiting" and life.journal.is_open
+    assert found(life) == Restart() and life.mission.status == "waiting" and life.journal.is_open
     life.play(("hear", "_start_"), first=10)
     assert Life(path).state() == life.state()
 
@@ -158,7 +158,7 @@ def test_what_others_have_seen_is_adopted_where_it_is_not_behind_the_mark(path: 
     states = {state.seq: state for state in life.play(*PLAY[:4])}
     cut(path, 2)
     again = Life(path)
-    assert found(again, UI=states[3]) == Finding(adopt=states[3])
+    assert found(again, UI=states[3]) == Restart(adopt=states[3])
     assert "had come to state 3, and UI know of state 2 only" in found(again, UI=states[2]).stop
     again.journal.adopt(states[3], 1010.0)
     assert Life(path).state() == again.state() == life.state()

@@ -6,7 +6,7 @@ from typing import Any, Dict
 
 import pytest
 
-from pursue_runtime.observer.witnesses import Finding, contradicts, find_state, mission_seen
+from pursue_runtime.observer.witnesses import Restart, contradicts, find_state, mission_seen
 from pursue_runtime.state import SystemState
 
 NOTHING = SystemState(0, 0.0, {}, {}, {}, status="waiting")
@@ -22,7 +22,7 @@ def state(seq: int, stamp: float = 100.0, status: str = "running", bot: str = "a
 FRESH = state(0, status="waiting")
 
 
-def found(own: SystemState, damage: str = "", after: float = 0.0, **seen: SystemState) -> Finding:
+def found(own: SystemState, damage: str = "", after: float = 0.0, **seen: SystemState) -> Restart:
     return find_state(own, damage, after, seen)
 
 
@@ -30,7 +30,7 @@ def found(own: SystemState, damage: str = "", after: float = 0.0, **seen: System
     {}, {"UI": NOTHING}, {"UI": state(3)}, {"UI": state(7)}, {"UI": state(7, stamp=140.0), "simulator": state(2)},
 ])
 def test_a_whole_journal_counts_where_nobody_has_seen_more(seen: Dict[str, SystemState]) -> None:
-    assert found(state(7), **seen) == Finding()
+    assert found(state(7), **seen) == Restart()
 
 
 @pytest.mark.parametrize("own, damage", [(state(6), ""), (state(6), "torn"), (FRESH, ""), (FRESH, DAMAGE)])
@@ -50,7 +50,7 @@ def test_without_a_whole_journal_and_a_witness_it_stops_with_the_reason(seen: Di
     """Of another mission, or of the one before."""
     finding = found(FRESH, DAMAGE, after=99.0, **seen)
     assert finding.adopt is None and DAMAGE in finding.stop and "no other node" in finding.stop
-    assert found(FRESH, after=99.0, **seen) == Finding(), "nothing has begun"
+    assert found(FRESH, after=99.0, **seen) == Restart(), "nothing has begun"
 
 
 def test_where_the_damaged_journal_leads_further_it_stops() -> None:
@@ -93,7 +93,7 @@ def test_a_mission_of_another_launch_is_not_taken_up() -> None:
     seen = {"controller_bot": state(5)}
     assert find_state(FRESH, "", 0.0, seen, begun=False).adopt is None
     assert "controller_bot knows of a state 5" in find_state(FRESH, "", 0.0, seen, begun=False).stop
-    assert find_state(FRESH, "", 0.0, {"UI": state(5, status="won")}, begun=False) == Finding()
+    assert find_state(FRESH, "", 0.0, {"UI": state(5, status="won")}, begun=False) == Restart()
     for own, damage in ((state(4), ""), (FRESH, DAMAGE)):
         assert find_state(own, damage, 0.0, seen, begun=False).adopt == state(5), "there is a journal of this launch"
 
@@ -101,11 +101,11 @@ def test_a_mission_of_another_launch_is_not_taken_up() -> None:
 def test_an_end_counts_more_than_the_state_before_it() -> None:
     end = state(6, status="stopped")
     assert found(state(6), UI=end, simulator=state(6)).adopt == end
-    assert found(end, UI=state(6), simulator=end) == Finding(), "it is published again"
+    assert found(end, UI=state(6), simulator=end) == Restart(), "it is published again"
 
 
 def test_the_end_of_the_mission_before_is_no_obstacle() -> None:
-    assert found(FRESH, after=105.0, UI=state(9, status="won", stamp=104.0)) == Finding()
+    assert found(FRESH, after=105.0, UI=state(9, status="won", stamp=104.0)) == Restart()
 
 
 def test_the_mission_is_that_of_the_newest_states() -> None:
