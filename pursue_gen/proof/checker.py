@@ -12,6 +12,7 @@ import operator
 from collections import Counter
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from typing import Callable, Dict, FrozenSet, Mapping, Optional, Sequence, Set, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError, error
@@ -97,8 +98,8 @@ def verify(
     if strategy.in_parts:
         if strategy.stages and strategy.left_out_clocks:
             return ProofReport(False, "left out: a strategy in stages leaves no clock out", (), frozenset(), 0)
-        how = limit, prompt, limits, progress, closed
-        return _in_parts(network, objective, strategy, reaction, ranks, how)
+        proven = partial(verify, reaction=reaction, prompt=prompt, progress=progress, closed=closed)
+        return _in_parts(network, objective, strategy, ranks, proven, limit, limits)
     part, matters = proven_part(network, objective, strategy)
     if matters:
         why = f"left out: the strategy does not speak of what matters: {matters}"
@@ -161,12 +162,12 @@ def _in_parts(
     network: Network,
     objective: Objective,
     strategy: Strategy,
-    reaction: Fraction,
     ranks: Optional[Mapping[ZoneKey, int]],
-    how: Tuple[int, Optional[bool], Limits, Optional[Listener], bool],
+    proven: Callable[..., ProofReport],
+    limit: int,
+    limits: Limits,
 ) -> ProofReport:
-    """The outcome of all stages or shares, each of which has to win; `ranks` are those within them."""
-    limit, prompt, limits, progress, closed = how
+    """The outcome of all stages or shares, each of which has to win (`proven`); `ranks` are those within them."""
     used: Set[ZoneKey] = set()
     states, start = 0, limits.now()
     called, taken_apart = ("share", shares_of) if strategy.shares else ("stage", parts_of)
@@ -175,8 +176,8 @@ def _in_parts(
             reason = f"left out: {called} {part.stage + 1} cannot be played: {part.fault}"
             return ProofReport(False, reason, (), frozenset(), states)
         own = None if ranks is None else _ranks_of(part, ranks)
-        left = max(1, limit - states), prompt, own, limits.since(start), progress
-        report = verify(part.game, part.objective, part.strategy, reaction, *left, closed=closed)
+        left = max(1, limit - states)
+        report = proven(part.game, part.objective, part.strategy, limit=left, ranks=own, limits=limits.since(start))
         states += report.states
         used.update((part.numbers[b], what, n) for b, what, n in report.used if part.numbers[b] >= 0)
         if not report.ok:
