@@ -6,7 +6,7 @@ from dataclasses import astuple
 from fractions import Fraction
 from typing import FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.language.edits import Edit, edited
+from pursue_gen.language.document import Edit, edited
 from pursue_gen.language.numbers import Number, exact, is_fine
 from pursue_gen.language.rewriting import Rewriting
 from pursue_gen.language.scenario import Connection, Pose, Scenario
@@ -39,7 +39,7 @@ def rounded(metres: float, unit: float, speeds: Iterable[Number]) -> Number:
 def with_ways(scenario: Scenario, ways: Sequence[Tuple[str, str, Number, str]]) -> str:
     """The text with further ways: from, to, distance, remark."""
     lines = [f"connect {a} and {b} distance {distance} // {remark}" for a, b, distance, remark in ways]
-    return edited(scenario.text, Rewriting(scenario).statements(("connection", "poi"), lines))
+    return edited(scenario.text, Rewriting(scenario).statements(("CONNECT", "POI"), lines))
 
 
 def with_sizes(scenario: Scenario, sizes: Sizes) -> str:
@@ -77,7 +77,7 @@ def written(
         else:
             agent, a, b = movement
             lines.append(f"travel {agent} from {a} to {b} takes {low} to {high} // {remark}")
-    edits += rewriting.statements(("travel", "agent"), lines)
+    edits += rewriting.statements(("TRAVEL", "AGENT"), lines)
     for poi in scenario.pois:
         found = [(robot, pose) for robot, pose in spots.get(poi.name, ()) if pose is not None]
         if found:

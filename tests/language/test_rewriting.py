@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_gen.language.edits import Edit, edited
+from pursue_gen.language.document import Edit, edited
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.parser import parse
 from pursue_gen.language.rewriting import Rewriting
@@ -118,10 +118,10 @@ def test_spots_come_behind_the_pose_and_the_rest_of_the_comment_stays() -> None:
 @pytest.mark.parametrize(
     ("behind", "before", "after"),
     [
-        (("travel", "agent"), "takes 5 // my watch\n", "\nreach_objective"),
-        (("agent",), "of two */\n", "\ntravel bot"),
-        (("connection",), "shelf and desk distance 9\n", "\nevent"),
-        (("poi",), 'poi "shelf"\n', "\n\nconnect"),
+        (("TRAVEL", "AGENT"), "takes 5 // my watch\n", "\nreach_objective"),
+        (("AGENT",), "of two */\n", "\ntravel bot"),
+        (("CONNECT",), "shelf and desk distance 9\n", "\nevent"),
+        (("POI",), 'poi "shelf"\n', "\n\nconnect"),
         ((), "reach_objective: do drop\n", "\n"),
     ],
 )
@@ -135,7 +135,7 @@ def test_new_statements_come_below_the_last_one_of_their_kind(behind: List[str],
 def test_a_statement_added_to_a_text_without_travel_times_is_read() -> None:
     text = re.sub(r"travel.*\n.*\n", "", TEXT)
     added = edited(
-        text, Rewriting(read(text)).statements(("travel", "agent"), ["travel bot from hall to desk takes 1 to 2"])
+        text, Rewriting(read(text)).statements(("TRAVEL", "AGENT"), ["travel bot from hall to desk takes 1 to 2"])
     )
     assert [travel.window for travel in read(added).travels] == [(1, 2)]
 

@@ -9,7 +9,7 @@ from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import counted
 from pursue_gen.language.checks import check_reading
-from pursue_gen.language.edits import Edit, edited
+from pursue_gen.language.document import Edit, edited
 from pursue_gen.language.numbers import decimal_text, exact
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.rewriting import Rewriting
@@ -176,7 +176,7 @@ class Proposal:
             else:
                 takes = f"takes {decimal_text(low)} to {decimal_text(high)}"
                 added.append(f"travel {what.agent} from {what.a} to {what.b} {takes} // {remark}")
-        return edited(self.scenario.text, [*edits, *rewriting.statements(("travel", "agent"), added)])
+        return edited(self.scenario.text, [*edits, *rewriting.statements(("TRAVEL", "AGENT"), added)])
 
     def checked(self) -> Scenario:
         """The scenario with the proposed windows. Raises PursueError where they cannot be meant."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, List, Tuple
 
+from pursue_gen.language.draft import Draft
 from pursue_gen.language.messages import KEYWORDS
-from pursue_gen.tools.lsp.document import Document
-from pursue_gen.tools.lsp.tokens import Statement
+from pursue_gen.language.syntax import Statement, bare, start_of
 
 _SECTION = {"REACH_OBJECTIVE": "OBJECTIVE", "TAIL": "OBJECTIVE", "STATEDEPENDENCY": "STATE"}
 
@@ -37,7 +37,7 @@ class Fold:
     comment: bool
 
 
-def symbols(document: Document) -> Tuple[Symbol, ...]:
+def symbols(document: Draft) -> Tuple[Symbol, ...]:
     """The outline: a symbol for each statement that begins like one, in the order of the text."""
     found = []
     for part in document.statements:
@@ -46,8 +46,8 @@ def symbols(document: Document) -> Tuple[Symbol, ...]:
         words = " ".join(document.text[part.start : part.end].split())
         token = part.name
         if token is not None and len(token) > 2:
-            start = (token.start_pos or 0) + 1
-            name, detail = str(token)[1:-1], KEYWORDS[part.kind]
+            start = start_of(token) + 1
+            name, detail = bare(token), KEYWORDS[part.kind]
             behind = part.tokens[2:4]
             if [one.type for one in behind] == ["LABEL", "NAME"]:
                 detail += f" {behind[1]}"
@@ -58,9 +58,9 @@ def symbols(document: Document) -> Tuple[Symbol, ...]:
     return tuple(found)
 
 
-def folds(document: Document) -> Tuple[Fold, ...]:
+def folds(document: Draft) -> Tuple[Fold, ...]:
     """Sections (neighbouring statements of one kind), statements over several lines, and comments over several."""
-    line_of = document.positions.line_of
+    line_of = document.lines.of
     found: Dict[Tuple[int, int], Fold] = {}
 
     def add(first: int, last: int, comment: bool = False) -> None:
@@ -78,9 +78,9 @@ def folds(document: Document) -> Tuple[Fold, ...]:
         add(line_of(section[0].start), line_of(section[-1].end))
     block: List[int] = []
     for token in document.comments:
-        start = token.start_pos or 0
+        start = start_of(token)
         first, last = line_of(start), line_of(start + len(token))
-        alone = not document.text[document.positions.line_start(first) : start].strip()
+        alone = not document.text[document.lines.start(first) : start].strip()
         if token.type == "LINE_COMMENT" and alone and block and first == block[-1] + 1:
             block.append(first)
             continue

@@ -1,22 +1,16 @@
-"""A text as words, comments and statements, whether or not they are right; and what each name in them is used for."""
+"""What each name in a text is used for, whether or not its statement is right."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import islice
-from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Sequence, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
-from lark import Token, UnexpectedToken
+from lark import Token
 
-from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES, STATEMENTS, kind_of
+from pursue_gen.language.condition_names import condition_start, names_in_condition
+from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES, kind_of
 from pursue_gen.language.poses import robots_in
-from pursue_gen.language.syntax import MOST_LETTERS, MOST_WORDS, chunks, grammar, significant  # the one cutter there is
-from pursue_gen.tools.lsp.condition_names import condition_start, names_in_condition
-
-COMMENTS = frozenset({"LINE_COMMENT", "BLOCK_COMMENT", "UNCLOSED_COMMENT"})
-
-DECLARED: Dict[str, str] = {"POI": "POI", "EVENT": "event", "RULE": "rule", "STATE": "state", "AGENT": "agent"}
-"""The kind of thing that a statement declares, by the token that begins the statement."""
+from pursue_gen.language.syntax import DECLARED, Statement, bare, start_of
 
 _USED: Dict[Tuple[str, str], str] = {
     ("CONNECT", "CONNECT"): "POI",
@@ -76,58 +70,6 @@ class Occurrence:
     statement: int
 
 
-@dataclass(frozen=True)
-class Statement:
-    """A statement, right or wrong: its tokens (no comments but poses) and its stretch of the text."""
-
-    tokens: Tuple[Token, ...]
-
-    @property
-    def kind(self) -> str:
-        """The token that says which statement it is; anything where no statement begins like this."""
-        return kind_of(self.tokens)
-
-    @property
-    def start(self) -> int:
-        """Offset of its first character."""
-        return self.tokens[0].start_pos or 0
-
-    @property
-    def end(self) -> int:
-        """Offset behind its last character."""
-        return end_of(self.tokens[-1])
-
-    @property
-    def name(self) -> Optional[Token]:
-        """The quoted name that it declares, as far as there is one."""
-        named = self.kind in DECLARED and len(self.tokens) > 1 and self.tokens[1].type == "NAME"
-        return self.tokens[1] if named else None
-
-    def has(self, kind: str) -> bool:
-        """Does a token of this kind stand in it?"""
-        return any(token.type == kind for token in self.tokens)
-
-
-def end_of(token: Token) -> int:
-    """The offset behind a token."""
-    return (token.start_pos or 0) + len(token)
-
-
-def all_tokens(text: str) -> Tuple[Token, ...]:
-    """Every word, sign and comment of a text; nothing of one that is too large to be a scenario."""
-    if len(text) > MOST_LETTERS:
-        return ()
-    # a comment or a blank stands between most words
-    found = tuple(islice(grammar().lex(text, dont_ignore=True), 3 * MOST_WORDS))
-    return tuple(token for token in found if token.type != "BLANK") if len(found) < 3 * MOST_WORDS else ()
-
-
-def statements(tokens: Iterable[Token]) -> Tuple[Statement, ...]:
-    """The statements that tokens make, comments left out."""
-    kept = significant(token for token in tokens if token.type not in COMMENTS or token.type == "UNCLOSED_COMMENT")
-    return tuple(Statement(tuple(chunk)) for chunk in chunks(kept))
-
-
 def kinds_behind(tokens: Sequence[Token]) -> Tuple[str, ...]:
     """What a name may stand for that is used behind these tokens of one statement; (): no name is used there."""
     if not tokens:
@@ -160,21 +102,6 @@ def are_names(tokens: Sequence[Token]) -> List[bool]:
     return named
 
 
-def accepts(tokens: Sequence[Token]) -> FrozenSet[str]:
-    """The kinds of tokens that may follow these of one statement, "$END" among them; none after a wrong one."""
-    if not tokens:
-        return STATEMENTS - {"TAIL"}
-    if tokens[0].type not in STATEMENTS:
-        return frozenset()
-    parser: Any = grammar().parse_interactive(start="statement")
-    try:
-        for token in tokens:
-            parser.feed_token(token)
-    except UnexpectedToken:
-        return frozenset()
-    return frozenset(parser.accepts())
-
-
 def occurrences(parts: Sequence[Statement]) -> Tuple[Occurrence, ...]:
     """Every name in the statements that stands where one may stand, in the order of the text."""
     return tuple(found for number, part in enumerate(parts) for found in _occurrences(part, number))
@@ -186,16 +113,16 @@ def _occurrences(part: Statement, number: int) -> List[Occurrence]:
     named = are_names(part.tokens)
     condition = condition_start(part.tokens)
     for index, token in enumerate(part.tokens[:condition]):
-        start = token.start_pos or 0
+        start = start_of(token)
         if index == 1 and token.type == "NAME" and part.kind in DECLARED:
-            name = str(token)[1:-1]
+            name = bare(token)
             found.append(Occurrence(name, DECLARED[part.kind], start + 1, start + 1 + len(name), True, number))
         elif token.type in KEYWORDS and not named[index]:
             kind = _USED.get((part.kind, token.type))
         elif kind is not None and named[index] and (index > 1 or part.kind not in DECLARED):
             found.append(Occurrence(str(token), kind, start, start + len(token), False, number))
         elif kind is not None and token.type == "NAME" and part.kind in _QUOTED:
-            name = str(token)[1:-1]
+            name = bare(token)
             found.append(Occurrence(name, kind, start + 1, start + 1 + len(name), False, number))
         elif token.type == "POSE":
             places = [(name, start + offset) for name, offset, _ in robots_in(str(token))]
@@ -203,6 +130,6 @@ def _occurrences(part: Statement, number: int) -> List[Occurrence]:
     if condition is not None:
         for index, kind in names_in_condition(part.tokens, condition)[0].items():
             token = part.tokens[index]
-            start = token.start_pos or 0
+            start = start_of(token)
             found.append(Occurrence(str(token), kind, start, start + len(token), False, number))
     return found
