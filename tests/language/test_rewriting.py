@@ -88,6 +88,13 @@ def test_windows_of_movements_and_actions_are_replaced_with_one_number_or_two() 
     assert Rewriting(again).written_by(again.events[1].span) == "calibrate"
 
 
+def test_a_window_is_replaced_where_a_name_is_the_word_before_it() -> None:
+    text = 'poi "a" poi "to" connect a and to distance 1\nagent "takes" mobile 1 location a\n'
+    scenario = read(text + "travel takes from a to to takes 5 to 6")
+    found = edited(scenario.text, Rewriting(scenario).travel(scenario.travels[0], 7, 9, ""))
+    assert found == text + "travel takes from a to to takes 7 to 9"
+
+
 def test_sizes_are_replaced_or_come_before_the_location() -> None:
     text = 'poi "a"\nagent "radius" /* old */ controllable radius 0.3 inflation 1 // mine\n  location a\n'
     text += 'agent "b" controllable location a\n'

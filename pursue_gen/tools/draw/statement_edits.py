@@ -17,8 +17,11 @@ PARTS: Mapping[str, Tuple[str, ...]] = {
     "POI": ("POI", "LABEL", "POSE"),
     "CONNECT": ("CONNECT", "AND", "DISTANCE", "ONE_WAY", "ONLY_IF"),
     "EVENT": ("EVENT", "LABEL", "COLLABORATIVE", "TOGETHER", "LOCATION", "DURATION", "AT_MOST", "ONLY_IF"),
-    "AGENT": ("AGENT", "LABEL", "HUMAN", "CONTROLLABLE", "MOBILE", "LOCATION", "CAN_DO", "REACTS_TO"),
-}
+    "AGENT": (
+        "AGENT", "LABEL", "HUMAN", "CONTROLLABLE", "MOBILE", "RADIUS", "TOLERANCE", "INFLATION", "LOCATION", "CAN_DO",
+        "REACTS_TO",
+    ),
+}  # fmt: skip
 """The parts of a statement by the word that begins each, in the order in which they stand."""
 
 Part = Tuple[Token, ...]

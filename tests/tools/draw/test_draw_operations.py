@@ -17,6 +17,7 @@ from pursue_gen.language.forms import FORMS
 from pursue_gen.language.parser import parse
 from pursue_gen.language.syntax import COMMENTS
 from pursue_gen.tools.draw.operations import change
+from pursue_gen.tools.draw.view import view
 from tests.conftest import thesis_scenario
 
 COMMENTED = """// the ward at night
@@ -282,3 +283,12 @@ def test_any_changes_leave_a_text_as_fmt_writes_it_with_all_comments(text: str, 
             continue
         assert text == format_text(text, "a.pur")
         assert comments(text) == before
+
+
+def test_the_size_of_a_robot_stays_when_something_else_of_it_changes() -> None:
+    size = "radius 0.2 tolerance 0.1 inflation 0.5"
+    text = f'poi "a"\n\nagent "bot" controllable mobile 1 {size} location a\n'
+    assert view(text)["agents"][0]["mobile"] == "1"
+    at = number(text, "agent")
+    assert f"mobile 3 {size} location a" in done(text, "set", statement=at, fields={"mobile": "3"})
+    assert f'"bot" {size} location a' in done(text, "set", statement=at, fields={"mobile": "", "kind": "free"})
