@@ -55,7 +55,6 @@ class Draft(Document):
     @cached_property
     def scenario(self) -> Scenario:
         """The scenario that its sound statements make; those with a syntax error are left out."""
-        assert self.reading.partial is not None, "it was read from a text"
         return self.reading.partial
 
     def occurrence_at(self, offset: int) -> Optional[Occurrence]:

@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
-from pursue_gen.language.document import Edit, edited
+from pursue_gen.language.document import Edit
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.names import KINDS, check_names
 from pursue_gen.language.occurrences import Occurrence
-from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import Poi, Scenario
 
 
@@ -64,10 +63,8 @@ def _check_new(document: Draft, new: str) -> None:
 
 def _check_after(document: Draft, edits: Tuple[Edit, ...]) -> None:
     """Refuses names that are fine alone, but collide with others in what is generated."""
-    after = read(edited(document.text, edits), document.file, document.scenario.name).partial
-    if after is None:
-        return
     before = {finding.message for finding in check_names(document.scenario)}
-    new = [finding for finding in check_names(after) if finding.message not in before]
+    after = check_names(document.changed(*edits).scenario)
+    new = [finding for finding in after if finding.message not in before]
     if new:
         raise PursueError(new[:1])

@@ -42,7 +42,7 @@ class Reading:
 
     scenario: Optional[pml.Scenario]
     diagnostics: Tuple[Diagnostic, ...]
-    partial: Optional[pml.Scenario] = None
+    partial: pml.Scenario
     lost: FrozenSet[str] = frozenset()
 
 

@@ -8,10 +8,9 @@ from math import ceil
 from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import counted
-from pursue_gen.language.checks import check_reading
+from pursue_gen.language.checks import checked
 from pursue_gen.language.document import Edit, edited
 from pursue_gen.language.numbers import decimal_text, exact
-from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.rewriting import Rewriting
 from pursue_gen.language.scenario import Scenario, Window
 from pursue_gen.tools.calibration.samples import Measured, Sample, Samples, Unused, Way, Work, by_what, of_record
@@ -180,8 +179,7 @@ class Proposal:
 
     def checked(self) -> Scenario:
         """The scenario with the proposed windows. Raises PursueError where they cannot be meant."""
-        reading = read(self.text(), f"{self.scenario.file} with the proposal", self.scenario.name)
-        return without_errors(reading.scenario, check_reading(reading))
+        return checked(self.text(), f"{self.scenario.file} with the proposal", self.scenario.name)
 
 
 def propose(scenario: Scenario, samples: Samples, options: Options) -> Proposal:

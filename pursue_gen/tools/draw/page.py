@@ -53,7 +53,7 @@ class DrawPage:
         }
         try:
             if request not in known:
-                raise _bad("this is not known here", "load the page again")
+                raise fields.refused("this is not known here", "load the page again")
             return known[request](body)
         except PursueError as problem:
             first = problem.diagnostics[0]
@@ -100,12 +100,8 @@ class DrawPage:
 def _text(values: Mapping[str, Any]) -> str:
     text = values.get("text")
     if not isinstance(text, str) or len(text) > MOST_LETTERS + 1:
-        raise _bad(f"the page sent no text of at most {MOST_LETTERS:,} letters", "make it shorter")
+        raise fields.refused(f"the page sent no text of at most {MOST_LETTERS:,} letters", "make it shorter")
     return plain(text)
-
-
-def _bad(message: str, hint: str) -> PursueError:
-    return PursueError([error("DRW001", message, hint=hint)])
 
 
 def file_for(scenario: Optional[Path], floor: Optional[Path]) -> Path:

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Optional
-
-from lark import Token
-
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.assumption_checks import MOST_TIMES as MOST_ASSUMED
 from pursue_gen.language.assumption_checks import SHORTEST_STAY
@@ -99,8 +95,9 @@ def done_or_avoided(document: Draft, finding: Diagnostic, part: Statement, at: i
     yield from to_be_done_once(document, finding, part, at)
     for safety in document.scenario.safety:
         other = document.statement_at(document.lines.of_span(safety.span)[0])
-        if isinstance(safety, Avoid) and other is not None and _is_about(document, safety, at):
-            yield f"Delete the objective to avoid {safety.event.name}", (document.deleted(other),)
+        named = isinstance(safety, Avoid) and safety.event.name
+        if other is not None and named == str(document.token_at(at)):
+            yield f"Delete the objective to avoid {named}", (document.deleted(other),)
 
 
 def later_deadline(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
@@ -128,9 +125,3 @@ def possible_number(document: Draft, finding: Diagnostic, part: Statement, at: i
         if found is not None:
             yield f"Write {found[0]} {number}", (written(found[1], str(number)),)
     yield "Delete this statement", (document.deleted(part),)
-
-
-def _is_about(document: Draft, safety: Avoid, at: int) -> bool:
-    """True if the objective avoids the event that is named at this offset."""
-    here: Optional[Token] = next((t for p in document.statements for t in p.tokens if t.start_pos == at), None)
-    return here is not None and str(here) == safety.event.name
