@@ -13,15 +13,19 @@ from lark import Token
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.document import Document, Edit, behind, written
-from pursue_gen.language.numbers import Number
+from pursue_gen.language.numbers import Number, decimal_text, rounded_text
 from pursue_gen.language.poses import end_of_poses
-from pursue_gen.language.scenario import Agent, Connection, Event, Poi, Pose, Scenario, Travel
+from pursue_gen.language.scenario import Agent, Connection, Event, Poi, Pose, Scenario
 from pursue_gen.language.syntax import Statement, end_of, start_of
 
 REMARK = re.compile(r"(?://|/\*)[ \t]*(?P<command>survey|calibrate): ")
 """Begins a remark."""
 
-_SIZE = ("RADIUS", "TOLERANCE", "INFLATION")
+SIZE = ("radius", "tolerance", "inflation")
+"""The words of a robot's size, in the order in which they stand, which is that of the fields of `RobotSize`."""
+
+Movement = Tuple[str, str, str]
+"""Agent, from, to."""
 
 
 class Rewriting:
@@ -32,7 +36,7 @@ class Rewriting:
     """
 
     def __init__(self, scenario: Scenario) -> None:
-        self._document = Document(scenario.text, scenario.file)
+        self._document, self._travels = Document(scenario.text, scenario.file), scenario.travels
 
     # Numbers ----------------------------------------------------------------------------------------------------------
 
@@ -40,9 +44,19 @@ class Rewriting:
         """Writes the distance of a way."""
         return self._window(way.span, "DISTANCE", (distance,), remark)
 
-    def travel(self, travel: Travel, earliest: Number, latest: Number, remark: str) -> List[Edit]:
-        """Writes the window of a travel time."""
-        return self._window(travel.span, "TAKES", (earliest, latest), remark)
+    def windows(self, windows: Mapping[Movement, Tuple[Number, Number, str]]) -> List[Edit]:
+        """Writes windows of movements (earliest, latest, remark): into the `travel` of each, or as a new one."""
+        travels = {(travel.agent.name, *travel.way): travel.span for travel in self._travels}
+        edits: List[Edit] = []
+        lines: List[str] = []
+        for movement, (low, high, remark) in windows.items():
+            if movement in travels:
+                edits += self._window(travels[movement], "TAKES", (low, high), remark)
+            else:
+                agent, a, b = movement
+                takes = f"takes {decimal_text(low)} to {decimal_text(high)}"
+                lines.append(f"travel {agent} from {a} to {b} {takes} // {remark}")
+        return [*edits, *self.statements(("TRAVEL", "AGENT"), lines)]
 
     def duration(self, event: Event, earliest: Number, latest: Number, remark: str) -> List[Edit]:
         """Writes the window of an event's duration, which it has already."""
@@ -55,16 +69,13 @@ class Rewriting:
         kinds = kinds[: kinds.index("LOCATION") + 1]
         edits: List[Edit] = []
         new: Dict[int, str] = {}
-        for number, word in enumerate(_SIZE):
-            if word.lower() not in numbers:
-                continue
-            text = str(numbers[word.lower()])
-            if word in kinds:
-                edits.append(written(statement.tokens[kinds.index(word) + 1], text))
-            else:
-                following = next(kind for kind in (*_SIZE[number + 1 :], "LOCATION") if kind in kinds)
+        for place, word in enumerate(SIZE):
+            if word.upper() in kinds and word in numbers:
+                edits.append(written(statement.tokens[kinds.index(word.upper()) + 1], str(numbers[word])))
+            elif word in numbers:
+                following = next(one.upper() for one in (*SIZE[place + 1 :], "location") if one.upper() in kinds)
                 at = start_of(statement.tokens[kinds.index(following)])
-                new[at] = f"{new.get(at, '')}{word.lower()} {text} "
+                new[at] = f"{new.get(at, '')}{word} {numbers[word]} "
         return [*edits, *(Edit(at, at, text) for at, text in new.items()), *self._remarked(statement, remark)]
 
     def written_by(self, span: Span) -> Optional[str]:
@@ -135,10 +146,4 @@ def remark_behind(document: Document, statement: Statement) -> Optional[Token]:
 def pose_text(pose: Pose) -> str:
     """The pose as it stands in a comment, with as many digits as it needs."""
     numbers = (pose.x, pose.y, pose.z, pose.qx, pose.qy, pose.qz, pose.qw)
-    return "[" + ", ".join(_decimal(number) for number in numbers) + "]"
-
-
-def _decimal(number: float) -> str:
-    """The number without an exponent, rounded to a millionth."""
-    text = f"{number:.6f}".rstrip("0").rstrip(".")
-    return "0" if text in ("-0", "") else text
+    return "[" + ", ".join(rounded_text(number, 6) for number in numbers) + "]"

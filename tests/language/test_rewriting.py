@@ -75,7 +75,7 @@ def test_windows_of_movements_and_actions_are_replaced_with_one_number_or_two() 
     text = edited(
         TEXT,
         [
-            *rewriting.travel(scenario.travels[0], 6, 8, "calibrate: 40 drives"),
+            *rewriting.windows({("bot", "desk", "hall"): (6, 8, "calibrate: 40 drives")}),
             *rewriting.duration(fetch, 2, exact(Fraction("4.5")), ""),
             *rewriting.duration(drop, 4, 7, "calibrate: 12 times"),
         ],
@@ -91,7 +91,7 @@ def test_windows_of_movements_and_actions_are_replaced_with_one_number_or_two() 
 def test_a_window_is_replaced_where_a_name_is_the_word_before_it() -> None:
     text = 'poi "a" poi "to" connect a and to distance 1\nagent "takes" mobile 1 location a\n'
     scenario = read(text + "travel takes from a to to takes 5 to 6")
-    found = edited(scenario.text, Rewriting(scenario).travel(scenario.travels[0], 7, 9, ""))
+    found = edited(scenario.text, Rewriting(scenario).windows({("takes", "a", "to"): (7, 9, "")}))
     assert found == text + "travel takes from a to to takes 7 to 9"
 
 
