@@ -31,6 +31,7 @@ _ORDER = (
     "POI", "CONNECT", "EVENT", "RULE", "STATE", "STATEDEPENDENCY", "AGENT", "TRAVEL", "BATTERY", "ASSUME", "OBJECTIVE",
 )  # fmt: skip
 _RANK: Dict[str, int] = {kind: rank for rank, kind in enumerate(_ORDER)}
+_SECTION = {"REACH_OBJECTIVE": "OBJECTIVE", "OPTIONAL": "OBJECTIVE", "TAIL": "OBJECTIVE", "STATEDEPENDENCY": "STATE"}
 
 AnyDocument = TypeVar("AnyDocument", bound="Document")
 
@@ -63,6 +64,11 @@ def written(token: Token, text: str) -> Edit:
 def behind(token: Token, text: str) -> Edit:
     """Adds a text behind a token."""
     return Edit(end_of(token), end_of(token), text)
+
+
+def section_of(kind: str) -> str:
+    """The kind of those statements among which one of this kind stands."""
+    return _SECTION.get(kind, kind)
 
 
 def rank(statement: Statement) -> int:

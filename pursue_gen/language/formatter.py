@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Dict, Iterator, List, Optional, Tuple
 
 from pursue_gen.diagnostics import Severity
-from pursue_gen.language.document import Document
+from pursue_gen.language.document import Document, section_of
 from pursue_gen.outcomes import Invalid
 
 WIDTH = 100
@@ -17,7 +17,6 @@ _BREAKABLE = frozenset({"CAN_DO", "REACTS_TO", "TRUE_IF", "FALSE_IF", "BEFORE", 
 """A line may be broken before these words, and behind every comma."""
 
 _CLOSE = frozenset({"COMMA", "COLON", "RPAR"})
-_ONE_KIND = {"REACH_OBJECTIVE": "OBJECTIVE", "OPTIONAL": "OBJECTIVE", "TAIL": "OBJECTIVE", "STATEDEPENDENCY": "STATE"}
 _MOST_PADDING = 20
 _LINE = "LINE"
 _COMMENTS: Dict[str, str] = {"LINE_COMMENT": _LINE, "POSE": _LINE, "BLOCK_COMMENT": "BLOCK"}
@@ -62,8 +61,11 @@ def format_text(text: str, file: str) -> str:
     same text comes back when it is formatted again, and it means the same scenario. Raises PursueError with every
     syntax error; other findings (a name that is declared nowhere) do not matter here.
     """
-    text = text.replace("\r\n", "\n").replace("\r", "\n")
-    document = Document(text, file)
+    return formatted(Document(text.replace("\r\n", "\n").replace("\r", "\n"), file))
+
+
+def formatted(document: Document) -> str:
+    """As `format_text`."""
     errors = [finding for finding in document.syntax.findings if finding.severity is Severity.ERROR]
     if errors:
         raise Invalid(errors)
@@ -88,7 +90,7 @@ def _items(document: Document) -> Iterator[List[_Item]]:
 
 def _block(group: List[_Item]) -> _Block:
     first, last = group[0], group[-1]
-    kind = "" if first.is_comment else _ONE_KIND.get(first.kind, first.kind)
+    kind = "" if first.is_comment else section_of(first.kind)
     if kind and last.kind == _LINE and not any(item.is_comment for item in group[:-1]):
         return _Block(kind, first.breaks > 1, _laid_out(group[:-1]), last.text)
     return _Block(kind, first.breaks > 1, _laid_out(group))

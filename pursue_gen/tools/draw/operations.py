@@ -11,7 +11,7 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.formatter import format_text
+from pursue_gen.language.formatter import format_text, formatted
 from pursue_gen.language.forms import FORMS, HOLE, Form
 from pursue_gen.language.messages import RESERVED
 from pursue_gen.language.names import KINDS
@@ -64,7 +64,7 @@ def change(text: str, operation: Any, file: str = "scenario.pur") -> Changed:
         raise PursueError([error("DRW002", message, hint=hint)]) from None
     after, statement = does(document, operation)
     try:
-        return Changed(format_text(after.text, file), statement)
+        return Changed(formatted(after), statement)
     except PursueError as problem:
         first = problem.diagnostics[0]
         raise refused(f"this cannot be written: {first.message}", first.hint) from None

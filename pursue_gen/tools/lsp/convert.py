@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Iterable, List, Optional, Sequence, Tuple
+from typing import Iterable, List, Optional, Sequence
 
 from lsprotocol import types as lsp
 
@@ -157,8 +157,3 @@ def code_actions(document: OpenDocument, uri: str, found: Sequence[Fix], pages: 
         )
         for fix in found
     ]
-
-
-def whole(document: OpenDocument) -> Tuple[int, int]:
-    """The stretch of the whole text."""
-    return 0, len(document.text)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, Dict, Iterable, List, Optional, Tuple
+from typing import Callable, Dict, List, Optional, Tuple
 
 from pursue_gen.language.batteries import MOST_CAPACITY, levels
 from pursue_gen.language.behaviour import predecessors
@@ -131,9 +131,9 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
     lines.append(f"- takes {lasts(event.window)}" if event.window is not None else "- takes no time")
     if event.at_most is not None:
         lines.append(f"- happens at most {event.at_most} times")
-    lines.append("- done by " + (_all(a.name for a in scenario.agents if _in(event.name, a.can_do)) or "nobody"))
+    lines.append("- done by " + (", ".join(a.name for a in scenario.agents if _in(event.name, a.can_do)) or "nobody"))
     if event.collaborative:
-        partners = _all(a.name for a in scenario.agents if _in(event.name, a.reacts_to))
+        partners = ", ".join(a.name for a in scenario.agents if _in(event.name, a.reacts_to))
         lines.append(f"- takes two at one place; the partner is {partners or 'nobody'}")
         if event.duration is not None:
             both = "both are busy until it ends" if event.together else "the partner may leave as soon as it has begun"
@@ -176,8 +176,9 @@ def _wanted(scenario: Scenario, event: Event) -> List[str]:
 def _rule(scenario: Scenario, rule: Rule) -> List[str]:
     lines = [f"**{rule.name}**: a rule, round after round", "", f"- {_in_words(rule.body)}"]
     if rule.each:
-        lines.append(f"- each of these has its own turn: {_all(a.name for a in scenario.bound_by(rule)) or 'nobody'}")
-    names = _all(ref.name for ref in refs_of(rule.body))
+        bound = ", ".join(agent.name for agent in scenario.bound_by(rule))
+        lines.append(f"- each of these has its own turn: {bound or 'nobody'}")
+    names = ", ".join(ref.name for ref in refs_of(rule.body))
     return [*lines, f"- {names} can happen only when it is their turn"]
 
 
@@ -202,8 +203,8 @@ def _bracketed(body: RuleBody) -> str:
 
 def _state(scenario: Scenario, state: State) -> List[str]:
     lines = [f"**{state.name}**: a state, {'true' if state.initially else 'false'} at the start", ""]
-    lines.append("- made true by " + (_all(ref.name for ref in state.true_if) or "nothing"))
-    lines.append("- made false by " + (_all(ref.name for ref in state.false_if) or "nothing"))
+    lines.append("- made true by " + (", ".join(ref.name for ref in state.true_if) or "nothing"))
+    lines.append("- made false by " + (", ".join(ref.name for ref in state.false_if) or "nothing"))
     for dependency in scenario.dependencies:
         if dependency.state.name == state.name:
             lines.append(f"- {dependency.event.name} can happen only while it is {str(dependency.value).lower()}")
@@ -316,10 +317,6 @@ def _is_about(assumption: Assumption, agent: str) -> bool:
 
 def _in(name: str, refs: Tuple[Ref, ...]) -> bool:
     return any(ref.name == name for ref in refs)
-
-
-def _all(names: Iterable[str]) -> str:
-    return ", ".join(names)
 
 
 def _if_any(words: str, names: List[str]) -> List[str]:

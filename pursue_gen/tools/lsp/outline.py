@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, List, Tuple
 
+from pursue_gen.language.document import section_of
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.messages import KEYWORDS
 from pursue_gen.language.syntax import Statement, bare, start_of
-
-_SECTION = {"REACH_OBJECTIVE": "OBJECTIVE", "TAIL": "OBJECTIVE", "STATEDEPENDENCY": "STATE"}
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,7 @@ def folds(document: Draft) -> Tuple[Fold, ...]:
     section: List[Statement] = []
     for part in document.statements:
         add(line_of(part.start), line_of(part.end))
-        if section and _section(section[-1]) != _section(part):
+        if section and section_of(section[-1].kind) != section_of(part.kind):
             add(line_of(section[0].start), line_of(section[-1].end))
             section = []
         section.append(part)
@@ -90,10 +89,6 @@ def folds(document: Draft) -> Tuple[Fold, ...]:
             add(first, last, comment=True)
     add(*_ends(block), comment=True)
     return tuple(found[key] for key in sorted(found))
-
-
-def _section(part: Statement) -> str:
-    return _SECTION.get(part.kind, part.kind)
 
 
 def _ends(block: List[int]) -> Tuple[int, int]:

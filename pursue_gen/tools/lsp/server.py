@@ -16,7 +16,7 @@ from pygls.exceptions import JsonRpcException
 from pursue_gen import __version__
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.document import Edit
-from pursue_gen.language.formatter import format_text
+from pursue_gen.language.formatter import formatted
 from pursue_gen.language.lines import plain
 from pursue_gen.language.navigation import definition, rename, same_name
 from pursue_gen.tools.lsp import convert
@@ -159,10 +159,10 @@ class Session:
     def format(self, document: OpenDocument, _params: lsp.DocumentFormattingParams) -> List[lsp.TextEdit]:
         """The edit that formats the text; none while it has syntax errors, which are shown anyway."""
         try:
-            text = format_text(document.text, document.file)
+            text = formatted(document)
         except PursueError:
             return []
-        edits = [] if text == document.text else [Edit(*convert.whole(document), text)]
+        edits = [] if text == document.text else [Edit(0, len(document.text), text)]
         return convert.text_edits(document, edits)
 
     def fix(self, document: OpenDocument, params: lsp.CodeActionParams) -> List[lsp.CodeAction]:
