@@ -11,6 +11,7 @@ from typing import Dict, Iterable, List, Optional, Tuple, TypeVar
 
 from lark import Token
 
+from pursue_gen.diagnostics import Span
 from pursue_gen.language.lines import Lines
 from pursue_gen.language.syntax import (
     COMMENTS,
@@ -64,6 +65,13 @@ def written(token: Token, text: str) -> Edit:
 def behind(token: Token, text: str) -> Edit:
     """Adds a text behind a token."""
     return Edit(end_of(token), end_of(token), text)
+
+
+def statement_text(text: str, span: Span) -> str:
+    """The statement at a span of a text on one line, without its comments."""
+    begin, end = Lines(text).of_span(span)
+    alone = Document(text[begin:end])
+    return " ".join(alone.changed(*(written(comment, " ") for comment in alone.comments)).text.split())
 
 
 def section_of(kind: str) -> str:

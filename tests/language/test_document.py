@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_gen.language.document import Document, Edit, behind, edited, written
-from pursue_gen.language.parser import read
+from pursue_gen.language.document import Document, Edit, behind, edited, statement_text, written
+from pursue_gen.language.parser import parse, read
 from pursue_gen.language.syntax import COMMENTS, end_of, start_of
 
 from .texts import STATEMENTS
@@ -118,3 +118,9 @@ def test_comments_belong_to_the_statement_on_whose_line_they_begin() -> None:
     assert list(map(str, document.comments_behind(first))) == ["/* behind,\nfurther */", "// still"]
     assert not document.comments_in(second) and not document.comments_behind(second)
     assert [str(block[0]) for block in document.blocks] == ["// head", "poi", "// alone", "poi"]
+
+
+def test_a_statement_is_quoted_whole_wherever_it_stands() -> None:
+    text = 'poi "a" /* \f \x0b a page */ poi "b"\noptional 1 objective: patrol a, // this one\n  b by bot // again\n'
+    (patrol, *_) = parse(text, "x.pur").safety
+    assert statement_text(text, patrol.span) == "optional 1 objective: patrol a, b by bot"
