@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
 from lark import Token
 
-from pursue_gen.language.condition_names import condition_start, names_in_condition
 from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES, kind_of
 from pursue_gen.language.poses import robots_in
 from pursue_gen.language.syntax import DECLARED, Statement, bare, start_of
@@ -56,6 +55,19 @@ _QUOTED = ("TRAVEL", "BATTERY")
 """Statements in which the agent that they are about may have quotes."""
 
 _BEFORE_NAMES = frozenset({"COLON", "COMMA", "LPAR"})
+
+SUBJECTS = ("agent", "state")
+"""The kinds of things with which a part of a condition may begin."""
+
+_OPENS = {
+    ("CONNECT", "ONLY_IF"), ("EVENT", "ONLY_IF"), ("OBJECTIVE", "AVOID"), ("OBJECTIVE", "ALWAYS"), ("OBJECTIVE", "IF"),
+    ("ASSUME", "NOT"),
+}  # fmt: skip
+"""The statements with a condition in them, and the word behind which it begins."""
+
+_OBJECT = {"AT": "POI", "DOING": "event"}
+_SUBJECT = {"AT": "agent", "ON_WAY": "agent", "DOING": "agent", "IS_TRUE": "state", "IS_FALSE": "state"}
+_NAMES = frozenset(("WORD", *MAY_BE_NAMES))
 
 
 @dataclass(frozen=True)
@@ -107,29 +119,64 @@ def occurrences(parts: Sequence[Statement]) -> Tuple[Occurrence, ...]:
     return tuple(found for number, part in enumerate(parts) for found in _occurrences(part, number))
 
 
-def _occurrences(part: Statement, number: int) -> List[Occurrence]:
-    found = []
+def _occurrences(part: Statement, number: int) -> Iterator[Occurrence]:
+    def of(token: Token, kind: str, declares: bool = False) -> Occurrence:
+        quote = token.type == "NAME"
+        name, start = bare(token) if quote else str(token), start_of(token) + quote
+        return Occurrence(name, kind, start, start + len(name), declares, number)
+
     kind: Optional[str] = None
     named = are_names(part.tokens)
     condition = condition_start(part.tokens)
     for index, token in enumerate(part.tokens[:condition]):
-        start = start_of(token)
+        used = named[index] and (index > 1 or part.kind not in DECLARED)
         if index == 1 and token.type == "NAME" and part.kind in DECLARED:
-            name = bare(token)
-            found.append(Occurrence(name, DECLARED[part.kind], start + 1, start + 1 + len(name), True, number))
+            yield of(token, DECLARED[part.kind], declares=True)
         elif token.type in KEYWORDS and not named[index]:
             kind = _USED.get((part.kind, token.type))
-        elif kind is not None and named[index] and (index > 1 or part.kind not in DECLARED):
-            found.append(Occurrence(str(token), kind, start, start + len(token), False, number))
-        elif kind is not None and token.type == "NAME" and part.kind in _QUOTED:
-            name = bare(token)
-            found.append(Occurrence(name, kind, start + 1, start + 1 + len(name), False, number))
+        elif kind is not None and (used or (token.type == "NAME" and part.kind in _QUOTED)):
+            yield of(token, kind)
         elif token.type == "POSE":
-            places = [(name, start + offset) for name, offset, _ in robots_in(str(token))]
-            found += [Occurrence(name, "agent", at, at + len(name), False, number) for name, at in places]
+            for name, offset, _ in robots_in(str(token)):
+                start = start_of(token) + offset
+                yield Occurrence(name, "agent", start, start + len(name), False, number)
     if condition is not None:
         for index, kind in names_in_condition(part.tokens, condition)[0].items():
-            token = part.tokens[index]
-            start = start_of(token)
-            found.append(Occurrence(str(token), kind, start, start + len(token), False, number))
-    return found
+            yield of(part.tokens[index], kind)
+
+
+def condition_start(tokens: Sequence[Token]) -> Optional[int]:
+    """The number of the first token of the condition in a statement, be it there or missing; None: it has none."""
+    for number, token in enumerate(tokens):
+        if (kind_of(tokens), token.type) in _OPENS:
+            following = tokens[number + 1].type if number + 1 < len(tokens) else ""
+            return None if following == "NEVER_WITH" else number + 1  # always may be an agent's name
+    return None
+
+
+def names_in_condition(tokens: Sequence[Token], start: int) -> Tuple[Dict[int, str], Tuple[str, ...]]:
+    """By the number of its token the kind of thing that each name from `start` on stands for; and the kinds of names
+    that may follow the last token."""
+    found: Dict[int, str] = {}
+    # an event may stand there alone
+    subjects = ("event", *SUBJECTS) if tokens[start - 1].type in ("AVOID", "IF") else SUBJECTS
+    expected: Tuple[str, ...] = subjects
+    number = start
+    while number < len(tokens):
+        kind = tokens[number].type
+        following = tokens[number + 1].type if number + 1 < len(tokens) else ""
+        if len(expected) > 1 and kind in ("ANY", "NO") and following in ("ROBOT", "AGENT"):
+            number, expected = number + 1, ()
+        elif expected and kind in _NAMES:
+            found[number] = expected[0] if len(expected) == 1 else _SUBJECT.get(following, subjects[0])
+            expected = ()
+        elif kind in _OBJECT:
+            expected = (_OBJECT[kind],)
+        elif kind in ("AND", "OR", "NOT", "LPAR"):
+            expected = subjects = SUBJECTS
+        elif kind == "THEN":
+            expected = subjects = ("event", *SUBJECTS)
+        elif kind == "WITHIN":
+            expected = ()
+        number += 1
+    return found, expected

@@ -8,11 +8,10 @@ from typing import Dict, FrozenSet, Iterator, List, Optional, Tuple
 
 from lark import Token
 
-from pursue_gen.language.condition_names import SUBJECTS, condition_start
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.forms import FORMS, HOLE, MEANINGS
 from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES
-from pursue_gen.language.occurrences import are_names, kinds_behind
+from pursue_gen.language.occurrences import SUBJECTS, are_names, condition_start, kinds_behind
 from pursue_gen.language.poses import robots_in
 from pursue_gen.language.syntax import DECLARED, accepts, start_of, statements_of, tokens_of
 
