@@ -7,13 +7,16 @@ name of the command that wrote the number, and is replaced with it.
 from __future__ import annotations
 
 import re
+from itertools import chain
 from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from lark import Token
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.document import Document, Edit, behind, written
+from pursue_gen.language.messages import KEYWORDS
 from pursue_gen.language.numbers import Number, decimal_text, rounded_text
+from pursue_gen.language.occurrences import are_names
 from pursue_gen.language.poses import end_of_poses
 from pursue_gen.language.scenario import Agent, Connection, Event, Poi, Pose, Scenario
 from pursue_gen.language.syntax import Statement, end_of, start_of
@@ -26,6 +29,19 @@ SIZE = ("radius", "tolerance", "inflation")
 
 Movement = Tuple[str, str, str]
 """Agent, from, to."""
+
+PARTS: Mapping[str, Tuple[str, ...]] = {
+    "POI": ("POI", "LABEL", "POSE"),
+    "CONNECT": ("CONNECT", "AND", "DISTANCE", "ONE_WAY", "ONLY_IF"),
+    "EVENT": ("EVENT", "LABEL", "COLLABORATIVE", "TOGETHER", "LOCATION", "DURATION", "AT_MOST", "ONLY_IF"),
+    "AGENT": (
+        "AGENT", "LABEL", "HUMAN", "CONTROLLABLE", "MOBILE", "RADIUS", "TOLERANCE", "INFLATION", "LOCATION", "CAN_DO",
+        "REACTS_TO",
+    ),
+}  # fmt: skip
+"""The parts of a statement by the word that begins each, in the order in which they stand."""
+
+Part = Tuple[Token, ...]
 
 
 class Rewriting:
@@ -65,18 +81,8 @@ class Rewriting:
     def size(self, agent: Agent, numbers: Mapping[str, Number], remark: str) -> List[Edit]:
         """Writes numbers of a robot's size (`radius`, `tolerance`, `inflation` → metres)."""
         statement = self._statement(agent.span)
-        kinds = [token.type for token in statement.tokens]
-        kinds = kinds[: kinds.index("LOCATION") + 1]
-        edits: List[Edit] = []
-        new: Dict[int, str] = {}
-        for place, word in enumerate(SIZE):
-            if word.upper() in kinds and word in numbers:
-                edits.append(written(statement.tokens[kinds.index(word.upper()) + 1], str(numbers[word])))
-            elif word in numbers:
-                following = next(one.upper() for one in (*SIZE[place + 1 :], "location") if one.upper() in kinds)
-                at = start_of(statement.tokens[kinds.index(following)])
-                new[at] = f"{new.get(at, '')}{word} {numbers[word]} "
-        return [*edits, *(Edit(at, at, text) for at, text in new.items()), *self._remarked(statement, remark)]
+        sizes = [part_edits(statement, word.upper(), str(numbers[word])) for word in SIZE if word in numbers]
+        return [*chain.from_iterable(sizes), *self._remarked(statement, remark)]
 
     def written_by(self, span: Span) -> Optional[str]:
         """The command that wrote the numbers of the statement around this place, as its remark says; None: a person."""
@@ -136,6 +142,35 @@ class Rewriting:
             yield written(old, words if remark else "")
         elif remark:
             yield behind(last, f" {words}")
+
+
+def parts_of(statement: Statement) -> Dict[str, Part]:
+    """The parts of a statement of PARTS that are there: the word that begins each → its tokens, that word first."""
+    begins = PARTS[statement.kind]
+    found: Dict[str, List[Token]] = {}
+    current = ""
+    for token, named in zip(statement.tokens, are_names(statement.tokens)):
+        if token.type in begins and not named and token.type not in found and current != "ONLY_IF":
+            current = token.type
+            found[current] = []
+        found[current].append(token)
+    return {kind: tuple(tokens) for kind, tokens in found.items()}
+
+
+def part_edits(statement: Statement, kind: str, words: Optional[str]) -> List[Edit]:
+    """Writes a part of a statement of PARTS anew, adds it behind those before it, or leaves it out (None).
+
+    `words` are those behind the word that begins the part; of a POSE they are the comment itself.
+    """
+    found, begins = parts_of(statement), PARTS[statement.kind]
+    old = found.get(kind, ())
+    if words is None:
+        return [written(token, "") for token in old]
+    if old:
+        kept = 0 if kind == "POSE" else 1
+        return [written(token, "" if number else words) for number, token in enumerate(old[kept:])]
+    last = next(found[part][-1] for part in reversed(begins[: begins.index(kind)]) if part in found)
+    return [behind(last, f" {words}" if kind == "POSE" else f" {KEYWORDS[kind]} {words}".rstrip())]
 
 
 def remark_behind(document: Document, statement: Statement) -> Optional[Token]:

@@ -17,6 +17,7 @@ from pursue_gen.language.messages import RESERVED
 from pursue_gen.language.names import KINDS
 from pursue_gen.language.navigation import rename
 from pursue_gen.language.poses import read_poses
+from pursue_gen.language.rewriting import PARTS, parts_of
 from pursue_gen.language.syntax import DECLARED, Statement, bare
 from pursue_gen.language.usable import reserved
 from pursue_gen.tools.draw import fields
@@ -24,9 +25,7 @@ from pursue_gen.tools.draw.fields import Values, refused
 from pursue_gen.tools.draw.places import lengths_per_metre, positions, with_all_positions
 from pursue_gen.tools.draw.poses import metres, with_position, with_spot
 from pursue_gen.tools.draw.statement_edits import (
-    PARTS,
     added,
-    parts_of,
     restated,
     with_part,
     without,

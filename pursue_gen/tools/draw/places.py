@@ -10,9 +10,10 @@ from pursue_gen.diagnostics import Span
 from pursue_gen.drawing import layout
 from pursue_gen.drawing.drawable import MOST_PLACES, drawable
 from pursue_gen.language.draft import Draft
+from pursue_gen.language.rewriting import parts_of
 from pursue_gen.language.scenario import Connection, Poi, Pose, Scenario
 from pursue_gen.tools.draw.poses import with_position
-from pursue_gen.tools.draw.statement_edits import parts_of, with_part
+from pursue_gen.tools.draw.statement_edits import with_part
 
 _NOWHERE = Span("", 1, 1, 1, 1)
 

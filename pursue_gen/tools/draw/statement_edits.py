@@ -2,42 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Dict, List, Mapping, Optional, Tuple
+from dataclasses import replace
+from typing import List, Optional, Tuple
 
-from lark import Token
-
-from pursue_gen.language.document import Edit, behind, written
+from pursue_gen.language.document import Edit, written
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.messages import KEYWORDS
-from pursue_gen.language.occurrences import are_names
-from pursue_gen.language.rewriting import remark_behind
-from pursue_gen.language.syntax import Statement, end_of
-
-PARTS: Mapping[str, Tuple[str, ...]] = {
-    "POI": ("POI", "LABEL", "POSE"),
-    "CONNECT": ("CONNECT", "AND", "DISTANCE", "ONE_WAY", "ONLY_IF"),
-    "EVENT": ("EVENT", "LABEL", "COLLABORATIVE", "TOGETHER", "LOCATION", "DURATION", "AT_MOST", "ONLY_IF"),
-    "AGENT": (
-        "AGENT", "LABEL", "HUMAN", "CONTROLLABLE", "MOBILE", "RADIUS", "TOLERANCE", "INFLATION", "LOCATION", "CAN_DO",
-        "REACTS_TO",
-    ),
-}  # fmt: skip
-"""The parts of a statement by the word that begins each, in the order in which they stand."""
-
-Part = Tuple[Token, ...]
-
-
-def parts_of(statement: Statement) -> Dict[str, Part]:
-    """The parts of a statement of PARTS that are there: the word that begins each → its tokens, that word first."""
-    begins = PARTS[statement.kind]
-    found: Dict[str, List[Token]] = {}
-    current = ""
-    for token, named in zip(statement.tokens, are_names(statement.tokens)):
-        if token.type in begins and not named and token.type not in found and current != "ONLY_IF":
-            current = token.type
-            found[current] = []
-        found[current].append(token)
-    return {kind: tuple(tokens) for kind, tokens in found.items()}
+from pursue_gen.language.rewriting import part_edits, parts_of, remark_behind
+from pursue_gen.language.syntax import Statement
 
 
 def words_behind(statement: Statement, kind: str) -> str:
@@ -56,17 +27,9 @@ def with_part(document: Draft, number: int, kind: str, words: Optional[str]) -> 
     `words` are those behind the word that begins the part; of a POSE they are the comment itself.
     """
     statement = document.statements[number]
-    found = parts_of(statement)
-    text = words if words is None or kind == "POSE" else f"{KEYWORDS[kind]} {words}".rstrip()
-    old = found.get(kind, ())
-    edits = [written(token, "") for token in old]
-    if text is not None and old:
-        edits[0] = Edit(edits[0].start, edits[0].end, text)
-    elif text is not None:
-        begins = PARTS[statement.kind]
-        before = [part for part in begins[: begins.index(kind)] if part in found]
-        last = found[before[-1]][-1]
-        edits.append(behind(last, f" {text}{_break(document, end_of(last)) if kind == 'POSE' else ''}"))
+    edits = part_edits(statement, kind, words)
+    if kind == "POSE" and len(edits) == 1 and edits[0].start == edits[0].end:
+        edits = [replace(edits[0], text=edits[0].text + _break(document, edits[0].end))]
     return document.changed(*edits)
 
 

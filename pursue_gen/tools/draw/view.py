@@ -11,12 +11,13 @@ from pursue_gen.drawing.look import agent_looks, mark
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.forms import FORMS, HOLE
 from pursue_gen.language.names import KINDS
+from pursue_gen.language.rewriting import parts_of
 from pursue_gen.language.syntax import Statement, bare
 from pursue_gen.language.wording import objective_words
 from pursue_gen.solving.inputs import findings_of
 from pursue_gen.tools.draw.places import positions
 from pursue_gen.tools.draw.poses import heading
-from pursue_gen.tools.draw.statement_edits import names_behind, parts_of, words_behind
+from pursue_gen.tools.draw.statement_edits import names_behind, words_behind
 from pursue_gen.workspace.map_check import but_for_ways, check_spots
 from pursue_gen.workspace.robot_size import NOTHING_TOLD, Told, sizes_of
 from pursue_gen.workspace.spots import SPOT_DISTANCE
