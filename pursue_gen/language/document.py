@@ -204,9 +204,7 @@ class Document:
 
     def inserted(self, words: str) -> Edit:
         """Adds a statement, behind the last one of its kind or of a kind that goes before."""
-        word = words.split(" ", 1)[0].rstrip(":")
-        kind = {"connect": "CONNECT", "stateDependency": "STATEDEPENDENCY"}.get(word, word.upper())
-        new = _RANK.get(kind, _RANK["OBJECTIVE"])
+        new = rank(Document(words).statements[0])
         before = [one for one in self.statements if rank(one) <= new]
         if before:
             at = self.line_end(before[-1].end)
