@@ -8,7 +8,7 @@ from typing import Mapping, Tuple
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.drawing import layout
-from pursue_gen.drawing.drawable import MOST_PLACES, drawable
+from pursue_gen.drawing.layout import MOST_PLACES, drawable
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.rewriting import parts_of
 from pursue_gen.language.scenario import Connection, Poi, Pose, Scenario

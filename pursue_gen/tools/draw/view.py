@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any, Collection, Dict, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Severity, as_json, in_order
-from pursue_gen.drawing.drawable import drawable
 from pursue_gen.drawing.ground import Ground
+from pursue_gen.drawing.layout import drawable
 from pursue_gen.drawing.look import agent_looks, mark
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.forms import FORMS, HOLE

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing import map_svg
-from pursue_gen.drawing.drawable import MOST_PLACES, drawable
-from pursue_gen.drawing.layout import poses
+from pursue_gen.drawing.layout import MOST_PLACES, drawable, poses
 from pursue_gen.language.draft import Draft
 
 

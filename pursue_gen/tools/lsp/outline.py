@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Dict, List, Tuple
 
 from pursue_gen.language.document import section_of
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.messages import KEYWORDS
-from pursue_gen.language.syntax import Statement, bare, start_of
+from pursue_gen.language.syntax import bare, end_of, start_of
 
 
 @dataclass(frozen=True)
@@ -66,19 +67,15 @@ def folds(document: Draft) -> Tuple[Fold, ...]:
         if last > first:
             found.setdefault((first, last), Fold(first, last, comment))
 
-    section: List[Statement] = []
-    for part in document.statements:
-        add(line_of(part.start), line_of(part.end))
-        if section and section_of(section[-1].kind) != section_of(part.kind):
-            add(line_of(section[0].start), line_of(section[-1].end))
-            section = []
-        section.append(part)
-    if section:
-        add(line_of(section[0].start), line_of(section[-1].end))
+    for _, section in groupby(document.statements, key=lambda part: section_of(part.kind)):
+        parts = list(section)
+        for part in parts:
+            add(line_of(part.start), line_of(part.end))
+        add(line_of(parts[0].start), line_of(parts[-1].end))
     block: List[int] = []
     for token in document.comments:
         start = start_of(token)
-        first, last = line_of(start), line_of(start + len(token))
+        first, last = line_of(start), line_of(end_of(token))
         alone = not document.text[document.lines.start(first) : start].strip()
         if token.type == "LINE_COMMENT" and alone and block and first == block[-1] + 1:
             block.append(first)
