@@ -178,7 +178,6 @@ OTHERS = {
     "pursue_gen/cli/explain.py": "pages of the package",
     "pursue_gen/tools/commands/report.py": "the beginning of a page that it replaces",
     "pursue_gen/tools/draw/server.py": "the page's own files",
-    "pursue_gen/language/formatter_items.py": "the grammar",
     "pursue_gen/language/syntax.py": "the grammar",
     "pursue_gen/tools/report/html.py": "the package's styles",
     "pursue_gen/solving/verifytga.py": "what it has let a program write",

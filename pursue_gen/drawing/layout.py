@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import heapq
 import math
+from dataclasses import replace
 from typing import Dict, List, Mapping, Sequence, Tuple
 
 from pursue_gen.language.scenario import Pose, Scenario
@@ -14,6 +15,22 @@ Distances = Mapping[str, Mapping[str, float]]
 _ROUNDS = 300
 _STILL = 1e-4  # metres; the layout is finished when no point moves farther in a round
 _DECIMALS = 2
+MOST_PLACES = 400
+"""More places cannot be read on one picture, and to lay them out takes long."""
+
+
+def drawable(scenario: Scenario) -> Scenario:
+    """Without what an unfinished text may hold, but no picture can show."""
+    pois = tuple({poi.name: poi for poi in reversed(scenario.pois)}.values())[::-1]
+    names = {poi.name for poi in pois}
+    long = (way if way.distance > 0 else replace(way, distance=1) for way in scenario.connections)
+    ways = {
+        way.directions[0] if way.one_way else frozenset((way.a, way.b)): way
+        for way in long
+        if way.a != way.b and {way.a, way.b} <= names
+    }
+    agents = tuple(agent for agent in scenario.agents if agent.location.name in names)
+    return replace(scenario, pois=pois, connections=tuple(ways.values()), agents=agents)
 
 
 def poses(scenario: Scenario) -> Tuple[Mapping[str, Pose], bool]:

@@ -10,6 +10,8 @@ import re
 from dataclasses import dataclass
 from typing import Dict, Iterable, Mapping, Sequence, Tuple
 
+from pursue_gen.language.numbers import rounded_text
+
 FONT = "'DejaVu Sans',Verdana,Helvetica,Arial,sans-serif"
 TEXT_SIZE, SMALL_SIZE = 14, 12  # px
 INK, QUIET, PAPER, RULE, ACCENT = "#1b1f24", "#57606a", "#ffffff", "#8a8f98", "#22577a"
@@ -84,8 +86,7 @@ def safe(words: object) -> str:
 
 def number(value: float) -> str:
     """A coordinate: at most two decimals, no needless zeros, the same on every machine."""
-    text = f"{value:.2f}".rstrip("0").rstrip(".")
-    return "0" if text in ("-0", "") else text
+    return rounded_text(value, 2)
 
 
 def tag(name: str, *children: str, **attributes: object) -> str:

@@ -39,14 +39,19 @@ _LONGEST = 10_000_000
 def load(path: Union[str, os.PathLike[str]]) -> Scenario:
     """The scenario in a file, checked. Raises PursueError with every error; warnings are left to `check`."""
     file = os.fspath(path)
-    reading = read(read_text(file), file)
+    return checked(read_text(file), file)
+
+
+def checked(text: str, file: str, name: Optional[str] = None) -> Scenario:
+    """The scenario in a text, checked. Raises PursueError as `load`; `file` and `name` as for `parse`."""
+    reading = read(text, file, name)
     return without_errors(reading.scenario, check_reading(reading))
 
 
 def check(scenario: Scenario) -> Tuple[Diagnostic, ...]:
     """Every error and warning about a scenario, in file order; those about its text (poses, objectives) too."""
     findings = read(scenario.text, scenario.file, scenario.name).diagnostics if scenario.text else ()
-    return check_reading(Reading(scenario, findings))
+    return check_reading(Reading(scenario, findings, scenario))
 
 
 def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
@@ -55,11 +60,10 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     Where statements could not be read, the others are looked at as far as that makes sense: what seems to be missing
     may stand in one of those.
     """
-    scenario = reading.scenario if reading.scenario is not None else reading.partial
+    scenario = reading.partial
     findings: List[Diagnostic] = list(reading.diagnostics)
-    if scenario is None or {f.code for f in findings} & {"PML003", "PML018"}:
+    if {f.code for f in findings} & {"PML003", "PML018"}:
         return reading.diagnostics
-    whole = reading.scenario is not None
     findings += check_names(scenario)
     findings += check_references(scenario, reading.lost)
     findings += check_labels(scenario)
@@ -67,7 +71,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     for part in (_numbers, _too_fine, _connections, _travels, _states, _agents, _objectives, _order):
         findings += part(scenario)
     codes = {f.code for f in findings}
-    if not whole:
+    if reading.scenario is None:
         return _presentable(in_order(_of_what_was_read(reading, (f for f in findings if f.code not in _OF_THE_WHOLE))))
     if not codes & {"PML103", "PML104"}:  # the rest stands on names that mean one thing
         doubtful = _doubtful(scenario) if "PML110" in codes else frozenset()

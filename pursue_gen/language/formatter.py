@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, FrozenSet, Iterator, List, Optional, Tuple
-
-from lark import Token
+from typing import Dict, Iterator, List, Optional, Tuple
 
 from pursue_gen.diagnostics import Severity
-from pursue_gen.language.formatter_items import LINE, Item, items_of
-from pursue_gen.language.syntax import read_statements
+from pursue_gen.language.document import Document, section_of
 from pursue_gen.outcomes import Invalid
 
 WIDTH = 100
@@ -20,8 +17,26 @@ _BREAKABLE = frozenset({"CAN_DO", "REACTS_TO", "TRUE_IF", "FALSE_IF", "BEFORE", 
 """A line may be broken before these words, and behind every comma."""
 
 _CLOSE = frozenset({"COMMA", "COLON", "RPAR"})
-_ONE_KIND = {"REACH_OBJECTIVE": "OBJECTIVE", "OPTIONAL": "OBJECTIVE", "TAIL": "OBJECTIVE", "STATEDEPENDENCY": "STATE"}
 _MOST_PADDING = 20
+_LINE = "LINE"
+_COMMENTS: Dict[str, str] = {"LINE_COMMENT": _LINE, "POSE": _LINE, "BLOCK_COMMENT": "BLOCK"}
+
+
+@dataclass(frozen=True)
+class _Item:
+    """A word or a comment, as it stands in the text but for blanks at the ends of its lines.
+
+    `kind`: the token, of comments as in _COMMENTS; `breaks`: how many lines it stands below the item before, or below
+    the text's beginning.
+    """
+
+    kind: str
+    text: str
+    breaks: int
+
+    @property
+    def is_comment(self) -> bool:
+        return self.kind in _COMMENTS.values()
 
 
 @dataclass(frozen=True)
@@ -46,66 +61,42 @@ def format_text(text: str, file: str) -> str:
     same text comes back when it is formatted again, and it means the same scenario. Raises PursueError with every
     syntax error; other findings (a name that is declared nowhere) do not matter here.
     """
-    text = text.replace("\r\n", "\n").replace("\r", "\n")
-    trees, findings = read_statements(text, file)
-    errors = [finding for finding in findings if finding.severity is Severity.ERROR]
+    return formatted(Document(text.replace("\r\n", "\n").replace("\r", "\n"), file))
+
+
+def formatted(document: Document) -> str:
+    """As `format_text`."""
+    errors = [finding for finding in document.syntax.findings if finding.severity is Severity.ERROR]
     if errors:
         raise Invalid(errors)
-    starts = frozenset(_start(tree) for tree in trees)
-    blocks = [_block(group) for group in _groups(items_of(text), starts)]
+    blocks = [_block(items) for items in _items(document)]
     lines: List[str] = []
     for block in _aligned(_spaced(blocks)):
         lines += ["", block.text] if block.blank and lines else [block.text]
     return "".join(line + "\n" for line in lines)
 
 
-def _start(statement: Any) -> int:
-    """Where a statement begins in the text; the query behind an objective is a mere token."""
-    place: Any = statement if isinstance(statement, Token) else statement.meta
-    return int(place.start_pos)
+def _items(document: Document) -> Iterator[List[_Item]]:
+    """The items of each block."""
+    line = 1
+    for block in document.blocks:
+        items = []
+        for token in block:
+            text = "\n".join(part.rstrip(" \t\f") for part in token.split("\n"))
+            items.append(_Item(_COMMENTS.get(token.type, token.type), text, (token.line or line) - line))
+            line = token.end_line or line
+        yield items
 
 
-def _groups(items: List[Item], starts: FrozenSet[int]) -> Iterator[List[Item]]:
-    """The items of each block: comments between two words of a statement are in it, those behind it on its line too."""
-    group: List[Item] = []
-    waiting: List[Item] = []  # comments of which the next word will tell whether the statement goes on
-    for item in items:
-        if item.is_comment and group and not group[0].is_comment:
-            waiting.append(item)
-        elif item.is_comment:
-            if group and item.breaks:
-                yield group
-                group = []
-            group.append(item)
-        elif item.start in starts:
-            yield from _closed(group, waiting)
-            group, waiting = [item], []
-        else:
-            group += [*waiting, item]
-            waiting = []
-    yield from _closed(group, waiting)
-
-
-def _closed(group: List[Item], waiting: List[Item]) -> Iterator[List[Item]]:
-    """The finished block with the comments behind it on its last line, then the comments below it."""
-    for item in waiting:
-        if item.breaks:
-            yield group
-            group = []
-        group.append(item)
-    if group:
-        yield group
-
-
-def _block(group: List[Item]) -> _Block:
+def _block(group: List[_Item]) -> _Block:
     first, last = group[0], group[-1]
-    kind = "" if first.is_comment else _ONE_KIND.get(first.kind, first.kind)
-    if kind and last.kind == LINE and not any(item.is_comment for item in group[:-1]):
+    kind = "" if first.is_comment else section_of(first.kind)
+    if kind and last.kind == _LINE and not any(item.is_comment for item in group[:-1]):
         return _Block(kind, first.breaks > 1, _laid_out(group[:-1]), last.text)
     return _Block(kind, first.breaks > 1, _laid_out(group))
 
 
-def _laid_out(group: List[Item]) -> str:
+def _laid_out(group: List[_Item]) -> str:
     """The items in lines: words are filled into lines, comments stay behind what they stand behind."""
     result = ""
     for text, width, forced in _pieces(group):
@@ -119,14 +110,14 @@ def _laid_out(group: List[Item]) -> str:
     return result
 
 
-def _pieces(group: List[Item]) -> Iterator[Tuple[str, int, bool]]:
+def _pieces(group: List[_Item]) -> Iterator[Tuple[str, int, bool]]:
     """What is never torn apart: (its text, the width that counts, whether it has to begin a line)."""
-    piece: List[Item] = []
+    piece: List[_Item] = []
     forced = False
-    word: Optional[Item] = None  # the last one that is no comment
+    word: Optional[_Item] = None  # the last one that is no comment
     for item in group:
         own_line = item.is_comment and item.breaks > 0
-        ended = bool(piece) and (piece[-1].kind == LINE or (piece[0].is_comment and not item.is_comment))
+        ended = bool(piece) and (piece[-1].kind == _LINE or (piece[0].is_comment and not item.is_comment))
         may = not item.is_comment and (item.kind in _BREAKABLE or (word is not None and word.kind == "COMMA"))
         if piece and (own_line or ended or may):
             yield (*_joined(piece), forced)
@@ -136,17 +127,17 @@ def _pieces(group: List[Item]) -> Iterator[Tuple[str, int, bool]]:
     yield (*_joined(piece), forced)
 
 
-def _joined(piece: List[Item]) -> Tuple[str, int]:
+def _joined(piece: List[_Item]) -> Tuple[str, int]:
     """The items of a piece with blanks where they belong, and its width: a comment to the end of the line is free."""
     words: List[str] = []
-    before: Optional[Item] = None
+    before: Optional[_Item] = None
     for item in piece:
-        opened = before is not None and before.kind == "LPAR" and item.kind != LINE
+        opened = before is not None and before.kind == "LPAR" and item.kind != _LINE
         close = before is None or opened or item.kind in _CLOSE
         words.append(item.text if close else " " + item.text)
         before = item
     text = "".join(words)
-    counted = text if piece[-1].kind != LINE else text[: -len(words[-1])]
+    counted = text if piece[-1].kind != _LINE else text[: -len(words[-1])]
     return text, len(counted.split("\n")[0])
 
 

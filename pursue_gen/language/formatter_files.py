@@ -48,11 +48,7 @@ def layout_of(file: str) -> Layout:
 
 def layout_of_bytes(data: bytes, file: str) -> Layout:
     """The layout of a text in UTF-8 that is in no file. Raises PursueError as `layout_of`."""
-    return _layout(data, text_of(data, file), file)
-
-
-def _layout(data: bytes, text: str, file: str) -> Layout:
-    after = format_text(text, file)
+    after = format_text(text_of(data, file), file)
     return Layout(file, data.decode("utf-8-sig"), after, data != after.encode("utf-8"))
 
 

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Dict, List
+from typing import Any, ClassVar, Dict, Iterator, List, Tuple
 
-from pygments.lexer import RegexLexer, words
+from pygments.lexer import Lexer
 from pygments.token import Comment, Keyword, Name, Number, Punctuation, String, Text, Whitespace
 
 from pursue_gen.language.messages import FORMS, KEYWORDS
+from pursue_gen.language.syntax import end_of, start_of, tokens_of
 
-_CONSTANTS = ("TRUE", "FALSE", "IS_TRUE", "IS_FALSE")
-_OPENS = tuple(sorted(KEYWORDS[kind] for kind in FORMS))
-_VALUES = tuple(sorted(KEYWORDS[kind] for kind in _CONSTANTS))
-_OTHERS = tuple(sorted(word for kind, word in KEYWORDS.items() if kind not in FORMS and kind not in _CONSTANTS))
+_COLOURS: Dict[str, Any] = {
+    **dict.fromkeys(KEYWORDS, Keyword),
+    **dict.fromkeys(FORMS, Keyword.Declaration),
+    **dict.fromkeys(("TRUE", "FALSE", "IS_TRUE", "IS_FALSE"), Keyword.Constant),
+    **dict.fromkeys(("COLON", "COMMA", "LPAR", "RPAR"), Punctuation),
+    "NAME": String, "WORD": Name, "TAIL": Comment.Preproc,
+    "POSE": Comment.Special, "LINE_COMMENT": Comment.Single, "BLOCK_COMMENT": Comment.Multiline,
+}  # fmt: skip
 
 
-class PursueLexer(RegexLexer):  # type: ignore[misc] # pygments has no types
+class PursueLexer(Lexer):  # type: ignore[misc] # pygments has no types
     """For scenarios in PuRSUE-ML, `*.pur`."""
 
     name = "PuRSUE-ML"
@@ -24,21 +29,14 @@ class PursueLexer(RegexLexer):  # type: ignore[misc] # pygments has no types
     mimetypes: ClassVar[List[str]] = ["text/x-pursue"]
     url = ""
 
-    tokens: ClassVar[Dict[str, Any]] = {
-        "root": [
-            (r"\s+", Whitespace),
-            (r"//[ \t]*\[[^\n]*", Comment.Special),
-            (r"//[^\n]*", Comment.Single),
-            (r"/\*[\s\S]*?\*/", Comment.Multiline),
-            (r"control[ \t]*:[^\n]*", Comment.Preproc),
-            (r'"[^"\n]*"', String),
-            (words(_OPENS, prefix=r"(?<!\w)", suffix=r"(?!\w|-\w)"), Keyword.Declaration),
-            (words(_VALUES, prefix=r"(?<!\w)", suffix=r"(?!\w|-\w)"), Keyword.Constant),
-            (words(_OTHERS, prefix=r"(?<!\w)", suffix=r"(?!\w|-\w)"), Keyword),
-            (r"[+-]?\d+\.\d+(?![\w.])", Number.Float),
-            (r"[+-]?\d+(?![\w.])", Number.Integer),
-            (r"[^\W\d]\w*(-\w+)*", Name),
-            (r"[():,]", Punctuation),
-            (r".", Text),
-        ]
-    }
+    def get_tokens_unprocessed(self, text: str) -> Iterator[Tuple[int, Any, str]]:
+        """(offset, colour, words) of all that is in a text, blanks too."""
+        at = 0
+        for token in tokens_of(text) or ():
+            if at < start_of(token):
+                yield at, Whitespace, text[at : start_of(token)]
+            number = Number.Float if "." in token else Number.Integer
+            yield start_of(token), number if token.type == "NUMBER" else _COLOURS.get(token.type, Text), str(token)
+            at = end_of(token)
+        if at < len(text):
+            yield at, Text if text[at:].strip() else Whitespace, text[at:]

@@ -112,7 +112,7 @@ def looks_like_statement(token: Token) -> bool:
     return meant in _STARTERS
 
 
-def unknown_statement(chunk: List[Token], span: Span) -> Diagnostic:
+def unknown_statement(chunk: Sequence[Token], span: Span) -> Diagnostic:
     """A statement that begins with no word that begins one."""
     token = chunk[0]
     if token.type in ("UNCLOSED_COMMENT", "UNCLOSED_NAME"):
@@ -129,7 +129,7 @@ def unknown_statement(chunk: List[Token], span: Span) -> Diagnostic:
     return error("PML011", f"expected a statement, found {_shown(token)}", span, hint)
 
 
-def explain(chunk: List[Token], index: int, expected: FrozenSet[str], span: Span) -> Diagnostic:
+def explain(chunk: Sequence[Token], index: int, expected: FrozenSet[str], span: Span) -> Diagnostic:
     """The token at `index` of the statement is none of the expected ones."""
     token = chunk[index]
     if token.type in ("UNCLOSED_COMMENT", "UNCLOSED_NAME"):
@@ -152,7 +152,7 @@ def of_a_comment(finding: Diagnostic, lines: Sequence[str]) -> Diagnostic:
     return replace(finding, hint=f"{question}; if not, {finding.hint}")
 
 
-def unfinished(chunk: List[Token], expected: FrozenSet[str], span: Span) -> Diagnostic:
+def unfinished(chunk: Sequence[Token], expected: FrozenSet[str], span: Span) -> Diagnostic:
     """The statement ends too early; the span is that of its last token."""
     end = Span(span.file, span.end_line, span.end_column, span.end_line, span.end_column + 1)
     message = f"expected {_in_words(expected)} after {_shown(chunk[-1])}, but the statement ends here"
@@ -182,7 +182,7 @@ def _unclosed(token: Token, span: Span) -> Diagnostic:
     return error("PML013", "this comment is never closed: expected `*/`", span, hint)
 
 
-def _hint(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
+def _hint(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     """What to do about the most frequent slips; empty where the form of the statement says it best."""
     token, statement = chunk[index], kind_of(chunk)
     text = str(token)
@@ -229,7 +229,7 @@ def _with_comma(whole: str, rest: str) -> str:
     return f"write {whole}.{rest}: decimals have a point"
 
 
-def name_meant(chunk: List[Token], index: int) -> Tuple[str, Token]:
+def name_meant(chunk: Sequence[Token], index: int) -> Tuple[str, Token]:
     """A usable name for the words at `index`, where a name in quotes is expected, and the last of these words.
 
     It is one word; for a POI, whose name ends its statement, it is all words on the line. For a label, which may be any
@@ -242,7 +242,7 @@ def name_meant(chunk: List[Token], index: int) -> Tuple[str, Token]:
     return (text if chunk[index - 1].type == "LABEL" else proposal(text, RESERVED)), words[-1]
 
 
-def _stray(chunk: List[Token], index: int) -> str:
+def _stray(chunk: Sequence[Token], index: int) -> str:
     """What to do about a sign that the language does not know."""
     text, before = str(chunk[index]), chunk[index - 1]
     if text[0] in QUOTES:
@@ -254,7 +254,7 @@ def _stray(chunk: List[Token], index: int) -> str:
     return ""
 
 
-def _meant(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
+def _meant(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     """Which word was meant, or what is missing before it."""
     token, statement = chunk[index], kind_of(chunk)
     if statement in ("EVENT", "AGENT") and f" {token} " in FORMS[statement]:
@@ -276,7 +276,7 @@ def _meant(chunk: List[Token], index: int, expected: FrozenSet[str]) -> str:
     return ""
 
 
-def _form(chunk: List[Token]) -> str:
+def _form(chunk: Sequence[Token]) -> str:
     return "the form is: " + FORMS[kind_of(chunk)] if kind_of(chunk) in FORMS else "delete it"
 
 

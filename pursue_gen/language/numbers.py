@@ -69,6 +69,12 @@ def read_number(text: str) -> Optional[Number]:
     return exact(Fraction(text)) if len(text) <= _LONGEST and _FORM.fullmatch(text) else None
 
 
+def rounded_text(value: float, digits: int) -> str:
+    """A number without an exponent, with so many digits after the point at most, and no needless zeros."""
+    text = f"{value:.{digits}f}".rstrip("0").rstrip(".")
+    return "0" if text in ("-0", "") else text
+
+
 def whole_below(number: Number, least: int) -> range:
     """The whole numbers below a number, down to the least one."""
     return range(ceil(number) - 1, least - 1, -1)

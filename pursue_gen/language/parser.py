@@ -12,10 +12,11 @@ from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, Span, erro
 from pursue_gen.language import scenario as pml
 from pursue_gen.language.condition_trees import condition_of
 from pursue_gen.language.conditions import Condition, Who
+from pursue_gen.language.document import Document
 from pursue_gen.language.number_messages import no_count, no_number
 from pursue_gen.language.numbers import Number, is_fine, read_number
 from pursue_gen.language.poses import PoseComment, read_poses
-from pursue_gen.language.syntax import MOST_LETTERS, cut, span_of, too_large
+from pursue_gen.language.syntax import MOST_LETTERS, bare, span_of, too_large
 from pursue_gen.outcomes import Invalid
 from pursue_runtime.named_files import read_start
 
@@ -41,7 +42,7 @@ class Reading:
 
     scenario: Optional[pml.Scenario]
     diagnostics: Tuple[Diagnostic, ...]
-    partial: Optional[pml.Scenario] = None
+    partial: pml.Scenario
     lost: FrozenSet[str] = frozenset()
 
 
@@ -92,11 +93,15 @@ def text_of(content: bytes, file: str) -> str:
 
 def read(text: str, file: str, name: Optional[str] = None) -> Reading:
     """The scenario in a text and every finding about its syntax, in file order; never raises."""
-    text = text.replace("\r\n", "\n").replace("\r", "\n")
-    statements = cut(text, file)
-    builder = _Builder(file, dict(_labels(statements.trees)))
-    parts = [part for tree in statements.trees for part in builder.parts(tree)]
-    findings = statements.findings + builder.findings
+    return read_document(Document(text.replace("\r\n", "\n").replace("\r", "\n"), file), name)
+
+
+def read_document(document: Document, name: Optional[str] = None) -> Reading:
+    """As `read`."""
+    syntax, file = document.syntax, document.file
+    builder = _Builder(file, dict(_labels(syntax.trees)))
+    parts = [part for tree in syntax.trees for part in builder.parts(tree)]
+    findings = (*syntax.findings, *builder.findings)
 
     def only(*kinds: type) -> Tuple[Any, ...]:
         return tuple(part for part in parts if isinstance(part, kinds))
@@ -104,7 +109,7 @@ def read(text: str, file: str, name: Optional[str] = None) -> Reading:
     value = pml.Scenario(
         name=Path(file).stem if name is None else name,
         file=file,
-        text=text,
+        text=document.text,
         pois=only(pml.Poi),
         connections=only(pml.Connection),
         events=only(pml.Event),
@@ -118,8 +123,8 @@ def read(text: str, file: str, name: Optional[str] = None) -> Reading:
         assumptions=tuple(part for part in parts if isinstance(part, _ASSUMPTIONS)),
         batteries=only(pml.Battery),
     )
-    broken = any(finding.severity is Severity.ERROR for finding in statements.findings)
-    return Reading(None if broken else value, in_order(findings), value, statements.lost if broken else frozenset())
+    broken = any(finding.severity is Severity.ERROR for finding in syntax.findings)
+    return Reading(None if broken else value, in_order(findings), value, syntax.lost if broken else frozenset())
 
 
 def without_errors(scenario: Optional[pml.Scenario], findings: Tuple[Diagnostic, ...]) -> pml.Scenario:
@@ -183,7 +188,7 @@ class _Builder:
     def _poi(self, name: Token, _: Any, label: Optional[Token], pose: Optional[Token], span: Span) -> pml.Poi:
         found = PoseComment(None) if pose is None else read_poses(str(pose), span_of(pose, self.file))
         self.findings += found.findings
-        return pml.Poi(_bare(name), found.pose, span_of(name, self.file), found.spots, _bare_or_none(label))
+        return pml.Poi(bare(name), found.pose, span_of(name, self.file), found.spots, _bare_or_none(label))
 
     def _connection(self, a: Any, b: Any, distance: Token, one_way: Any, only_if: Any, span: Span) -> pml.Connection:
         first, second = self._ref(a), self._ref(b)
@@ -197,7 +202,7 @@ class _Builder:
     ) -> pml.Event:
         earliest, latest = (None, None) if duration is None else self._window(duration)
         return pml.Event(
-            _bare(name),
+            bare(name),
             collaborative is not None,
             None if location is None else self._ref(location),
             earliest,
@@ -228,9 +233,9 @@ class _Builder:
         """An agent's name, with quotes or without."""
         if not isinstance(agent, Token):
             return self._ref(agent)
-        ref = self._use(_bare(agent), agent)
-        bare = replace(ref.span, column=ref.span.column + 1, end_column=ref.span.end_column - 1)
-        return replace(ref, span=bare)
+        ref = self._use(bare(agent), agent)
+        within = replace(ref.span, column=ref.span.column + 1, end_column=ref.span.end_column - 1)
+        return replace(ref, span=within)
 
     def _battery(
         self, _: Any, agent: Any, capacity: Token, uses: Token, recharges: Optional[Token], dock: Any, span: Span
@@ -246,7 +251,7 @@ class _Builder:
 
     def _rule(self, name: Token, each: Any, body: Any, span: Span) -> pml.Rule:
         who = "" if each is None else str(each.data)[len("each_") :]
-        return pml.Rule(_bare(name), self._body(body), span_of(name, self.file), who)
+        return pml.Rule(bare(name), self._body(body), span_of(name, self.file), who)
 
     def _body(self, tree: Any) -> pml.RuleBody:
         if tree.data == "ref":
@@ -264,7 +269,7 @@ class _Builder:
         elif sets is not None:
             (false_if,) = sets.children
         place = span_of(name, self.file)
-        return pml.State(_bare(name), initially.type == "TRUE", self._refs(true_if), self._refs(false_if), place)
+        return pml.State(bare(name), initially.type == "TRUE", self._refs(true_if), self._refs(false_if), place)
 
     def _dependency(self, event: Any, state: Any, value: Token, span: Span) -> pml.Dependency:
         return pml.Dependency(self._ref(event), self._ref(state), value.type == "IS_TRUE", span)
@@ -290,7 +295,7 @@ class _Builder:
             None if number is None else self._number(number) for number in (mobile, radius, tolerance, inflation)
         )
         return pml.Agent(
-            name=_bare(name),
+            name=bare(name),
             human=human is not None,
             controllable=controllable is not None,
             mobile=mobile,
@@ -349,13 +354,8 @@ def _labels(trees: Iterable[Tree[Token]]) -> Iterator[Tuple[str, str]]:
         if isinstance(tree, Tree) and tree.data in ("poi", "event", "agent"):
             name, _, label, *_ = tree.children
             if isinstance(name, Token) and isinstance(label, Token):
-                yield _bare(name), _bare(label)
+                yield bare(name), bare(label)
 
 
 def _bare_or_none(label: Optional[Token]) -> Optional[str]:
-    return None if label is None else _bare(label)
-
-
-def _bare(name: Token) -> str:
-    """The name without its quotes."""
-    return str(name)[1:-1]
+    return None if label is None else bare(label)

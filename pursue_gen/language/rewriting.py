@@ -7,22 +7,41 @@ name of the command that wrote the number, and is replaced with it.
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
+from itertools import chain
 from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
+from lark import Token
+
 from pursue_gen.diagnostics import Span
-from pursue_gen.language.edits import Edit
-from pursue_gen.language.formatter_items import BLOCK, LINE, Item, items_of
-from pursue_gen.language.numbers import Number
+from pursue_gen.language.document import Document, Edit, behind, written
+from pursue_gen.language.messages import KEYWORDS
+from pursue_gen.language.numbers import Number, decimal_text, rounded_text
+from pursue_gen.language.occurrences import are_names
 from pursue_gen.language.poses import end_of_poses
-from pursue_gen.language.scenario import Agent, Connection, Event, Poi, Pose, Scenario, Travel
-from pursue_gen.language.syntax import cut
+from pursue_gen.language.scenario import Agent, Connection, Event, Poi, Pose, Scenario
+from pursue_gen.language.syntax import Statement, end_of, start_of
 
 REMARK = re.compile(r"(?://|/\*)[ \t]*(?P<command>survey|calibrate): ")
 """Begins a remark."""
 
-_SIZE = ("RADIUS", "TOLERANCE", "INFLATION")
-_STATEMENTS = ("poi", "connection", "agent", "travel")
+SIZE = ("radius", "tolerance", "inflation")
+"""The words of a robot's size, in the order in which they stand, which is that of the fields of `RobotSize`."""
+
+Movement = Tuple[str, str, str]
+"""Agent, from, to."""
+
+PARTS: Mapping[str, Tuple[str, ...]] = {
+    "POI": ("POI", "LABEL", "POSE"),
+    "CONNECT": ("CONNECT", "AND", "DISTANCE", "ONE_WAY", "ONLY_IF"),
+    "EVENT": ("EVENT", "LABEL", "COLLABORATIVE", "TOGETHER", "LOCATION", "DURATION", "AT_MOST", "ONLY_IF"),
+    "AGENT": (
+        "AGENT", "LABEL", "HUMAN", "CONTROLLABLE", "MOBILE", "RADIUS", "TOLERANCE", "INFLATION", "LOCATION", "CAN_DO",
+        "REACTS_TO",
+    ),
+}  # fmt: skip
+"""The parts of a statement by the word that begins each, in the order in which they stand."""
+
+Part = Tuple[Token, ...]
 
 
 class Rewriting:
@@ -33,15 +52,7 @@ class Rewriting:
     """
 
     def __init__(self, scenario: Scenario) -> None:
-        self._text = scenario.text
-        self._items = items_of(scenario.text)
-        self._starts = [item.start for item in self._items]
-        self._lines = [0, *(match.end() for match in re.finditer("\n", scenario.text))]
-        self._trees = sorted(
-            (tree.meta.start_pos, tree.meta.end_pos, str(tree.data))
-            for tree in cut(scenario.text, scenario.file).trees
-            if hasattr(tree, "meta")
-        )
+        self._document, self._travels = Document(scenario.text, scenario.file), scenario.travels
 
     # Numbers ----------------------------------------------------------------------------------------------------------
 
@@ -49,9 +60,19 @@ class Rewriting:
         """Writes the distance of a way."""
         return self._window(way.span, "DISTANCE", (distance,), remark)
 
-    def travel(self, travel: Travel, earliest: Number, latest: Number, remark: str) -> List[Edit]:
-        """Writes the window of a travel time."""
-        return self._window(travel.span, "TAKES", (earliest, latest), remark)
+    def windows(self, windows: Mapping[Movement, Tuple[Number, Number, str]]) -> List[Edit]:
+        """Writes windows of movements (earliest, latest, remark): into the `travel` of each, or as a new one."""
+        travels = {(travel.agent.name, *travel.way): travel.span for travel in self._travels}
+        edits: List[Edit] = []
+        lines: List[str] = []
+        for movement, (low, high, remark) in windows.items():
+            if movement in travels:
+                edits += self._window(travels[movement], "TAKES", (low, high), remark)
+            else:
+                agent, a, b = movement
+                takes = f"takes {decimal_text(low)} to {decimal_text(high)}"
+                lines.append(f"travel {agent} from {a} to {b} {takes} // {remark}")
+        return [*edits, *self.statements(("TRAVEL", "AGENT"), lines)]
 
     def duration(self, event: Event, earliest: Number, latest: Number, remark: str) -> List[Edit]:
         """Writes the window of an event's duration, which it has already."""
@@ -59,124 +80,105 @@ class Rewriting:
 
     def size(self, agent: Agent, numbers: Mapping[str, Number], remark: str) -> List[Edit]:
         """Writes numbers of a robot's size (`radius`, `tolerance`, `inflation` → metres)."""
-        start = self._offset(agent.span)
-        words = [item for item in self._within(start) if not item.is_comment]
-        kinds = [item.kind for item in words]
-        kinds = kinds[: kinds.index("LOCATION") + 1]
-        edits: List[Edit] = []
-        new: Dict[int, str] = {}
-        for number, word in enumerate(_SIZE):
-            if word.lower() not in numbers:
-                continue
-            text = str(numbers[word.lower()])
-            if word in kinds:
-                old = words[kinds.index(word) + 1]
-                edits.append(Edit(old.start, old.start + len(old.text), text))
-            else:
-                following = next(kind for kind in (*_SIZE[number + 1 :], "LOCATION") if kind in kinds)
-                at = words[kinds.index(following)].start
-                new[at] = f"{new.get(at, '')}{word.lower()} {text} "
-        return [*edits, *(Edit(at, at, text) for at, text in new.items()), *self._remarked(self._end(start), remark)]
+        statement = self._statement(agent.span)
+        sizes = [part_edits(statement, word.upper(), str(numbers[word])) for word in SIZE if word in numbers]
+        return [*chain.from_iterable(sizes), *self._remarked(statement, remark)]
 
     def written_by(self, span: Span) -> Optional[str]:
         """The command that wrote the numbers of the statement around this place, as its remark says; None: a person."""
-        remark = self._remark(self._end(self._offset(span)))
-        match = REMARK.match(remark.text) if remark is not None else None
+        remark = remark_behind(self._document, self._statement(span))
+        match = REMARK.match(remark) if remark is not None else None
         return match["command"] if match else None
 
     def _window(self, span: Span, word: str, numbers: Sequence[Number], remark: str) -> List[Edit]:
-        start = self._offset(span)
-        words = [item for item in self._within(start) if not item.is_comment]
-        here = next(k for k, item in enumerate(words) if item.kind == word)
-        first = last = words[here + 1]
-        if [item.kind for item in words[here + 2 : here + 4]] == ["TO", "NUMBER"]:
-            last = words[here + 3]
-        edit = Edit(first.start, last.start + len(last.text), " to ".join(map(str, numbers)))
-        return [edit, *self._remarked(self._end(start), remark)]
+        statement = self._statement(span)
+        kinds = [token.type for token in statement.tokens]
+        here = next(k for k in range(len(kinds)) if kinds[k : k + 2] == [word, "NUMBER"])
+        last = here + 3 if kinds[here + 2 : here + 4] == ["TO", "NUMBER"] else here + 1
+        place = start_of(statement.tokens[here + 1]), end_of(statement.tokens[last])
+        edit = Edit(*place, " to ".join(map(str, numbers)))
+        return [edit, *self._remarked(statement, remark)]
 
     # Spots and new statements -----------------------------------------------------------------------------------------
 
     def spots(self, poi: Poi, spots: Sequence[Tuple[str, Pose]], remark: str) -> List[Edit]:
         """Adds spots of robots, which have none at this place so far, behind the pose of the place."""
-        start = self._offset(poi.span)
-        comment = next(item for item in self._items[bisect_right(self._starts, start) :] if item.kind == LINE)
-        end = comment.start + end_of_poses(comment.text)
+        comment = self._statement(poi.span).tokens[-1]
+        words = comment.rstrip()
+        end = start_of(comment) + end_of_poses(words)
         added = "".join(f" {robot} {pose_text(pose)}" for robot, pose in spots)
-        last = comment.start + len(comment.text)
+        last = start_of(comment) + len(words)
         if end == last:
             return [Edit(end, end, f"{added} {remark}" if remark else added)]
         return [Edit(end, end, added), Edit(last, last, f"; {remark}" if remark else "")]
 
-    def statements(self, behind: Sequence[str], lines: Sequence[str]) -> List[Edit]:
-        """Adds statements, one a line, below the last statement of the first of these kinds that the scenario has.
-
-        The kinds are `poi`, `connection`, `agent` and `travel`; without any of them they come at the end of the text.
+    def statements(self, below: Sequence[str], lines: Sequence[str]) -> List[Edit]:
+        """Adds statements, one a line, below the last statement of the first of these kinds that the scenario has, else
+        at the end of the text.
         """
-        assert set(behind) <= set(_STATEMENTS)
         if not lines:
             return []
-        ends = [max((end for _, end, kind in self._trees if kind == one), default=-1) for one in behind]
-        last = next((end for end in ends if end >= 0), len(self._text))
-        at = self._line_end(last)
-        for item in self._items:  # a comment that goes on in the next line
-            if item.kind == BLOCK and last <= item.start < at:
-                at = max(at, self._line_end(self._text.index("*/", item.start)))
-        blank = "" if self._text[:at].endswith("\n") or not self._text[:at] else "\n"
-        return [Edit(at, at, blank + "\n".join(lines) + ("\n" if at == len(self._text) else ""))]
+        text = self._document.text
+        found = ([one for one in self._document.statements if one.kind == kind] for kind in below)
+        last = next((some[-1].end for some in found if some), len(text))
+        at = self._document.line_end(last)
+        blank = "" if text[:at].endswith("\n") or not text[:at] else "\n"
+        return [Edit(at, at, blank + "\n".join(lines) + ("\n" if at == len(text) else ""))]
 
-    # Places in the text -----------------------------------------------------------------------------------------------
+    def _statement(self, span: Span) -> Statement:
+        """The statement around a place."""
+        found = self._document.statement_at(self._document.lines.of_span(span)[0])
+        assert found is not None, "the scenario was read from this text"
+        return found
 
-    def _line_end(self, offset: int) -> int:
-        end = self._text.find("\n", offset)
-        return len(self._text) if end < 0 else end
+    def _remarked(self, statement: Statement, remark: str) -> Iterator[Edit]:
+        """A remark behind a statement: to the end of the line, where nothing else is on it."""
+        old = remark_behind(self._document, statement)
+        last = statement.tokens[-1] if old is None else old
+        text = self._document.text
+        alone = not text[end_of(last) : self._document.lines.end_at(end_of(last))].strip()
+        words = f"// {remark}" if alone else f"/* {remark} */"
+        if old is not None:
+            yield written(old, words if remark else "")
+        elif remark:
+            yield behind(last, f" {words}")
 
-    def _offset(self, span: Span) -> int:
-        return self._lines[span.line - 1] + span.column - 1
 
-    def _end(self, offset: int) -> int:
-        """Where the statement around a place ends."""
-        return next(int(end) for start, end, _ in self._trees if start <= offset < end)
+def parts_of(statement: Statement) -> Dict[str, Part]:
+    """The parts of a statement of PARTS that are there: the word that begins each → its tokens, that word first."""
+    begins = PARTS[statement.kind]
+    found: Dict[str, List[Token]] = {}
+    current = ""
+    for token, named in zip(statement.tokens, are_names(statement.tokens)):
+        if token.type in begins and not named and token.type not in found and current != "ONLY_IF":
+            current = token.type
+            found[current] = []
+        found[current].append(token)
+    return {kind: tuple(tokens) for kind, tokens in found.items()}
 
-    def _within(self, offset: int) -> Iterator[Item]:
-        """The items of the statement from a place on."""
-        end = self._end(offset)
-        for item in self._items[bisect_right(self._starts, offset - 1) :]:
-            if item.start >= end:
-                return
-            yield item
 
-    def _remark(self, end: int) -> Optional[Item]:
-        """The remark behind a statement, on its line."""
-        for item in self._items[bisect_right(self._starts, end - 1) :]:
-            if item.breaks or not item.is_comment:
-                return None
-            if REMARK.match(item.text):
-                return item
-        return None
+def part_edits(statement: Statement, kind: str, words: Optional[str]) -> List[Edit]:
+    """Writes a part of a statement of PARTS anew, adds it behind those before it, or leaves it out (None).
 
-    def _remarked(self, end: int, remark: str) -> Iterator[Edit]:
-        """A remark behind a statement that ends here: to the end of the line, where nothing else is on it."""
-        old = self._remark(end)
-        place = (end, end) if old is None else (old.start, _end(old))
-        alone = not self._text[place[1] : self._line_end(place[1])].strip()
-        text = f"// {remark}" if alone else f"/* {remark} */"
-        if remark:
-            yield Edit(*place, text if old is not None else f" {text}")
-        elif old is not None:
-            yield Edit(*place, "")
+    `words` are those behind the word that begins the part; of a POSE they are the comment itself.
+    """
+    found, begins = parts_of(statement), PARTS[statement.kind]
+    old = found.get(kind, ())
+    if words is None:
+        return [written(token, "") for token in old]
+    if old:
+        kept = 0 if kind == "POSE" else 1
+        return [written(token, "" if number else words) for number, token in enumerate(old[kept:])]
+    last = next(found[part][-1] for part in reversed(begins[: begins.index(kind)]) if part in found)
+    return [behind(last, f" {words}" if kind == "POSE" else f" {KEYWORDS[kind]} {words}".rstrip())]
+
+
+def remark_behind(document: Document, statement: Statement) -> Optional[Token]:
+    """The remark behind a statement, on its line."""
+    return next(filter(REMARK.match, document.comments_behind(statement)), None)
 
 
 def pose_text(pose: Pose) -> str:
     """The pose as it stands in a comment, with as many digits as it needs."""
     numbers = (pose.x, pose.y, pose.z, pose.qx, pose.qy, pose.qz, pose.qw)
-    return "[" + ", ".join(_decimal(number) for number in numbers) + "]"
-
-
-def _decimal(number: float) -> str:
-    """The number without an exponent, rounded to a millionth."""
-    text = f"{number:.6f}".rstrip("0").rstrip(".")
-    return "0" if text in ("-0", "") else text
-
-
-def _end(item: Item) -> int:
-    return item.start + len(item.text)
+    return "[" + ", ".join(rounded_text(number, 6) for number in numbers) + "]"

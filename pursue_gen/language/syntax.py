@@ -1,4 +1,4 @@
-"""From a text to the trees of its statements, with every syntax error of it in words."""
+"""From a text to its words and comments, its statements and their trees, with every syntax error of it in words."""
 
 from __future__ import annotations
 
@@ -7,11 +7,10 @@ import re
 import sys
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import islice
 from pathlib import Path
-from typing import Any, Dict, FrozenSet, Iterable, Iterator, List, Optional, Set, Tuple
+from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Sequence, Set, Tuple
 
-from lark import Lark, Token, Tree, UnexpectedToken
+from lark import Lark, Token, UnexpectedToken
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language.messages import (
@@ -29,6 +28,12 @@ MOST_LETTERS = 1_000_000
 MOST_WORDS = 100_000
 """The largest text that is read: many times a floor with 1,000 places, and still read in seconds."""
 
+COMMENTS = frozenset(("LINE_COMMENT", "BLOCK_COMMENT", "UNCLOSED_COMMENT"))
+"""The tokens that are comments; a POSE is one, too, where it stands anywhere but behind a point of interest."""
+
+DECLARED: Dict[str, str] = {"POI": "POI", "EVENT": "event", "RULE": "rule", "STATE": "state", "AGENT": "agent"}
+"""The kind of thing that a statement declares, by the token that begins the statement."""
+
 _DEEPEST = 40
 """Brackets within brackets in a rule or a condition; beyond it is no scenario, and Python's own stack has an end."""
 _WIDEST = 500
@@ -39,6 +44,8 @@ _ATOMS = frozenset(("AT", "ON_WAY", "DOING", "IS_TRUE", "IS_FALSE"))
 MOST_FINDINGS = 1000
 """The most errors that are reported; with more of them the file is no scenario."""
 
+_BLANKS = COMMENTS - {"UNCLOSED_COMMENT"}
+"""The comments that stand between words as blanks do."""
 _SECOND = {"TRAVEL": "FROM", "BATTERY": "CAPACITY"}
 """Statements whose first word may be a name, and the word behind the agent that they are about."""
 _OPENS = frozenset(("CONTROLLABLE", "MOBILE", *MAY_BE_NAMES)) - {"LABEL"}
@@ -52,15 +59,70 @@ _ENDS = frozenset(
 
 
 @dataclass(frozen=True)
-class Statements:
-    """A text cut into statements: the trees of those that are well formed, an error for each other one, in file order.
+class Statement:
+    """A statement, right or wrong: its tokens (no comments but poses) and its stretch of the text, which one without
+    tokens does not have.
+    """
+
+    tokens: Tuple[Token, ...]
+
+    @property
+    def kind(self) -> str:
+        """The token that says which statement it is; anything where no statement begins like this."""
+        return kind_of(self.tokens) if self.tokens else ""
+
+    @property
+    def start(self) -> int:
+        """Offset of its first character."""
+        return start_of(self.tokens[0])
+
+    @property
+    def end(self) -> int:
+        """Offset behind its last character."""
+        return end_of(self.tokens[-1])
+
+    @property
+    def name(self) -> Optional[Token]:
+        """The quoted name that it declares, as far as there is one."""
+        named = self.kind in DECLARED and len(self.tokens) > 1 and self.tokens[1].type == "NAME"
+        return self.tokens[1] if named else None
+
+    def first(self, kind: str) -> Optional[Token]:
+        """The first token of a kind."""
+        return next((token for token in self.tokens if token.type == kind), None)
+
+    def pair(self, kind: str) -> Optional[Tuple[Token, Token]]:
+        """The word of a kind and the number behind it."""
+        pairs = zip(self.tokens, self.tokens[1:])
+        return next(((word, number) for word, number in pairs if (word.type, number.type) == (kind, "NUMBER")), None)
+
+
+@dataclass(frozen=True)
+class Syntax:
+    """What the statements of a text are: the trees of those that are well formed, an error for each other one, in file
+    order.
 
     `lost` are the names in the others: they may have been declared there.
     """
 
-    trees: List[Any]
-    findings: List[Diagnostic]
-    lost: FrozenSet[str]
+    trees: Tuple[Any, ...]
+    findings: Tuple[Diagnostic, ...]
+    lost: FrozenSet[str] = frozenset()
+
+
+def start_of(token: Token) -> int:
+    """The offset of a token."""
+    return token.start_pos or 0
+
+
+def end_of(token: Token) -> int:
+    """The offset behind a token."""
+    return (token.start_pos or 0) + len(token)
+
+
+def bare(name: Optional[Token]) -> str:
+    """A name without its quotes; "" where there is none."""
+    return "" if name is None else str(name)[1:-1]
 
 
 def span_of(token: Token, file: str) -> Span:
@@ -73,7 +135,7 @@ def span_of(token: Token, file: str) -> Span:
 def grammar() -> Lark:
     """The parser; made once, at the first text, so that to import the package costs nothing."""
     text = (Path(__file__).parent / "grammar.lark").read_text(encoding="utf-8")
-    how: Dict[str, Any] = {"start": ["statement", "wrong"], "propagate_positions": True}
+    how: Dict[str, Any] = {"start": ["statement", "wrong", "comment"], "propagate_positions": True}
     return Lark(text, parser="lalr", lexer="basic", cache=_kept_tables() or False, **how)
 
 
@@ -95,34 +157,38 @@ def _kept_tables() -> Optional[str]:
     return str(folder / f"grammar_{sys.version_info[0]}.{sys.version_info[1]}")
 
 
-def read_statements(text: str, file: str) -> Tuple[List[Tree[Token]], List[Diagnostic]]:
-    """The trees of all statements that are well formed, and an error for each that is not, in file order."""
-    statements = cut(text, file)
-    return statements.trees, statements.findings
+def tokens_of(text: str) -> Optional[Tuple[Token, ...]]:
+    """Every word, sign and comment of a text, in order; None of one that is too large to be a scenario."""
+    if len(text) > MOST_LETTERS:
+        return None
+    # `Lark.lex` would make a lexer for each text, which takes longer than most texts do
+    parser: Any = grammar().parse_interactive(text, start="statement")
+    found: List[Token] = []
+    words = 0
+    for token in parser.lexer_thread.lex(None):
+        words += token.type not in _BLANKS
+        if words > MOST_WORDS:
+            return None
+        found.append(token)
+    return tuple(found)
 
 
-def cut(text: str, file: str) -> Statements:
-    """The statements of a text."""
-    tokens = list(islice(_words(text), MOST_WORDS + 1)) if len(text) <= MOST_LETTERS else []
-    if len(text) > MOST_LETTERS or len(tokens) > MOST_WORDS:
-        return Statements([], [too_large(file)], frozenset())
+def statements_of(tokens: Iterable[Token]) -> Tuple[Statement, ...]:
+    """The statements that tokens make, comments left out."""
+    return tuple(Statement(tuple(chunk)) for chunk in _chunks(_significant(tokens)))
+
+
+def syntax_of(statements: Sequence[Statement], text: str, file: str) -> Syntax:
+    """What the statements of a text are."""
     reader = _Reader(file)
-    found = chunks(significant(tokens))
-    for number, chunk in enumerate(found):
-        reader.take(chunk)
-        if len(reader.findings) == MOST_FINDINGS and number + 1 < len(found):
-            reader.findings.append(too_many(span_of(found[number + 1][0], file)))
+    for number, statement in enumerate(statements):
+        reader.take(statement.tokens)
+        if len(reader.findings) == MOST_FINDINGS and number + 1 < len(statements):
+            reader.findings.append(too_many(span_of(statements[number + 1].tokens[0], file)))
             break
     lines = text.split("\n") if reader.findings else []
-    findings = [of_a_comment(finding, lines) for finding in reader.findings]
-    return Statements(reader.trees, findings, frozenset(reader.lost))
-
-
-def _words(text: str) -> Iterator[Token]:
-    """The words and signs of a text. `Lark.lex` would make a lexer for each, which takes longer than most texts do."""
-    parser: Any = grammar().parse_interactive(text, start="statement")
-    found: Iterator[Token] = parser.lexer_thread.lex(None)
-    return found
+    findings = tuple(of_a_comment(finding, lines) for finding in reader.findings)
+    return Syntax(tuple(reader.trees), findings, frozenset(reader.lost))
 
 
 def too_large(file: str) -> Diagnostic:
@@ -148,7 +214,7 @@ class _Reader:
         self._after_objective = False
         self._next: Dict[Tuple[Any, ...], FrozenSet[str]] = {}
 
-    def take(self, chunk: List[Token]) -> None:
+    def take(self, chunk: Sequence[Token]) -> None:
         """Parses one statement; notes its tree, or what is wrong with it."""
         first, finding = chunk[0], None
         if first.type not in STATEMENTS:
@@ -163,7 +229,7 @@ class _Reader:
             self.lost |= _declared(chunk)
         self._after_objective = kind_of(chunk) in ("OBJECTIVE", "REACH_OBJECTIVE")
 
-    def _parse(self, chunk: List[Token]) -> Optional[Diagnostic]:
+    def _parse(self, chunk: Sequence[Token]) -> Optional[Diagnostic]:
         parser: Any = grammar().parse_interactive(start="statement")
         depth = 0
         for index, token in enumerate(chunk):
@@ -205,7 +271,7 @@ def _parser_after(tokens: Iterable[Token]) -> Any:
     return parser
 
 
-def _declared(chunk: List[Token]) -> Set[str]:
+def _declared(chunk: Sequence[Token]) -> Set[str]:
     """The names that a statement with an error in it perhaps declares."""
     kind = kind_of(chunk)
     if kind in ("CONNECT", "STATEDEPENDENCY", "TRAVEL", "BATTERY", "OBJECTIVE", "REACH_OBJECTIVE", "OPTIONAL", "TAIL"):
@@ -213,14 +279,28 @@ def _declared(chunk: List[Token]) -> Set[str]:
     elif kind in ("EVENT", "RULE", "STATE", "AGENT"):
         tokens = [token for token in chunk if token in chunk[1:3] or token.type == "UNCLOSED_COMMENT"]
     else:
-        tokens = chunk
+        tokens = list(chunk)
     return {word for token in tokens for word in re.findall(r"\w+", token)}
 
 
-def significant(tokens: Iterable[Token]) -> List[Token]:
-    """The tokens without those pose comments that stand anywhere but behind a point of interest, on its line."""
+def accepts(tokens: Sequence[Token]) -> FrozenSet[str]:
+    """The kinds of tokens that may follow these of one statement, "$END" among them; none after a wrong one."""
+    if not tokens:
+        return STATEMENTS - {"TAIL"}
+    if tokens[0].type not in STATEMENTS:
+        return frozenset()
+    try:
+        return frozenset(_parser_after(tokens).accepts())
+    except UnexpectedToken:
+        return frozenset()
+
+
+def _significant(tokens: Iterable[Token]) -> List[Token]:
+    """The tokens without comments: a pose is none behind a point of interest, on its line."""
     kept: List[Token] = []
     for token in tokens:
+        if token.type in _BLANKS:
+            continue
         if token.type == "POSE":
             before = [one.type for one in kept[-4:]]
             behind_poi = before[-2:] == ["POI", "NAME"] or before == ["POI", "NAME", "LABEL", "NAME"]
@@ -235,7 +315,7 @@ def _opened(found: List[List[Token]]) -> bool:
     return bool(found) and found[-1][0].type == "OPTIONAL" and len(found[-1]) <= 2
 
 
-def chunks(tokens: List[Token]) -> List[List[Token]]:
+def _chunks(tokens: List[Token]) -> List[List[Token]]:
     """The tokens cut into statements: at each word that begins one, and where a line begins like an unknown one."""
     found: List[List[Token]] = []
     for index, token in enumerate(tokens):

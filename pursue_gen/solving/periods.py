@@ -11,11 +11,14 @@ from collections import Counter
 from contextlib import suppress
 from dataclasses import replace
 from math import ceil
-from typing import Dict, List, Optional, Tuple
+from typing import List, Optional, Tuple
 
 from pursue_gen.diagnostics import Span
+from pursue_gen.language.document import Document, Edit, edited
+from pursue_gen.language.lines import Lines
 from pursue_gen.language.scenario import Leaves, Patrol, Scenario, Waits
-from pursue_gen.language.wording import patrol_text, periods_found
+from pursue_gen.language.syntax import end_of
+from pursue_gen.language.wording import periods_found
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import Rules, played
@@ -51,26 +54,21 @@ def with_period(scenario: Scenario, every: int, least: Optional[int] = None) -> 
 
     `least`: nothing below it can be promised, where that is known.
     """
-    given: Dict[Span, List[Patrol]] = {}
-    for patrol in without_period(scenario):
-        given.setdefault(patrol.span, []).append(replace(patrol, every=every, least=least))
-    text = scenario.text
-    for span, patrols in sorted(given.items(), key=lambda item: (item[0].line, item[0].column), reverse=True):
-        text = _rewritten(text, span, patrols)
-    changed = {(each.span, each.place): each for patrols in given.values() for each in patrols}
     safety = tuple(
-        changed.get((each.span, each.place), each) if isinstance(each, Patrol) else each for each in scenario.safety
+        replace(each, every=every, least=least) if isinstance(each, Patrol) and each.every is None else each
+        for each in scenario.safety
     )
-    return replace(scenario, safety=safety, text=text)
+    edits = [_every(scenario.text, span, every) for span in {each.span for each in without_period(scenario)}]
+    return replace(scenario, safety=safety, text=edited(scenario.text, edits))
 
 
-def _rewritten(text: str, span: Span, patrols: List[Patrol]) -> str:
-    """The text with the statement of these patrols written anew, on as many lines as before."""
-    lines = text.split("\n")
-    begin = sum(len(line) + 1 for line in lines[: span.line - 1]) + span.column - 1
-    end = sum(len(line) + 1 for line in lines[: span.end_line - 1]) + span.end_column - 1
-    words = patrol_text(patrols[0], (patrol.place.name for patrol in patrols))
-    return f"{text[:begin]}objective: {words}" + "\n" * text.count("\n", begin, end) + text[end:]
+def _every(text: str, span: Span, every: int) -> Edit:
+    """Writes the period into the statement of a patrol, before the word behind which the robots stand."""
+    begin, end = Lines(text).of_span(span)
+    words = Document(text[begin:end]).statements[0].tokens
+    by = -2 if words[-2].type == "BY" else -3  # by bot, by any robot
+    at = begin + end_of(words[by - 1])
+    return Edit(at, at, f" every {every}")
 
 
 def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAULT) -> Scenario:

@@ -6,21 +6,15 @@ from dataclasses import astuple
 from fractions import Fraction
 from typing import FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.language.edits import Edit, edited
+from pursue_gen.language.document import Edit, edited
 from pursue_gen.language.numbers import Number, exact, is_fine
-from pursue_gen.language.rewriting import Rewriting
+from pursue_gen.language.rewriting import SIZE, Movement, Rewriting
 from pursue_gen.language.scenario import Connection, Pose, Scenario
 from pursue_gen.language.wording import listed
 from pursue_gen.workspace.robot_size import Sizes, sizes_of
 
-_SIZE = ("radius", "tolerance", "inflation")
-"""The words of a robot's size, in the order of the fields of `RobotSize`."""
-
 SURVEY = "survey"
 """The word that begins the remarks of this command."""
-
-Movement = Tuple[str, str, str]
-"""Agent, from, to."""
 
 
 def rounded(metres: float, unit: float, speeds: Iterable[Number]) -> Number:
@@ -39,7 +33,7 @@ def rounded(metres: float, unit: float, speeds: Iterable[Number]) -> Number:
 def with_ways(scenario: Scenario, ways: Sequence[Tuple[str, str, Number, str]]) -> str:
     """The text with further ways: from, to, distance, remark."""
     lines = [f"connect {a} and {b} distance {distance} // {remark}" for a, b, distance, remark in ways]
-    return edited(scenario.text, Rewriting(scenario).statements(("connection", "poi"), lines))
+    return edited(scenario.text, Rewriting(scenario).statements(("CONNECT", "POI"), lines))
 
 
 def with_sizes(scenario: Scenario, sizes: Sizes) -> str:
@@ -48,7 +42,7 @@ def with_sizes(scenario: Scenario, sizes: Sizes) -> str:
     edits: List[Edit] = []
     for agent in scenario.agents:
         size, said = (astuple(each.of([agent.name])) for each in (sizes, known))
-        numbers = {word: exact(Fraction(f"{new:.3f}")) for word, new, old in zip(_SIZE, size, said) if new != old}
+        numbers = {word: exact(Fraction(f"{new:.3f}")) for word, new, old in zip(SIZE, size, said) if new != old}
         if agent.is_robot and numbers:
             edits += rewriting.size(agent, numbers, f"{SURVEY}: its {listed(list(numbers))} by --robot")
     return edited(scenario.text, edits)
@@ -69,15 +63,7 @@ def written(
     edits: List[Edit] = []
     for way, (distance, remark) in distances.items():
         edits += rewriting.distance(way, distance, remark)
-    travels = {(travel.agent.name, *travel.way): travel for travel in scenario.travels}
-    lines = []
-    for movement, (low, high, remark) in windows.items():
-        if movement in travels:
-            edits += rewriting.travel(travels[movement], low, high, remark)
-        else:
-            agent, a, b = movement
-            lines.append(f"travel {agent} from {a} to {b} takes {low} to {high} // {remark}")
-    edits += rewriting.statements(("travel", "agent"), lines)
+    edits += rewriting.windows(windows)
     for poi in scenario.pois:
         found = [(robot, pose) for robot, pose in spots.get(poi.name, ()) if pose is not None]
         if found:

@@ -8,8 +8,8 @@ from typing import AbstractSet, Iterable, Iterator, List, Mapping, Optional, Seq
 from pursue_gen.diagnostics import Diagnostic, warning
 from pursue_gen.drawing.clearance import Clearance
 from pursue_gen.language.behaviour import robots_at
+from pursue_gen.language.rewriting import Movement
 from pursue_gen.language.scenario import Connection, Pose, Scenario
-from pursue_gen.survey.copying import Movement
 from pursue_gen.survey.grid import Grid
 from pursue_gen.survey.plan import Plan
 from pursue_gen.survey.spots import exits_of, shut_in

@@ -14,11 +14,12 @@ from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.parser import read, without_errors
+from pursue_gen.language.rewriting import Movement
 from pursue_gen.language.scenario import Connection, Pose, Scenario
 from pursue_gen.language.similar import closest
 from pursue_gen.outcomes import Invalid
 from pursue_gen.survey import findings as found_wrong
-from pursue_gen.survey.copying import SURVEY, Movement, others_windows, rounded, with_ways, written
+from pursue_gen.survey.copying import SURVEY, others_windows, rounded, with_ways, written
 from pursue_gen.survey.graph import graph_of
 from pursue_gen.survey.grid import Grid, grid_of
 from pursue_gen.survey.plan import Pair, Plan

@@ -14,6 +14,7 @@ import jinja2
 from pursue_gen import __version__
 from pursue_gen.diagnostics import error
 from pursue_gen.drawing import map_svg
+from pursue_gen.language.document import statement_text
 from pursue_gen.language.labels import in_markdown
 from pursue_gen.language.scenario import Reach, Safety, Scenario
 from pursue_gen.language.wording import condition_of_promise, listed, objective_text
@@ -266,5 +267,4 @@ def _reaches(reach: Reach) -> str:
 
 def _source(scenario: Scenario, safety: Safety) -> str:
     """A safety objective as it stands in the scenario."""
-    line = scenario.text.splitlines()[safety.span.line - 1]
-    return line.split("//")[0].split(":", 1)[-1].strip()
+    return statement_text(scenario.text, safety.span).split(":", 1)[-1].strip()

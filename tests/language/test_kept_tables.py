@@ -8,7 +8,8 @@ from typing import Iterator
 import pytest
 
 from pursue_gen.language import syntax
-from pursue_gen.language.syntax import grammar, read_statements
+from pursue_gen.language.document import Document
+from pursue_gen.language.syntax import grammar
 
 TEXT = 'poi "hall"\nconnect "hall" and\nagent "bot1" controllable mobile 1 location "hall"\n'
 
@@ -22,8 +23,8 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 
 def read() -> object:
-    trees, findings = read_statements(TEXT, "floor.pur")
-    return trees, [finding.message for finding in findings]
+    syntax = Document(TEXT, "floor.pur").syntax
+    return syntax.trees, [finding.message for finding in syntax.findings]
 
 
 def test_texts_are_read_as_before_from_kept_tables(cache: Path) -> None:

@@ -11,16 +11,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.language import parse
-from pursue_gen.language.edits import edited
+from pursue_gen.language.document import edited
+from pursue_gen.language.draft import Draft
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.labels import LONGEST_LABEL, markdown, why_no_label
+from pursue_gen.language.navigation import rename
 from pursue_gen.language.wording import objective_text, objective_words
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import write_network
-from pursue_gen.tools.lsp.document import Document
 from pursue_gen.tools.lsp.fixes import fixes
 from pursue_gen.tools.lsp.hover import hover
-from pursue_gen.tools.lsp.navigation import rename
 from tests.language.texts import findings
 
 TEXT = """\
@@ -117,7 +117,7 @@ def test_a_name_that_cannot_be_one_may_be_a_label() -> None:
     text = BARE.replace("shelf", "high_shelf").replace('poi "high_shelf"', 'poi "high shelf"')
     (finding,) = [one for one in findings(text) if one.code == "PML101"]
     assert 'poi "high_shelf" label "high shelf"' in finding.hint
-    document = Document.of(text, "text.pur")
+    document = Draft.of(text, "text.pur")
     fix = next(fix for fix in fixes(document, 0, len(text)) if "with label" in fix.title)
     mended = edited(text, fix.edits)
     assert 'poi "high_shelf" label "high shelf"' in mended
@@ -125,14 +125,14 @@ def test_a_name_that_cannot_be_one_may_be_a_label() -> None:
 
 
 def test_a_rename_leaves_labels_alone() -> None:
-    document = Document.of(TEXT, "text.pur")
+    document = Draft.of(TEXT, "text.pur")
     text = edited(TEXT, rename(document, TEXT.index("desk") + 1, "counter"))
     assert 'poi "counter" label "front desk"' in text
 
 
 def test_hovering_shows_a_label_as_text() -> None:
     text = TEXT.replace("Porter 1", "*P* <b>[x](y)")
-    found = hover(Document.of(text, "text.pur"), text.index('"bot"') + 2)
+    found = hover(Draft.of(text, "text.pur"), text.index('"bot"') + 2)
     assert found is not None
     assert "people read \u201c\\*P\\* \\<b\\>\\[x\\]\\(y\\)\u201d" in found.markdown
 

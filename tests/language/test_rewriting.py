@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_gen.language.edits import Edit, edited
+from pursue_gen.language.document import Edit, edited
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.parser import parse
 from pursue_gen.language.rewriting import Rewriting
@@ -75,7 +75,7 @@ def test_windows_of_movements_and_actions_are_replaced_with_one_number_or_two() 
     text = edited(
         TEXT,
         [
-            *rewriting.travel(scenario.travels[0], 6, 8, "calibrate: 40 drives"),
+            *rewriting.windows({("bot", "desk", "hall"): (6, 8, "calibrate: 40 drives")}),
             *rewriting.duration(fetch, 2, exact(Fraction("4.5")), ""),
             *rewriting.duration(drop, 4, 7, "calibrate: 12 times"),
         ],
@@ -86,6 +86,13 @@ def test_windows_of_movements_and_actions_are_replaced_with_one_number_or_two() 
     assert [event.window for event in again.events] == [(2, Fraction("4.5")), (4, 7)]
     assert again.travels[0].window == (6, 8)
     assert Rewriting(again).written_by(again.events[1].span) == "calibrate"
+
+
+def test_a_window_is_replaced_where_a_name_is_the_word_before_it() -> None:
+    text = 'poi "a" poi "to" connect a and to distance 1\nagent "takes" mobile 1 location a\n'
+    scenario = read(text + "travel takes from a to to takes 5 to 6")
+    found = edited(scenario.text, Rewriting(scenario).windows({("takes", "a", "to"): (7, 9, "")}))
+    assert found == text + "travel takes from a to to takes 7 to 9"
 
 
 def test_sizes_are_replaced_or_come_before_the_location() -> None:
@@ -118,10 +125,10 @@ def test_spots_come_behind_the_pose_and_the_rest_of_the_comment_stays() -> None:
 @pytest.mark.parametrize(
     ("behind", "before", "after"),
     [
-        (("travel", "agent"), "takes 5 // my watch\n", "\nreach_objective"),
-        (("agent",), "of two */\n", "\ntravel bot"),
-        (("connection",), "shelf and desk distance 9\n", "\nevent"),
-        (("poi",), 'poi "shelf"\n', "\n\nconnect"),
+        (("TRAVEL", "AGENT"), "takes 5 // my watch\n", "\nreach_objective"),
+        (("AGENT",), "of two */\n", "\ntravel bot"),
+        (("CONNECT",), "shelf and desk distance 9\n", "\nevent"),
+        (("POI",), 'poi "shelf"\n', "\n\nconnect"),
         ((), "reach_objective: do drop\n", "\n"),
     ],
 )
@@ -135,7 +142,7 @@ def test_new_statements_come_below_the_last_one_of_their_kind(behind: List[str],
 def test_a_statement_added_to_a_text_without_travel_times_is_read() -> None:
     text = re.sub(r"travel.*\n.*\n", "", TEXT)
     added = edited(
-        text, Rewriting(read(text)).statements(("travel", "agent"), ["travel bot from hall to desk takes 1 to 2"])
+        text, Rewriting(read(text)).statements(("TRAVEL", "AGENT"), ["travel bot from hall to desk takes 1 to 2"])
     )
     assert [travel.window for travel in read(added).travels] == [(1, 2)]
 

@@ -80,6 +80,14 @@ def test_the_text_with_the_period_means_the_same_and_keeps_its_lines() -> None:
         ("gate", 40, True), ("vault", 40, True), ("hall", 40, False),
     ]  # fmt: skip
     assert again.safety[2].span.line == parse(text, "x.pur", "x").safety[2].span.line
+    assert found.text.replace(" every 40", "") == text, "nothing else changes, comments neither"
+
+
+def test_what_is_optional_stays_so_in_the_text_with_the_period() -> None:
+    wanted = "optional 2 objective: patrol gate, hall in order{} by bot1 // now and then\n"
+    found = with_period(parse(ROOMS + wanted.format(""), "x.pur", "x"), 40)
+    assert found.text == ROOMS + wanted.format(" every 40")
+    assert [each.optional for each in parse(found.text, "x.pur", "x").safety] == [2, 2]
 
 
 def test_where_nothing_can_be_promised_that_is_said() -> None:

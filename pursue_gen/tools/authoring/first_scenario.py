@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Iterable, List, Optional
 
 from pursue_gen.diagnostics import usage_error
-from pursue_gen.language.checks import check_reading
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.names import check_names
-from pursue_gen.language.parser import parse, read, without_errors
+from pursue_gen.language.parser import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules
@@ -182,12 +181,6 @@ def place_for(name: str, output: Optional[Path]) -> Path:
             hint = "use letters, digits and _, a letter first: pursue-gen new my_floor"
             raise usage_error(f"{word!r} cannot be the name of a scenario", hint)
     return file
-
-
-def checked(text: str, file: str) -> Scenario:
-    """The scenario in the text. Raises PursueError with every error (names that are fine alone may collide)."""
-    reading = read(text, file)
-    return without_errors(reading.scenario, check_reading(reading))
 
 
 def tried(scenario: Scenario, progress: Optional[Listener] = None) -> None:

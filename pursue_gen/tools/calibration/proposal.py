@@ -8,11 +8,10 @@ from math import ceil
 from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import counted
-from pursue_gen.language.checks import check_reading
-from pursue_gen.language.edits import Edit, edited
-from pursue_gen.language.numbers import decimal_text, exact
-from pursue_gen.language.parser import read, without_errors
-from pursue_gen.language.rewriting import Rewriting
+from pursue_gen.language.checks import checked
+from pursue_gen.language.document import Edit, edited
+from pursue_gen.language.numbers import Number, decimal_text, exact
+from pursue_gen.language.rewriting import Movement, Rewriting
 from pursue_gen.language.scenario import Scenario, Window
 from pursue_gen.tools.calibration.samples import Measured, Sample, Samples, Unused, Way, Work, by_what, of_record
 from pursue_gen.tools.calibration.windows import (
@@ -163,25 +162,20 @@ class Proposal:
     def text(self) -> str:
         """The scenario's text with the proposed windows."""
         rewriting = Rewriting(self.scenario)
-        travels = {(travel.agent.name, *travel.way): travel for travel in self.scenario.travels}
         events = {event.name: event for event in self.scenario.events}
         edits: List[Edit] = []
-        added: List[str] = []
+        ways: Dict[Movement, Tuple[Number, Number, str]] = {}
         for each in self.changes:
             what, (low, high), remark = each.what, each.proposed, f"{BY}: {each.source}"
             if isinstance(what, Work):
                 edits += rewriting.duration(events[what.event], low, high, remark)
-            elif (what.agent, what.a, what.b) in travels:
-                edits += rewriting.travel(travels[what.agent, what.a, what.b], low, high, remark)
             else:
-                takes = f"takes {decimal_text(low)} to {decimal_text(high)}"
-                added.append(f"travel {what.agent} from {what.a} to {what.b} {takes} // {remark}")
-        return edited(self.scenario.text, [*edits, *rewriting.statements(("travel", "agent"), added)])
+                ways[what.agent, what.a, what.b] = low, high, remark
+        return edited(self.scenario.text, [*edits, *rewriting.windows(ways)])
 
     def checked(self) -> Scenario:
         """The scenario with the proposed windows. Raises PursueError where they cannot be meant."""
-        reading = read(self.text(), f"{self.scenario.file} with the proposal", self.scenario.name)
-        return without_errors(reading.scenario, check_reading(reading))
+        return checked(self.text(), f"{self.scenario.file} with the proposal", self.scenario.name)
 
 
 def propose(scenario: Scenario, samples: Samples, options: Options) -> Proposal:

@@ -45,8 +45,9 @@ def new(
     """
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.files import write_texts
+    from pursue_gen.language.checks import checked
     from pursue_gen.tools.authoring.dialog import ask_requirements
-    from pursue_gen.tools.authoring.first_scenario import checked, place_for, scenario_text, tried
+    from pursue_gen.tools.authoring.first_scenario import place_for, scenario_text, tried
     from pursue_gen.tools.commands.dialog import StreamDialog
 
     file = place_for(name, output)

@@ -47,16 +47,11 @@ class Jobs:
 
     def solve(self, text: str) -> Dict[str, Any]:
         """Solves a text, instead of what is under way; the state."""
-        with self._lock:
-            self._launch(solve, self._work(text))
-            self._report = ""
-        return self.state()
+        return self._launched(solve, self._work(text), "")
 
     def play(self, text: str) -> Dict[str, Any]:
         """Begins a game of a text, instead of what is under way; the state."""
-        with self._lock:
-            self._launch(play, self._work(text))
-        return self.state()
+        return self._launched(play, self._work(text))
 
     def survey(self, text: str, radius: Optional[float], speed: Optional[float], ways: bool) -> Dict[str, Any]:
         """Measures a text's ways on the map, instead of what is under way; the state. As `SurveyWork`.
@@ -66,9 +61,7 @@ class Jobs:
         if self._floor is None:
             raise refused("there is no map to measure on", "pursue-gen draw map.yaml my_floor.pur")
         given = SurveyWork(text, self._file, self._floor, self._seconds, self._memory, self.told, radius, speed, ways)
-        with self._lock:
-            self._launch(survey, given)
-        return self.state()
+        return self._launched(survey, given)
 
     def say(self, line: str) -> Dict[str, Any]:
         """Passes on what the person types in a game; the state. Raises PursueError where no game is under way."""
@@ -104,6 +97,14 @@ class Jobs:
 
     def _work(self, text: str) -> Work:
         return Work(text, self._file, self._floor, self._seconds, self._memory, self.told)
+
+    def _launched(
+        self, target: Callable[[Any, Connection], None], given: Work, report: Optional[str] = None
+    ) -> Dict[str, Any]:
+        with self._lock:
+            self._launch(target, given)
+            self._report = self._report if report is None else report
+        return self.state()
 
     def _launch(self, target: Callable[[Any, Connection], None], given: Work) -> None:
         self.end()

@@ -10,30 +10,27 @@ from itertools import count
 from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
-from pursue_gen.language.formatter import format_text
+from pursue_gen.language.draft import Draft
+from pursue_gen.language.formatter import format_text, formatted
+from pursue_gen.language.forms import FORMS, HOLE, Form
 from pursue_gen.language.messages import RESERVED
 from pursue_gen.language.names import KINDS
+from pursue_gen.language.navigation import rename
 from pursue_gen.language.poses import read_poses
+from pursue_gen.language.rewriting import PARTS, parts_of
+from pursue_gen.language.syntax import DECLARED, Statement, bare
 from pursue_gen.language.usable import reserved
 from pursue_gen.tools.draw import fields
 from pursue_gen.tools.draw.fields import Values, refused
 from pursue_gen.tools.draw.places import lengths_per_metre, positions, with_all_positions
 from pursue_gen.tools.draw.poses import metres, with_position, with_spot
 from pursue_gen.tools.draw.statement_edits import (
-    PARTS,
     added,
-    changed,
-    parts_of,
     restated,
     with_part,
     without,
     without_remark,
 )
-from pursue_gen.tools.lsp.completion import HOLE
-from pursue_gen.tools.lsp.document import Document
-from pursue_gen.tools.lsp.forms import FORMS, Form
-from pursue_gen.tools.lsp.navigation import rename
-from pursue_gen.tools.lsp.tokens import DECLARED, Statement
 
 ANYBODY = ("any robot", "no robot", "any agent", "no agent")
 """What may stand in the place of an agent's name in some statements."""
@@ -57,7 +54,7 @@ def change(text: str, operation: Any, file: str = "scenario.pur") -> Changed:
     if does is None:
         raise refused("the page sent a change that is not known", "load the page again")
     try:
-        document = Document.of(format_text(text, file), file)
+        document = Draft.of(format_text(text, file), file)
     except PursueError as problem:
         first = problem.diagnostics[0]
         where = f" in line {first.span.line}" if first.span else ""
@@ -66,19 +63,19 @@ def change(text: str, operation: Any, file: str = "scenario.pur") -> Changed:
         raise PursueError([error("DRW002", message, hint=hint)]) from None
     after, statement = does(document, operation)
     try:
-        return Changed(format_text(after.text, file), statement)
+        return Changed(formatted(after), statement)
     except PursueError as problem:
         first = problem.diagnostics[0]
         raise refused(f"this cannot be written: {first.message}", first.hint) from None
 
 
-Done = Tuple[Document, Optional[int]]
+Done = Tuple[Draft, Optional[int]]
 
 
 # Places ---------------------------------------------------------------------------------------------------------------
 
 
-def _add_place(document: Document, values: Values) -> Done:
+def _add_place(document: Draft, values: Values) -> Done:
     """{x, y, name?}: a place there; if others have computed positions, these are written down, too."""
     x, y = fields.metres_of(values, "x"), fields.metres_of(values, "y")
     name = _new_name(document, values, "place")
@@ -86,7 +83,7 @@ def _add_place(document: Document, values: Values) -> Done:
     return added(document, f'poi "{name}" {with_position(None, x, y)}')
 
 
-def _move_place(document: Document, values: Values) -> Done:
+def _move_place(document: Draft, values: Values) -> Done:
     """{name, x, y, yaw?}: the place is there; `yaw` in degrees."""
     name = fields.name_of(values, "name")
     x, y = fields.metres_of(values, "x"), fields.metres_of(values, "y")
@@ -97,7 +94,7 @@ def _move_place(document: Document, values: Values) -> Done:
     return with_part(document, number, "POSE", with_position(str(pose[0]) if pose else None, x, y, yaw)), number
 
 
-def _move_spot(document: Document, values: Values) -> Done:
+def _move_spot(document: Draft, values: Values) -> Done:
     """{name, robot, x, y}: the robot's own spot at the place is there."""
     name, robot = fields.name_of(values, "name"), fields.name_of(values, "robot")
     x, y = fields.metres_of(values, "x"), fields.metres_of(values, "y")
@@ -111,7 +108,7 @@ def _move_spot(document: Document, values: Values) -> Done:
     return with_part(document, number, "POSE", comment), number
 
 
-def _connect(document: Document, values: Values) -> Done:
+def _connect(document: Draft, values: Values) -> Done:
     """{a, b, distance?, one_way?}: a way; without a distance it has the length of the line, in the scenario's unit."""
     a, b = fields.name_of(values, "a"), fields.name_of(values, "b")
     for name in (a, b):
@@ -135,7 +132,7 @@ def _joins(statement: Statement, a: str, b: str, one_way: bool) -> bool:
     return ends in ((a, b), (b, a))
 
 
-def _length(document: Document, a: str, b: str) -> str:
+def _length(document: Draft, a: str, b: str) -> str:
     """How long the straight line is in the scenario's unit of distance, 0.1 at least."""
     where, _ = positions(document.scenario)
     (ax, ay), (bx, by) = ((where[name].x, where[name].y) for name in (a, b))
@@ -146,7 +143,7 @@ def _length(document: Document, a: str, b: str) -> str:
 # Agents and events ----------------------------------------------------------------------------------------------------
 
 
-def _add_agent(document: Document, values: Values) -> Done:
+def _add_agent(document: Draft, values: Values) -> Done:
     """{location, name?}: a robot there."""
     location = fields.name_of(values, "location")
     _declared(document, "POI", location)
@@ -154,23 +151,23 @@ def _add_agent(document: Document, values: Values) -> Done:
     return added(document, f'agent "{name}" controllable mobile 1 location {location}')
 
 
-def _add_event(document: Document, values: Values) -> Done:
+def _add_event(document: Draft, values: Values) -> Done:
     """{location?, name?}: an event, anywhere or there."""
     name = _new_name(document, values, "work")
     location = f" location {fields.name_of(values, 'location')}" if values.get("location") else ""
     return added(document, f'event "{name}"{location}')
 
 
-def _rename(document: Document, values: Values) -> Done:
+def _rename(document: Draft, values: Values) -> Done:
     """{kind, name, new}: another name, wherever it is used."""
     kind, name, new = (fields.text_of(values, field) for field in ("kind", "name", "new"))
     if kind not in KINDS or name not in document.declared[kind]:
         raise refused(f"there is no {kind} {name}", "choose it again")
     here = document.declared[kind][name]
-    return changed(document, *rename(document, here.start, new)), here.statement
+    return document.changed(*rename(document, here.start, new)), here.statement
 
 
-def _set(document: Document, values: Values) -> Done:
+def _set(document: Draft, values: Values) -> Done:
     """{statement, fields: {…}}: parts of a place, a way, an event or an agent; see _FIELDS."""
     number = fields.index_of(values, "statement", len(document.statements))
     wanted, known = values.get("fields"), _FIELDS.get(document.statements[number].kind, {})
@@ -252,7 +249,7 @@ _FIELDS: Mapping[str, Mapping[str, Callable[[Values, str], Parts]]] = {
 # All other statements -------------------------------------------------------------------------------------------------
 
 
-def _add_form(document: Document, values: Values) -> Done:
+def _add_form(document: Draft, values: Values) -> Done:
     """{kind, form, values: […]}: a statement of FORMS, its holes filled in order."""
     kind = fields.text_of(values, "kind")
     if kind not in FORMS:
@@ -280,27 +277,27 @@ def filled(form: Form, given: Any) -> str:
     return words
 
 
-def _restate(document: Document, values: Values) -> Done:
+def _restate(document: Draft, values: Values) -> Done:
     """{statement, words}: other words for a statement."""
     number = fields.index_of(values, "statement", len(document.statements))
     words = fields.text_of(values, "words")
     if document.statements[number].kind in PARTS:
         raise refused("this statement has a form of its own", "load the page again")
-    alone = Document.of(words, document.file).statements
+    alone = Draft.of(words, document.file).statements
     if len(alone) != 1 or not words:
         raise refused("expected the words of one statement", "add others on their own")
     return restated(document, number, words), number
 
 
-def _delete(document: Document, values: Values) -> Done:
+def _delete(document: Draft, values: Values) -> Done:
     """{statement}: without it; a place goes with its ways, an agent with its travel times and its battery."""
     number = fields.index_of(values, "statement", len(document.statements))
     statement = document.statements[number]
     goes_along = {"POI": ("CONNECT", "TRAVEL"), "AGENT": ("TRAVEL", "BATTERY")}.get(statement.kind, ())
     using = [use for use in _users(document, number) if document.statements[use].kind not in goes_along]
     if using:
-        name = str(statement.name or "")[1:-1]
-        lines = [str(document.positions.line_of(document.statements[use].start) + 1) for use in using]
+        name = bare(statement.name)
+        lines = [str(document.lines.of(document.statements[use].start) + 1) for use in using]
         where = f"line{'s' if len(lines) > 1 else ''} {', '.join(lines)}"
         raise refused(f"{name} is used in {where}", "change or delete what uses it first")
     numbers = [number, *_users(document, number)]
@@ -310,20 +307,20 @@ def _delete(document: Document, values: Values) -> Done:
     return without(document, sorted(set(numbers))), None
 
 
-def _users(document: Document, number: int) -> List[int]:
+def _users(document: Draft, number: int) -> List[int]:
     """The other statements that use the name which a statement declares."""
     statement = document.statements[number]
-    kind, name = DECLARED.get(statement.kind), str(statement.name or "")[1:-1]
+    kind, name = DECLARED.get(statement.kind), bare(statement.name)
     others = (use for use in document.occurrences if use.name == name and use.kind == kind and not use.declares)
     return sorted({use.statement for use in others} - {number}) if name else []
 
 
-def _format(document: Document, _: Values) -> Done:
+def _format(document: Draft, _: Values) -> Done:
     """{}: the layout alone."""
     return document, None
 
 
-def _declared(document: Document, kind: str, name: str) -> int:
+def _declared(document: Draft, kind: str, name: str) -> int:
     """The number of the statement that declares a name. Raises PursueError where none does."""
     found = document.declared[kind].get(name)
     if found is None:
@@ -331,7 +328,7 @@ def _declared(document: Document, kind: str, name: str) -> int:
     return found.statement
 
 
-def _new_name(document: Document, values: Values, stem: str) -> str:
+def _new_name(document: Draft, values: Values, stem: str) -> str:
     """The name that was typed, or else one that is free."""
     taken = {name for kind in KINDS for name in document.declared[kind]}
     if not values.get("name"):
@@ -343,7 +340,7 @@ def _new_name(document: Document, values: Values, stem: str) -> str:
     return name
 
 
-_OPERATIONS: Mapping[str, Callable[[Document, Values], Done]] = {
+_OPERATIONS: Mapping[str, Callable[[Draft, Values], Done]] = {
     "add place": _add_place,
     "move place": _move_place,
     "move spot": _move_spot,

@@ -10,12 +10,12 @@ from typing import Any, Callable, Dict, Mapping, Optional
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing.floor_picture import CLOSE, read_floor
 from pursue_gen.drawing.ground import read_ground
+from pursue_gen.language.lines import plain
 from pursue_gen.language.syntax import MOST_LETTERS
 from pursue_gen.tools.draw import fields, storage
 from pursue_gen.tools.draw.jobs import Jobs
 from pursue_gen.tools.draw.operations import ANYBODY, change
 from pursue_gen.tools.draw.view import forms, view
-from pursue_gen.tools.lsp.positions import plain
 
 Answer = Dict[str, Any]
 
@@ -53,7 +53,7 @@ class DrawPage:
         }
         try:
             if request not in known:
-                raise _bad("this is not known here", "load the page again")
+                raise fields.refused("this is not known here", "load the page again")
             return known[request](body)
         except PursueError as problem:
             first = problem.diagnostics[0]
@@ -100,12 +100,8 @@ class DrawPage:
 def _text(values: Mapping[str, Any]) -> str:
     text = values.get("text")
     if not isinstance(text, str) or len(text) > MOST_LETTERS + 1:
-        raise _bad(f"the page sent no text of at most {MOST_LETTERS:,} letters", "make it shorter")
+        raise fields.refused(f"the page sent no text of at most {MOST_LETTERS:,} letters", "make it shorter")
     return plain(text)
-
-
-def _bad(message: str, hint: str) -> PursueError:
-    return PursueError([error("DRW001", message, hint=hint)])
 
 
 def file_for(scenario: Optional[Path], floor: Optional[Path]) -> Path:

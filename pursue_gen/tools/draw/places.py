@@ -8,11 +8,12 @@ from typing import Mapping, Tuple
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.drawing import layout
+from pursue_gen.drawing.layout import MOST_PLACES, drawable
+from pursue_gen.language.draft import Draft
+from pursue_gen.language.rewriting import parts_of
 from pursue_gen.language.scenario import Connection, Poi, Pose, Scenario
 from pursue_gen.tools.draw.poses import with_position
-from pursue_gen.tools.draw.statement_edits import parts_of, with_part
-from pursue_gen.tools.lsp.document import Document
-from pursue_gen.tools.lsp.map_preview import MOST_PLACES, drawable
+from pursue_gen.tools.draw.statement_edits import with_part
 
 _NOWHERE = Span("", 1, 1, 1, 1)
 
@@ -33,7 +34,7 @@ def _computed(scenario: Scenario) -> Tuple[Mapping[str, Pose], bool]:
     return layout.poses(scenario)
 
 
-def with_all_positions(document: Document) -> Document:
+def with_all_positions(document: Draft) -> Draft:
     """The text with the positions that are computed written down; none are, where every place has a pose."""
     where, computed = positions(document.scenario)
     if not computed:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from multiprocessing.connection import Connection
 from typing import Any, Dict, List, Sequence
 
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.checks import checked
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.solving.inputs import settled
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules
 from pursue_gen.synthesis.limits import Limits
-from pursue_gen.tools.draw.solve_work import ERRORS, Progressing, Work, scenario_of, sentences, working
+from pursue_gen.tools.draw.solve_work import Progressing, Work, working
 from pursue_gen.tools.play.games import session_of
 from pursue_gen.tools.play.session import Session, answer, choices, opening
 
@@ -22,11 +22,7 @@ _NOT_HERE = ("save", "quit", "exit")
 def play(given: Work, pipe: Connection) -> None:
     """Sends {"game": …} for the beginning and after each line that comes; ends where nothing comes any more."""
     with working(pipe):
-        try:
-            session = _begun(given, pipe)
-        except PursueError as problem:
-            pipe.send({"verdict": ERRORS, "lines": sentences(problem.diagnostics)})
-            return
+        session = _begun(given, pipe)
         lines: Sequence[str] = opening(session)
         for turn in range(1, 1_000_000):
             pipe.send({"game": _shown(session, lines, turn)})
@@ -42,7 +38,7 @@ def _begun(given: Work, pipe: Connection) -> Session:
     progress = Progressing(pipe)
     limits = Limits(given.seconds, given.memory)
     request = SolveRequest(options=SolveOptions(limits=limits, progress=progress))
-    scenario = settled(scenario_of(given), request, progress)
+    scenario = settled(checked(given.text, given.file), request, progress)
     return session_of(scenario, Rules(), 1, limits, progress)
 
 

@@ -7,6 +7,7 @@ import re
 from typing import Optional
 
 from pursue_gen.diagnostics import Span
+from pursue_gen.language.numbers import rounded_text
 from pursue_gen.language.poses import read_poses, robots_in
 from pursue_gen.language.scenario import Pose
 
@@ -52,18 +53,13 @@ def heading(pose: Pose) -> float:
 
 def metres(value: float) -> str:
     """A number of metres, in centimetres at the finest."""
-    return _short(value, 2)
+    return rounded_text(value, 2)
 
 
 def _direction(yaw: float) -> str:
     """A turn about z by so many degrees as a unit quaternion."""
     half = math.radians(yaw) / 2
-    return f"0, 0, {_short(math.sin(half), 4)}, {_short(math.cos(half), 4)}"
-
-
-def _short(value: float, digits: int) -> str:
-    text = f"{value:.{digits}f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
+    return f"0, 0, {rounded_text(math.sin(half), 4)}, {rounded_text(math.cos(half), 4)}"
 
 
 def _is_pose(comment: str) -> bool:

@@ -16,8 +16,7 @@ from pursue_gen.diagnostics import Diagnostic, PursueError
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.floor_picture import read_floor
 from pursue_gen.drawing.ground import read_ground
-from pursue_gen.language.checks import check_reading
-from pursue_gen.language.parser import read, without_errors
+from pursue_gen.language.checks import checked
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import condition_of_promise, objective_words, periods_found, promise_words
 from pursue_gen.outcomes import INTERRUPTED, LimitHit, Lost
@@ -68,12 +67,14 @@ class Progressing:
 
 @contextlib.contextmanager
 def working(pipe: Connection) -> Iterator[None]:
-    """Ends this process with the server; an error of the program is sent, and never looks like a verdict."""
+    """Ends this process with the server; an error, be it of the program, is sent, and never looks like a verdict."""
     _end_with_parent()
     try:
         yield
     except (BrokenPipeError, EOFError):  # the server has gone
         pass
+    except PursueError as problem:
+        pipe.send({"verdict": ERRORS, "lines": sentences(problem.diagnostics)})
     except Exception as problem:
         pipe.send({"verdict": ERRORS, "lines": [f"internal error of pursue-gen: {type(problem).__name__}: {problem}"]})
 
@@ -81,16 +82,7 @@ def working(pipe: Connection) -> Iterator[None]:
 def solve(given: Work, pipe: Connection) -> None:
     """Sends {"progress": …} now and then, {"verdict": …, "lines": […]} once, and {"page": …} where it can be made."""
     with working(pipe):
-        try:
-            _solve(given, pipe)
-        except PursueError as problem:
-            pipe.send({"verdict": ERRORS, "lines": sentences(problem.diagnostics)})
-
-
-def scenario_of(given: Work) -> Scenario:
-    """The scenario in the text. Raises PursueError with its errors."""
-    reading = read(given.text, given.file)
-    return without_errors(reading.scenario, check_reading(reading))
+        _solve(given, pipe)
 
 
 def _end_with_parent() -> None:
@@ -111,7 +103,7 @@ def _solve(given: Work, pipe: Connection) -> None:
     start = limits.now()
     progress = Progressing(pipe)
     request = SolveRequest(options=SolveOptions(limits=limits, progress=progress))
-    scenario = settled(scenario_of(given), request, progress)
+    scenario = settled(checked(given.text, given.file), request, progress)
     request = request.since(start)
     if given.floor is not None:
         scenario = with_spots(scenario, read_ground(given.floor), SPOT_DISTANCE, sizes_of(scenario, given.told))

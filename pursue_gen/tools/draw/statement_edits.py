@@ -2,40 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Dict, List, Mapping, Optional, Tuple
+from dataclasses import replace
+from typing import List, Optional, Tuple
 
-from lark import Token
-
-from pursue_gen.language.edits import Edit, edited
-from pursue_gen.language.messages import KEYWORDS
-from pursue_gen.language.rewriting import REMARK
-from pursue_gen.tools.lsp.document import Document
-from pursue_gen.tools.lsp.edits import written
-from pursue_gen.tools.lsp.statements import deleted, inserted
-from pursue_gen.tools.lsp.tokens import Statement, are_names, end_of
-
-PARTS: Mapping[str, Tuple[str, ...]] = {
-    "POI": ("POI", "LABEL", "POSE"),
-    "CONNECT": ("CONNECT", "AND", "DISTANCE", "ONE_WAY", "ONLY_IF"),
-    "EVENT": ("EVENT", "LABEL", "COLLABORATIVE", "TOGETHER", "LOCATION", "DURATION", "AT_MOST", "ONLY_IF"),
-    "AGENT": ("AGENT", "LABEL", "HUMAN", "CONTROLLABLE", "MOBILE", "LOCATION", "CAN_DO", "REACTS_TO"),
-}
-"""The parts of a statement by the word that begins each, in the order in which they stand."""
-
-Part = Tuple[Token, ...]
-
-
-def parts_of(statement: Statement) -> Dict[str, Part]:
-    """The parts of a statement of PARTS that are there: the word that begins each → its tokens, that word first."""
-    begins = PARTS[statement.kind]
-    found: Dict[str, List[Token]] = {}
-    current = ""
-    for token, named in zip(statement.tokens, are_names(statement.tokens)):
-        if token.type in begins and not named and token.type not in found and current != "ONLY_IF":
-            current = token.type
-            found[current] = []
-        found[current].append(token)
-    return {kind: tuple(tokens) for kind, tokens in found.items()}
+from pursue_gen.language.document import Edit, written
+from pursue_gen.language.draft import Draft
+from pursue_gen.language.rewriting import part_edits, parts_of, remark_behind
+from pursue_gen.language.syntax import Statement
 
 
 def words_behind(statement: Statement, kind: str) -> str:
@@ -48,68 +21,52 @@ def names_behind(statement: Statement, kind: str) -> List[str]:
     return [str(token) for token in parts_of(statement).get(kind, ())[1:] if token.type != "COMMA"]
 
 
-def with_part(document: Document, number: int, kind: str, words: Optional[str]) -> Document:
+def with_part(document: Draft, number: int, kind: str, words: Optional[str]) -> Draft:
     """The text with a part of a statement (by its number) written anew, added, or left out (None).
 
     `words` are those behind the word that begins the part; of a POSE they are the comment itself.
     """
     statement = document.statements[number]
-    found = parts_of(statement)
-    text = words if words is None or kind == "POSE" else f"{KEYWORDS[kind]} {words}".rstrip()
-    old = found.get(kind, ())
-    edits = [written(token, "") for token in old]
-    if text is not None and old:
-        edits[0] = Edit(edits[0].start, edits[0].end, text)
-    elif text is not None:
-        begins = PARTS[statement.kind]
-        before = [part for part in begins[: begins.index(kind)] if part in found]
-        at = end_of(found[before[-1]][-1])
-        edits.append(Edit(at, at, f" {text}{_break(document, at) if kind == 'POSE' else ''}"))
-    return changed(document, *edits)
+    edits = part_edits(statement, kind, words)
+    if kind == "POSE" and len(edits) == 1 and edits[0].start == edits[0].end:
+        edits = [replace(edits[0], text=edits[0].text + _break(document, edits[0].end))]
+    return document.changed(*edits)
 
 
-def _break(document: Document, at: int) -> str:
+def _break(document: Draft, at: int) -> str:
     """A line end where a pose, which goes on to the end of its line, would otherwise swallow the begin of a block."""
-    rest = document.text[at : document.positions.line_end(document.positions.line_of(at))].strip()
+    rest = document.text[at : document.lines.end_at(at)].strip()
     return "" if not rest or rest.startswith("//") else "\n"
 
 
-def without_remark(document: Document, number: int) -> Document:
+def without_remark(document: Draft, number: int) -> Draft:
     """The text without the remark behind a statement that says which command its number comes from: a person has
     written another one.
     """
-    end = document.statements[number].end
-    line = document.positions.line_end(document.positions.line_of(end))
-    behind = (comment for comment in document.comments if end <= (comment.start_pos or 0) < line)
-    remarks = [comment for comment in behind if REMARK.match(comment)]
-    return changed(document, *(written(one, "") for one in remarks))
+    remark = remark_behind(document, document.statements[number])
+    return document if remark is None else document.changed(written(remark, ""))
 
 
-def restated(document: Document, number: int, words: str) -> Document:
+def restated(document: Draft, number: int, words: str) -> Draft:
     """The text with other words in the place of a statement's."""
     first, *others = document.statements[number].tokens
-    return changed(document, written(first, words), *(written(token, "") for token in others))
+    return document.changed(written(first, words), *(written(token, "") for token in others))
 
 
-def added(document: Document, words: str) -> Tuple[Document, int]:
+def added(document: Draft, words: str) -> Tuple[Draft, int]:
     """The text with a new statement behind those of its kind, and the number of the statement."""
-    edits = inserted(document, words)
-    number = sum(statement.start < edits[0].start for statement in document.statements)
-    return changed(document, *edits), number
+    edit = document.inserted(words)
+    number = sum(statement.start < edit.start for statement in document.statements)
+    return document.changed(edit), number
 
 
-def without(document: Document, numbers: List[int]) -> Document:
+def without(document: Draft, numbers: List[int]) -> Draft:
     """The text without these statements; comments in them and behind them stay."""
     edits: List[Edit] = []
     for number in numbers:
         statement = document.statements[number]
-        if any(statement.start < (comment.start_pos or 0) < statement.end for comment in document.comments):
+        if document.comments_in(statement):
             edits += [written(token, "") for token in statement.tokens]
         else:
-            edits += deleted(document, statement)
-    return changed(document, *edits)
-
-
-def changed(document: Document, *edits: Edit) -> Document:
-    """The document after edits that do not overlap."""
-    return Document(edited(document.text, edits), document.file, document.named)
+            edits.append(document.deleted(statement))
+    return document.changed(*edits)

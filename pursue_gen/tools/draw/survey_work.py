@@ -7,7 +7,6 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Dict, Optional
 
-from pursue_gen.diagnostics import PursueError
 from pursue_gen.drawing.ground import read_ground
 from pursue_gen.language.formatter import format_text
 from pursue_gen.tools.draw.solve_work import ERRORS, Work, sentences, working
@@ -41,8 +40,6 @@ def survey(given: SurveyWork, pipe: Connection) -> None:
         except ImportError as problem:
             what = f"this needs the Python packages numpy and scipy, which are not installed here ({problem})"
             pipe.send({"verdict": ERRORS, "lines": [f"{what}: pip install 'pursue-gen[survey]'"]})
-        except PursueError as problem:
-            pipe.send({"verdict": ERRORS, "lines": sentences(problem.diagnostics)})
 
 
 def _measured(given: SurveyWork, floor: Path) -> Dict[str, Any]:

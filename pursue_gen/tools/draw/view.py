@@ -6,18 +6,18 @@ from typing import Any, Collection, Dict, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Severity, as_json, in_order
 from pursue_gen.drawing.ground import Ground
+from pursue_gen.drawing.layout import drawable
 from pursue_gen.drawing.look import agent_looks, mark
+from pursue_gen.language.draft import Draft
+from pursue_gen.language.forms import FORMS, HOLE
 from pursue_gen.language.names import KINDS
+from pursue_gen.language.rewriting import parts_of
+from pursue_gen.language.syntax import Statement, bare
 from pursue_gen.language.wording import objective_words
 from pursue_gen.solving.inputs import findings_of
 from pursue_gen.tools.draw.places import positions
 from pursue_gen.tools.draw.poses import heading
-from pursue_gen.tools.draw.statement_edits import names_behind, parts_of, words_behind
-from pursue_gen.tools.lsp.completion import HOLE
-from pursue_gen.tools.lsp.document import Document
-from pursue_gen.tools.lsp.forms import FORMS
-from pursue_gen.tools.lsp.map_preview import drawable
-from pursue_gen.tools.lsp.tokens import Statement
+from pursue_gen.tools.draw.statement_edits import names_behind, words_behind
 from pursue_gen.workspace.map_check import but_for_ways, check_spots
 from pursue_gen.workspace.robot_size import NOTHING_TOLD, Told, sizes_of
 from pursue_gen.workspace.spots import SPOT_DISTANCE
@@ -36,7 +36,7 @@ def view(
     Distances and times are texts as they are written, positions metres, headings degrees; `statement` is the number by
     which `operations.change` knows a part, `from` and `to` are its first and last line, counted from 1.
     """
-    document = Document.of(text, file)
+    document = Draft.of(text, file)
     found = _findings(document, ground, told)
     places = _places(document)
     return {
@@ -68,7 +68,7 @@ def forms() -> List[Dict[str, Any]]:
     return found
 
 
-def _findings(document: Document, ground: Optional[Ground], told: Told) -> Tuple[Diagnostic, ...]:
+def _findings(document: Draft, ground: Optional[Ground], told: Told) -> Tuple[Diagnostic, ...]:
     """What `pursue-gen check` reports, with --map where there is a map."""
     found = findings_of(document.reading)
     scenario = document.reading.scenario
@@ -78,17 +78,17 @@ def _findings(document: Document, ground: Optional[Ground], told: Told) -> Tuple
     return in_order((*found, *check_spots(scenario, ground, SPOT_DISTANCE, sizes_of(scenario, told))))
 
 
-def _wanted(document: Document, findings: Sequence[Diagnostic]) -> List[str]:
+def _wanted(document: Draft, findings: Sequence[Diagnostic]) -> List[str]:
     """The objectives in sentences; none as long as there are errors."""
     wrong = any(one.severity is Severity.ERROR for one in findings)
     return [] if wrong or document.reading.scenario is None else objective_words(document.reading.scenario)
 
 
-def _finding(document: Document, finding: Diagnostic) -> Dict[str, Any]:
+def _finding(document: Draft, finding: Diagnostic) -> Dict[str, Any]:
     """A finding with `start` and `end` as offsets that JavaScript counts; None where it is about the whole text."""
     shown = as_json(finding)
     if finding.span is not None:
-        start, end = document.positions.of_span(finding.span)
+        start, end = document.lines.of_span(finding.span)
         shown["start"], shown["end"] = (_in_utf_16(document.text, at) for at in (start, end))
     return shown
 
@@ -98,14 +98,14 @@ def _in_utf_16(text: str, offset: int) -> int:
     return offset if before.isascii() else len(before.encode("utf-16-le", "surrogatepass")) // 2
 
 
-def _placed(document: Document, number: int) -> Dict[str, Any]:
+def _placed(document: Draft, number: int) -> Dict[str, Any]:
     """The lines of a statement."""
     statement = document.statements[number]
-    first, last = (document.positions.line_of(at) + 1 for at in (statement.start, statement.end))
+    first, last = (document.lines.of(at) + 1 for at in (statement.start, statement.end))
     return {"statement": number, "from": first, "to": last}
 
 
-def _whole(document: Document, kind: str) -> List[Tuple[int, Statement]]:
+def _whole(document: Draft, kind: str) -> List[Tuple[int, Statement]]:
     """The statements of a kind whose parts can be shown: those that name something begin with its name."""
     found = []
     for number, statement in enumerate(document.statements):
@@ -115,13 +115,13 @@ def _whole(document: Document, kind: str) -> List[Tuple[int, Statement]]:
     return found
 
 
-def _is_first(document: Document, number: int) -> bool:
+def _is_first(document: Draft, number: int) -> bool:
     """True where no statement above declares the same name."""
-    name = str(document.statements[number].name)[1:-1]
+    name = bare(document.statements[number].name)
     return any(kind.get(name) and kind[name].statement == number for kind in document.declared.values())
 
 
-def _places(document: Document) -> List[Dict[str, Any]]:
+def _places(document: Draft) -> List[Dict[str, Any]]:
     where, _ = positions(document.scenario)
     found = []
     for poi in drawable(document.scenario).pois:
@@ -135,7 +135,7 @@ def _places(document: Document) -> List[Dict[str, Any]]:
     return found
 
 
-def _ways(document: Document, known: Collection[str]) -> List[Dict[str, Any]]:
+def _ways(document: Draft, known: Collection[str]) -> List[Dict[str, Any]]:
     """The ways between places that are shown."""
     found = []
     for number, statement in _whole(document, "CONNECT"):
@@ -143,16 +143,16 @@ def _ways(document: Document, known: Collection[str]) -> List[Dict[str, Any]]:
         if a in known and b in known and a != b:
             way = {"a": a, "b": b, "distance": words_behind(statement, "DISTANCE")}
             way["only_if"] = words_behind(statement, "ONLY_IF")
-            found.append({**way, "one_way": statement.has("ONE_WAY"), **_placed(document, number)})
+            found.append({**way, "one_way": statement.first("ONE_WAY") is not None, **_placed(document, number)})
     return found
 
 
-def _agents(document: Document) -> List[Dict[str, Any]]:
+def _agents(document: Draft) -> List[Dict[str, Any]]:
     statements = [(k, one) for k, one in _whole(document, "AGENT") if one.name is not None]
-    looks = agent_looks([str(one.name)[1:-1] for _, one in statements])
+    looks = agent_looks([bare(one.name) for _, one in statements])
     found = []
     for number, one in statements:
-        name, parts = str(one.name)[1:-1], parts_of(one)
+        name, parts = bare(one.name), parts_of(one)
         kind = "free" if "CONTROLLABLE" not in parts else "person" if "HUMAN" in parts else "robot"
         agent = {"name": name, "label": words_behind(one, "LABEL")[1:-1], "kind": kind}
         agent.update(mobile=words_behind(one, "MOBILE"), location=words_behind(one, "LOCATION"))
@@ -162,13 +162,13 @@ def _agents(document: Document) -> List[Dict[str, Any]]:
     return found
 
 
-def _events(document: Document) -> List[Dict[str, Any]]:
+def _events(document: Draft) -> List[Dict[str, Any]]:
     found = []
     for number, one in _whole(document, "EVENT"):
         if one.name is None:
             continue
         parts = parts_of(one)
-        event = {"name": str(one.name)[1:-1], "label": words_behind(one, "LABEL")[1:-1]}
+        event = {"name": bare(one.name), "label": words_behind(one, "LABEL")[1:-1]}
         texts = {key: words_behind(one, key.upper()) for key in ("location", "duration", "only_if")}
         at_most = words_behind(one, "AT_MOST").partition(" ")[0]
         ticks = {key: key.upper() in parts for key in ("collaborative", "together")}
@@ -176,14 +176,9 @@ def _events(document: Document) -> List[Dict[str, Any]]:
     return found
 
 
-def _other(document: Document, number: int) -> Dict[str, Any]:
+def _other(document: Draft, number: int) -> Dict[str, Any]:
     """A statement as its words."""
     statement = document.statements[number]
     words = " ".join(document.text[statement.start : statement.end].split())
-    plain = _is_plain(document, statement)
-    return {"kind": statement.kind, "words": words, "single": plain, **_placed(document, number)}
-
-
-def _is_plain(document: Document, statement: Statement) -> bool:
-    """True where no comment is in it: then its words can be changed as one line."""
-    return not any(statement.start < (token.start_pos or 0) < statement.end for token in document.comments)
+    single = not document.comments_in(statement)  # then its words can be changed as one line
+    return {"kind": statement.kind, "words": words, "single": single, **_placed(document, number)}

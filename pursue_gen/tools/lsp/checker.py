@@ -6,7 +6,7 @@ import threading
 import time
 from typing import Callable, Dict
 
-from pursue_gen.tools.lsp.document import Document
+from pursue_gen.tools.lsp.open_document import OpenDocument
 
 PAUSE = 0.1
 """Seconds between a change of a text and its check: one types faster than one reads."""
@@ -15,13 +15,13 @@ PAUSE = 0.1
 class Checker:
     """A daemon thread that passes texts to `publish(uri, document)`, which checks them and sends the findings."""
 
-    def __init__(self, publish: Callable[[str, Document], None]) -> None:
+    def __init__(self, publish: Callable[[str, OpenDocument], None]) -> None:
         self._publish = publish
-        self._waiting: Dict[str, Document] = {}
+        self._waiting: Dict[str, OpenDocument] = {}
         self._wake = threading.Condition()
         threading.Thread(target=self._work, daemon=True).start()
 
-    def request(self, uri: str, document: Document) -> None:
+    def request(self, uri: str, document: OpenDocument) -> None:
         """Queue a text for its check; it replaces an older version that still waits."""
         with self._wake:
             self._waiting[uri] = document

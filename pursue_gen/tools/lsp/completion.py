@@ -4,23 +4,22 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Dict, FrozenSet, Iterator, List, Optional, Sequence, Tuple
+from typing import Dict, FrozenSet, Iterator, List, Optional, Tuple
 
 from lark import Token
 
+from pursue_gen.language.draft import Draft
+from pursue_gen.language.forms import FORMS, HOLE, MEANINGS
 from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES
+from pursue_gen.language.occurrences import SUBJECTS, are_names, condition_start, kinds_behind
 from pursue_gen.language.poses import robots_in
-from pursue_gen.tools.lsp.condition_names import SUBJECTS, condition_start
-from pursue_gen.tools.lsp.document import Document
-from pursue_gen.tools.lsp.forms import FORMS, MEANINGS
-from pursue_gen.tools.lsp.tokens import DECLARED, Statement, accepts, all_tokens, are_names, kinds_behind, statements
+from pursue_gen.language.syntax import DECLARED, accepts, start_of, statements_of, tokens_of
 
 _SIGNS = {"COLON": ":", "COMMA": ",", "LPAR": "(", "RPAR": ")"}
 _POSE = "//[0, 0, 0, 0, 0, 0, 1]"
 _WORD_BEFORE = re.compile(r"[\w-]*\Z")
 _BEHIND_POSE = re.compile(r"\][ \t]*,?[ \t]*(\w*)\Z")
 _WORD_AFTER = re.compile(r"\w*")
-HOLE = re.compile(r"\{(=?)([^}]*)\}")
 _SPECIAL = re.compile(r"[$},|\\]")
 _MOST_CHOICES = 50
 _EXAMPLES = {"POI": "a", "event": "work", "state": "open", "agent": "bot", "rule": "order"}
@@ -46,7 +45,7 @@ class Completion:
     snippet: bool = False
 
 
-def complete(document: Document, offset: int) -> Tuple[Completion, ...]:
+def complete(document: Draft, offset: int) -> Tuple[Completion, ...]:
     """What may be written at an offset; the likeliest first."""
     if document.in_comment(offset):
         return tuple(_robots(document, offset))
@@ -76,7 +75,7 @@ class _Place:
     quoted: Optional[str] = None
 
 
-def _place(document: Document, offset: int) -> _Place:
+def _place(document: Draft, offset: int) -> _Place:
     text = document.text
     before = [part.start for part in document.statements if part.start < offset]
     begin = before[-2] if len(before) > 1 else 0  # the cutter has to see one statement that is complete
@@ -84,25 +83,25 @@ def _place(document: Document, offset: int) -> _Place:
     start = word.start() if word else offset
     after = _WORD_AFTER.match(text, offset)
     end = after.end() if after and start < offset else offset
-    tokens = all_tokens(text[begin:offset])
+    tokens = tokens_of(text[begin:offset]) or ()
     quoted = None
     if tokens and tokens[-1].type == "UNCLOSED_NAME":
-        start, tokens = begin + (tokens[-1].start_pos or 0) + 1, tokens[:-1]
-        closing = text.find('"', offset, document.positions.line_end(document.positions.line_of(offset)))
+        start, tokens = begin + start_of(tokens[-1]) + 1, tokens[:-1]
+        closing = text.find('"', offset, document.lines.end_at(offset))
         end = closing if closing >= 0 else offset
         quoted = ""
     else:
-        tokens = tuple(token for token in tokens if begin + (token.start_pos or 0) < start)
-    parts: Sequence[Statement] = statements(tokens)
+        tokens = tuple(token for token in tokens if begin + start_of(token) < start)
+    parts = statements_of(tokens)
     behind = parts[-1].tokens if parts else ()
     if quoted is not None and len(behind) == 1:
         quoted = behind[0].type
-    line = document.positions.line_start(document.positions.line_of(start))
-    same_line = bool(behind) and "\n" not in text[begin + (behind[-1].start_pos or 0) : start]
+    line = document.lines.start_at(start)
+    same_line = bool(behind) and "\n" not in text[begin + start_of(behind[-1]) : start]
     return _Place(behind, start, end, not text[line:start].strip(), same_line, quoted)
 
 
-def _missing(document: Document, place: _Place, opens: str) -> Iterator[Completion]:
+def _missing(document: Draft, place: _Place, opens: str) -> Iterator[Completion]:
     """Names that are used as what this statement declares, but are declared nowhere."""
     kind = DECLARED.get(opens, "")
     known = document.declared.get(kind, {})
@@ -112,7 +111,7 @@ def _missing(document: Document, place: _Place, opens: str) -> Iterator[Completi
         yield Completion(name, insert, "NAME", "name", place.start, place.end, f"{kind}, declared nowhere", of=kind)
 
 
-def _names(document: Document, place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
+def _names(document: Draft, place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
     """Declared names that fit here."""
     kinds = kinds_behind(place.behind) if "WORD" in expected else ()
     in_condition = condition_start(place.behind) is not None
@@ -120,13 +119,13 @@ def _names(document: Document, place: _Place, expected: FrozenSet[str]) -> Itera
         yield from _names_of(document, place, kind, repeated=in_condition)
 
 
-def _names_of(document: Document, place: _Place, kind: str, repeated: bool) -> Iterator[Completion]:
+def _names_of(document: Draft, place: _Place, kind: str, repeated: bool) -> Iterator[Completion]:
     """Declared names of a kind; without `repeated` only those that the statement does not use yet."""
     used = {str(token) for token, is_name in zip(place.behind, are_names(place.behind)) if is_name}
     known = document.declared[kind]
     fitting = [name for name in known if repeated or name not in used]
     if kind == "event" and place.behind[0].type == "AGENT" and _last_word(place) == "REACTS_TO":
-        together = [name for name in fitting if document.statements[known[name].statement].has("COLLABORATIVE")]
+        together = [name for name in fitting if document.statements[known[name].statement].first("COLLABORATIVE")]
         fitting = together or fitting
     for name in fitting:
         part = document.statements[known[name].statement]
@@ -135,11 +134,11 @@ def _names_of(document: Document, place: _Place, kind: str, repeated: bool) -> I
         yield Completion(name, name, token, "name", place.start, place.end, kind, about, of=kind)
 
 
-def _robots(document: Document, offset: int) -> Iterator[Completion]:
+def _robots(document: Draft, offset: int) -> Iterator[Completion]:
     """The robots that may get a pose behind the others in the comment of a place."""
     for part in document.statements:
         for token in part.tokens:
-            start = token.start_pos or 0
+            start = start_of(token)
             if token.type == "POSE" and start < offset <= start + len(token):
                 before = _BEHIND_POSE.search(document.text, start, offset)
                 after = _WORD_AFTER.match(document.text, offset)
@@ -190,7 +189,7 @@ def _words(place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
             yield Completion(sign, sign, token, "sign", *span)
 
 
-def _statements(document: Document, place: _Place) -> List[Completion]:
+def _statements(document: Draft, place: _Place) -> List[Completion]:
     """Whole statements, with choices of names where names belong."""
     items = []
     for token, forms in FORMS.items():

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Iterable, List, Optional, Sequence, Tuple
+from typing import Iterable, List, Optional, Sequence
 
 from lsprotocol import types as lsp
 
 from pursue_gen.diagnostics import Diagnostic, Severity
-from pursue_gen.language.edits import Edit
+from pursue_gen.language.document import Edit
 from pursue_gen.language.messages import KEYWORDS
+from pursue_gen.language.occurrences import Occurrence
 from pursue_gen.tools.lsp.completion import Completion
-from pursue_gen.tools.lsp.document import Document
 from pursue_gen.tools.lsp.fixes import Fix
+from pursue_gen.tools.lsp.open_document import OpenDocument
 from pursue_gen.tools.lsp.outline import Fold, Symbol
-from pursue_gen.tools.lsp.tokens import Occurrence
 
 _COSTS = "discrete states of the game of this objective alone, which those of others multiply"
 """What a number of states behind an objective means."""
@@ -44,25 +44,25 @@ _SYMBOL_KINDS = {
 }
 
 
-def range_of(document: Document, start: int, end: int) -> lsp.Range:
+def range_of(document: OpenDocument, start: int, end: int) -> lsp.Range:
     """text[start:end] as the editor counts."""
     first, last = document.positions.position(start), document.positions.position(end)
     return lsp.Range(lsp.Position(*first), lsp.Position(*last))
 
 
-def offset_of(document: Document, position: lsp.Position) -> int:
+def offset_of(document: OpenDocument, position: lsp.Position) -> int:
     """The offset that an editor's position means."""
     return document.positions.offset(position.line, position.character)
 
 
 def diagnostic(
-    document: Document, uri: str, finding: Diagnostic, pages: Optional[str], related: bool
+    document: OpenDocument, uri: str, finding: Diagnostic, pages: Optional[str], related: bool
 ) -> lsp.Diagnostic:
     """A finding; its hint as related text where the editor shows that, else in the message.
 
     `pages`: the address of the folder with a page for each code.
     """
-    start, end = document.positions.of_span(finding.span) if finding.span is not None else (0, 0)
+    start, end = document.lines.of_span(finding.span) if finding.span is not None else (0, 0)
     place = range_of(document, start, end)
     severity = lsp.DiagnosticSeverity.Error if finding.severity is Severity.ERROR else lsp.DiagnosticSeverity.Warning
     message, more = finding.message, None
@@ -74,7 +74,7 @@ def diagnostic(
     return lsp.Diagnostic(place, message, severity, finding.code, link, source="PuRSUE-ML", related_information=more)
 
 
-def completion_items(document: Document, items: Iterable[Completion], snippets: bool) -> List[lsp.CompletionItem]:
+def completion_items(document: OpenDocument, items: Iterable[Completion], snippets: bool) -> List[lsp.CompletionItem]:
     """Completions in their order. An editor that knows no snippets gets words instead of them."""
     found = []
     for number, item in enumerate(items):
@@ -99,12 +99,12 @@ def completion_items(document: Document, items: Iterable[Completion], snippets: 
     return found
 
 
-def locations(document: Document, uri: str, places: Iterable[Occurrence]) -> List[lsp.Location]:
+def locations(document: OpenDocument, uri: str, places: Iterable[Occurrence]) -> List[lsp.Location]:
     """Where names stand."""
     return [lsp.Location(uri, range_of(document, place.start, place.end)) for place in places]
 
 
-def highlights(document: Document, places: Iterable[Occurrence]) -> List[lsp.DocumentHighlight]:
+def highlights(document: OpenDocument, places: Iterable[Occurrence]) -> List[lsp.DocumentHighlight]:
     """Where names stand, declarations marked as writing."""
     kinds = lsp.DocumentHighlightKind
     return [
@@ -113,12 +113,12 @@ def highlights(document: Document, places: Iterable[Occurrence]) -> List[lsp.Doc
     ]
 
 
-def text_edits(document: Document, edits: Iterable[Edit]) -> List[lsp.TextEdit]:
+def text_edits(document: OpenDocument, edits: Iterable[Edit]) -> List[lsp.TextEdit]:
     """Edits of the text."""
     return [lsp.TextEdit(range_of(document, edit.start, edit.end), edit.text) for edit in edits]
 
 
-def document_symbols(document: Document, symbols: Iterable[Symbol]) -> List[lsp.DocumentSymbol]:
+def document_symbols(document: OpenDocument, symbols: Iterable[Symbol]) -> List[lsp.DocumentSymbol]:
     """The outline."""
     return [
         lsp.DocumentSymbol(
@@ -138,14 +138,14 @@ def folding_ranges(folds: Iterable[Fold]) -> List[lsp.FoldingRange]:
     return [lsp.FoldingRange(f.first, f.last, kind=kinds.Comment if f.comment else kinds.Region) for f in folds]
 
 
-def inlay_hints(document: Document, start: int, end: int) -> List[lsp.InlayHint]:
+def inlay_hints(document: OpenDocument, start: int, end: int) -> List[lsp.InlayHint]:
     """What the objectives between these offsets cost, behind their statements."""
-    ends = ((document.positions.of_span(size.span)[1], size.in_words()) for size in document.sizes)
+    ends = ((document.lines.of_span(size.span)[1], size.in_words()) for size in document.sizes)
     places = ((lsp.Position(*document.positions.position(at)), words) for at, words in ends if start <= at <= end)
     return [lsp.InlayHint(place, words, tooltip=_COSTS, padding_left=True) for place, words in places]
 
 
-def code_actions(document: Document, uri: str, found: Sequence[Fix], pages: Optional[str]) -> List[lsp.CodeAction]:
+def code_actions(document: OpenDocument, uri: str, found: Sequence[Fix], pages: Optional[str]) -> List[lsp.CodeAction]:
     """Quick fixes, each with the finding that it is about."""
     return [
         lsp.CodeAction(
@@ -157,8 +157,3 @@ def code_actions(document: Document, uri: str, found: Sequence[Fix], pages: Opti
         )
         for fix in found
     ]
-
-
-def whole(document: Document) -> Tuple[int, int]:
-    """The stretch of the whole text."""
-    return 0, len(document.text)

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, Dict, Iterator, Optional, Tuple
+from typing import Callable, Dict, Tuple
 
 from pursue_gen.diagnostics import Diagnostic
-from pursue_gen.language.edits import Edit
+from pursue_gen.language.document import Edit
+from pursue_gen.language.draft import Draft
+from pursue_gen.language.syntax import Statement
 from pursue_gen.tools.lsp import fixes_meaning as meaning
 from pursue_gen.tools.lsp import fixes_numbers as numbers
 from pursue_gen.tools.lsp import fixes_syntax as syntax
-from pursue_gen.tools.lsp.document import Document
-from pursue_gen.tools.lsp.tokens import Statement
+from pursue_gen.tools.lsp.fixes_syntax import Proposals
 
-Proposal = Tuple[str, Tuple[Edit, ...]]
-"""What it would do, for the person, and the edits that do it; the likeliest proposal comes first."""
-
-_Proposer = Callable[[Document, Diagnostic, Optional[Statement], int], Iterator[Proposal]]
+_Proposer = Callable[[Draft, Diagnostic, Statement, int], Proposals]
 
 _PROPOSERS: Dict[str, _Proposer] = {
     "PML010": syntax.unexpected,
@@ -82,18 +80,18 @@ class Fix:
     preferred: bool
 
 
-def fixes(document: Document, start: int, end: int) -> Tuple[Fix, ...]:
+def fixes(document: Draft, start: int, end: int) -> Tuple[Fix, ...]:
     """The quick fixes for the findings whose statements touch text[start:end], in the order of the findings."""
     found = []
     for finding in document.findings:
         proposer = _PROPOSERS.get(finding.code)
         if proposer is None or finding.span is None:
             continue
-        first, last = document.positions.of_span(finding.span)
+        first, last = document.lines.of_span(finding.span)
         part = document.statement_at(first)
         if max(last, part.end if part else 0) < start or min(first, part.start if part else first) > end:
             continue
-        proposals = list(proposer(document, finding, part, first))
+        proposals = proposer(document, finding, part or Statement(()), first)
         for number, (title, edits) in enumerate(proposals):
             if edits:
                 found.append(Fix(title, finding, edits, number == 0))

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import re
-from typing import Iterator, Optional, Tuple
+from typing import Iterator, Tuple
 
 from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic
-from pursue_gen.language.edits import Edit
+from pursue_gen.language.document import Edit, behind, written
+from pursue_gen.language.draft import Draft
 from pursue_gen.language.messages import KEYWORDS, QUOTES, RESERVED, name_meant
+from pursue_gen.language.syntax import DECLARED, Statement, accepts, bare, end_of, start_of
 from pursue_gen.language.usable import proposal
-from pursue_gen.tools.lsp.document import Document
-from pursue_gen.tools.lsp.edits import written
-from pursue_gen.tools.lsp.tokens import DECLARED, Statement, accepts, end_of
 
-Proposal = Tuple[str, Tuple[Edit, ...]]
+Proposals = Iterator[Tuple[str, Tuple[Edit, ...]]]
+"""What each would do, for the person, and the edits that do it; the likeliest comes first."""
+
 _MEANT = re.compile(r"did you mean (\w+)\?|\Awrite (\w+)[:;] ")
 """How hints say what was meant."""
 _QUOTES = re.compile(f"[{QUOTES}]+")
@@ -23,18 +24,18 @@ _FIRST_WORD = re.compile(r'"\s*[\w-]*')
 _SIGNS = {"COLON": ":", "COMMA": ",", "RPAR": ")"}
 
 
-def did_you_mean(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:
+def did_you_mean(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
     """Writes the word that the finding's hint names in place of what stands there."""
     meant = _MEANT.search(finding.hint)
     if meant is not None and finding.span is not None:
         word = meant.group(1) or meant.group(2)
-        yield f"Write {word}", (Edit(*document.positions.of_span(finding.span), word),)
+        yield f"Write {word}", (Edit(*document.lines.of_span(finding.span), word),)
 
 
-def unexpected(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:
+def unexpected(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
     """Something else was expected here: quotes, signs, misspelt words."""
     yield from did_you_mean(document, finding, part, at)
-    if part is None:
+    if not part.tokens:
         return
     wrong = next((index for index, token in enumerate(part.tokens) if token.start_pos == at), None)
     if wrong is None:
@@ -49,40 +50,35 @@ def unexpected(document: Document, finding: Diagnostic, part: Optional[Statement
     elif "NAME" in expected and token.type == "STRAY":
         yield from _straight_quotes(document, at)
     elif "WORD" in expected and token.type == "NAME":
-        bare = proposal(str(token)[1:-1], RESERVED)
-        yield f"Write {bare} without quotes", (Edit(at, end_of(token), bare),)
+        word = proposal(bare(token), RESERVED)
+        yield f"Write {word} without quotes", (Edit(at, end_of(token), word),)
     elif "COLON" in expected:
-        yield "Add the missing :", (_behind(part.tokens[wrong - 1], ":"),)
+        yield "Add the missing :", (behind(part.tokens[wrong - 1], ":"),)
     elif "COMMA" in expected and token.type in ("WORD", "TRUE_IF", "FALSE_IF"):
-        yield "Add the missing comma", (_behind(part.tokens[wrong - 1], ","),)
+        yield "Add the missing comma", (behind(part.tokens[wrong - 1], ","),)
     elif token.type == "RPAR":
         yield "Delete this )", (Edit(at, end_of(token), ""),)
     elif part.kind == "OBJECTIVE" and token.type == "DO":
         first = next(one for one in part.tokens if one.type == "OBJECTIVE")
-        edit = written(first, KEYWORDS["REACH_OBJECTIVE"])
-        yield "Write reach_objective: do …", (edit,)
+        yield "Write reach_objective: do …", (written(first, KEYWORDS["REACH_OBJECTIVE"]),)
     elif part.kind == "RULE" and token.type in ("BEFORE", "OR"):
         yield from _brackets(part, wrong)
 
 
-def _unfinished(part: Statement) -> Iterator[Proposal]:
+def _unfinished(part: Statement) -> Proposals:
     expected = accepts(part.tokens)
     for kind, sign in _SIGNS.items():
         if expected == {kind} and "$END" in accepts((*part.tokens, Token(kind, sign))):
-            yield f"Add the missing {sign}", (_behind(part.tokens[-1], sign),)
+            yield f"Add the missing {sign}", (behind(part.tokens[-1], sign),)
     for index, token in enumerate(part.tokens):
         if token.type == "LPAR" and "$END" in accepts(part.tokens[:index] + part.tokens[index + 1 :]):
             yield "Delete this (", (written(token, ""),)
             return
 
 
-def _behind(token: Token, text: str) -> Edit:
-    return Edit(end_of(token), end_of(token), text)
-
-
-def _straight_quotes(document: Document, at: int) -> Iterator[Proposal]:
+def _straight_quotes(document: Draft, at: int) -> Proposals:
     """Two typographic quotes around a word become straight ones."""
-    line_end = document.positions.line_end(document.positions.line_of(at))
+    line_end = document.lines.end_at(at)
     opening = _QUOTES.match(document.text, at)
     closing = _QUOTES.search(document.text, opening.end(), line_end) if opening else None
     if opening and closing:
@@ -90,35 +86,34 @@ def _straight_quotes(document: Document, at: int) -> Iterator[Proposal]:
         yield "Use straight quotes", straight
 
 
-def _brackets(part: Statement, wrong: int) -> Iterator[Proposal]:
+def _brackets(part: Statement, wrong: int) -> Proposals:
     """`a before b before c` becomes `(a before b) before c`, where there are no other brackets."""
     body = part.tokens[3:wrong]
     if len(part.tokens) > 3 and not any(token.type in ("LPAR", "RPAR") for token in body) and len(body) == 3:
-        start = body[0].start_pos or 0
-        yield "Put brackets around the first two", (Edit(start, start, "("), _behind(body[-1], ")"))
+        start = start_of(body[0])
+        yield "Put brackets around the first two", (Edit(start, start, "("), behind(body[-1], ")"))
 
 
-def close_name(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:
+def close_name(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
     """Closes a quoted name behind its first word."""
     word = _FIRST_WORD.match(document.text, at)
-    declares = part is not None and part.kind in DECLARED
-    if word is not None and len(word.group()) > 1 and declares:
+    if word is not None and len(word.group()) > 1 and part.kind in DECLARED:
         yield "Add the closing quote", (Edit(word.end(), word.end(), '"'),)
 
 
-def close_comment(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:
+def close_comment(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
     """Closes a comment at the end of its first line."""
-    end = document.positions.line_end(document.positions.line_of(at))
+    end = document.lines.end_at(at)
     yield "Close the comment at the end of this line", (Edit(end, end, " */"),)
 
 
-def visible_blank(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:
+def visible_blank(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
     """Puts an ordinary blank in the place of signs that cannot be seen."""
     if finding.span is not None:
-        yield "Put an ordinary blank here", (Edit(*document.positions.of_span(finding.span), " "),)
+        yield "Put an ordinary blank here", (Edit(*document.lines.of_span(finding.span), " "),)
 
 
-def delete_finding(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:
+def delete_finding(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
     """Deletes what the finding is about."""
     if finding.span is not None:
-        yield "Delete it", (Edit(*document.positions.of_span(finding.span), ""),)
+        yield "Delete it", (Edit(*document.lines.of_span(finding.span), ""),)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, Dict, Iterable, List, Optional, Tuple
+from typing import Callable, Dict, List, Optional, Tuple
 
 from pursue_gen.language.batteries import MOST_CAPACITY, levels
 from pursue_gen.language.behaviour import predecessors
 from pursue_gen.language.conditions import condition_words, names_in
+from pursue_gen.language.draft import Draft
+from pursue_gen.language.forms import MEANINGS
 from pursue_gen.language.labels import in_markdown, markdown
 from pursue_gen.language.messages import FORMS, KEYWORDS
 from pursue_gen.language.names import refs_of
@@ -33,10 +35,8 @@ from pursue_gen.language.scenario import (
     State,
     Window,
 )
+from pursue_gen.language.syntax import Statement, start_of
 from pursue_gen.language.wording import answer_text, answered_text, assumption_words, battery_words, size_words
-from pursue_gen.tools.lsp.document import Document
-from pursue_gen.tools.lsp.forms import MEANINGS
-from pursue_gen.tools.lsp.tokens import Statement
 
 _MOST_LINES = 12
 
@@ -50,7 +50,7 @@ class Hover:
     end: int
 
 
-def hover(document: Document, offset: int) -> Optional[Hover]:
+def hover(document: Draft, offset: int) -> Optional[Hover]:
     """The explanation of what stands at an offset; None where there is none."""
     occurrence = document.occurrence_at(offset)
     if occurrence is not None:
@@ -62,7 +62,7 @@ def hover(document: Document, offset: int) -> Optional[Hover]:
     part = document.statement_at(offset)
     if token is None:
         return None
-    start = token.start_pos or 0
+    start = start_of(token)
     if token.type in KEYWORDS:
         form = f"\n\n```pursue\n{FORMS[token.type]}\n```" if token.type in FORMS else ""
         return Hover(f"**{token}**: {MEANINGS[token.type]}{form}", start, start + len(token))
@@ -131,9 +131,9 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
     lines.append(f"- takes {lasts(event.window)}" if event.window is not None else "- takes no time")
     if event.at_most is not None:
         lines.append(f"- happens at most {event.at_most} times")
-    lines.append("- done by " + (_all(a.name for a in scenario.agents if _in(event.name, a.can_do)) or "nobody"))
+    lines.append("- done by " + (", ".join(a.name for a in scenario.agents if _in(event.name, a.can_do)) or "nobody"))
     if event.collaborative:
-        partners = _all(a.name for a in scenario.agents if _in(event.name, a.reacts_to))
+        partners = ", ".join(a.name for a in scenario.agents if _in(event.name, a.reacts_to))
         lines.append(f"- takes two at one place; the partner is {partners or 'nobody'}")
         if event.duration is not None:
             both = "both are busy until it ends" if event.together else "the partner may leave as soon as it has begun"
@@ -176,8 +176,9 @@ def _wanted(scenario: Scenario, event: Event) -> List[str]:
 def _rule(scenario: Scenario, rule: Rule) -> List[str]:
     lines = [f"**{rule.name}**: a rule, round after round", "", f"- {_in_words(rule.body)}"]
     if rule.each:
-        lines.append(f"- each of these has its own turn: {_all(a.name for a in scenario.bound_by(rule)) or 'nobody'}")
-    names = _all(ref.name for ref in refs_of(rule.body))
+        bound = ", ".join(agent.name for agent in scenario.bound_by(rule))
+        lines.append(f"- each of these has its own turn: {bound or 'nobody'}")
+    names = ", ".join(ref.name for ref in refs_of(rule.body))
     return [*lines, f"- {names} can happen only when it is their turn"]
 
 
@@ -202,8 +203,8 @@ def _bracketed(body: RuleBody) -> str:
 
 def _state(scenario: Scenario, state: State) -> List[str]:
     lines = [f"**{state.name}**: a state, {'true' if state.initially else 'false'} at the start", ""]
-    lines.append("- made true by " + (_all(ref.name for ref in state.true_if) or "nothing"))
-    lines.append("- made false by " + (_all(ref.name for ref in state.false_if) or "nothing"))
+    lines.append("- made true by " + (", ".join(ref.name for ref in state.true_if) or "nothing"))
+    lines.append("- made false by " + (", ".join(ref.name for ref in state.false_if) or "nothing"))
     for dependency in scenario.dependencies:
         if dependency.state.name == state.name:
             lines.append(f"- {dependency.event.name} can happen only while it is {str(dependency.value).lower()}")
@@ -251,7 +252,7 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
 
 def _number(scenario: Scenario, part: Statement, start: int, number: Number) -> str:
     """What the number at an offset of a statement means."""
-    words = [t.type for t in part.tokens if (t.start_pos or 0) < start and t.type in KEYWORDS]
+    words = [t.type for t in part.tokens if start_of(t) < start and t.type in KEYWORDS]
     word = words[-1] if words else ""
     movers = [agent for agent in scenario.agents if agent.mobile is not None]
     if word == "DISTANCE":
@@ -259,8 +260,8 @@ def _number(scenario: Scenario, part: Statement, start: int, number: Number) -> 
         times = [(agent.name, exact(number * (agent.mobile or 0))) for agent in movers]
         return "\n".join(lines + _listed([f"- {name} needs {lasts((time, exact(time + 1)))}" for name, time in times]))
     if word in ("DURATION", "TAKES", "TO"):
-        begins = next((t.start_pos or 0) for t in part.tokens if t.type in ("DURATION", "TAKES"))
-        written = (t for t in part.tokens if t.type == "NUMBER" and (t.start_pos or 0) > begins)
+        begins = next(start_of(t) for t in part.tokens if t.type in ("DURATION", "TAKES"))
+        written = (t for t in part.tokens if t.type == "NUMBER" and start_of(t) > begins)
         numbers = [value for value in map(read_number, written) if value is not None]
         return f"It takes {lasts((numbers[0], numbers[1] if len(numbers) > 1 else exact(numbers[0] + 1)))}."
     if word == "MOBILE":
@@ -316,10 +317,6 @@ def _is_about(assumption: Assumption, agent: str) -> bool:
 
 def _in(name: str, refs: Tuple[Ref, ...]) -> bool:
     return any(ref.name == name for ref in refs)
-
-
-def _all(names: Iterable[str]) -> str:
-    return ", ".join(names)
 
 
 def _if_any(words: str, names: List[str]) -> List[str]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Dict, List, Tuple
 
+from pursue_gen.language.document import section_of
+from pursue_gen.language.draft import Draft
 from pursue_gen.language.messages import KEYWORDS
-from pursue_gen.tools.lsp.document import Document
-from pursue_gen.tools.lsp.tokens import Statement
-
-_SECTION = {"REACH_OBJECTIVE": "OBJECTIVE", "TAIL": "OBJECTIVE", "STATEDEPENDENCY": "STATE"}
+from pursue_gen.language.syntax import bare, end_of, start_of
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Fold:
     comment: bool
 
 
-def symbols(document: Document) -> Tuple[Symbol, ...]:
+def symbols(document: Draft) -> Tuple[Symbol, ...]:
     """The outline: a symbol for each statement that begins like one, in the order of the text."""
     found = []
     for part in document.statements:
@@ -46,8 +46,8 @@ def symbols(document: Document) -> Tuple[Symbol, ...]:
         words = " ".join(document.text[part.start : part.end].split())
         token = part.name
         if token is not None and len(token) > 2:
-            start = (token.start_pos or 0) + 1
-            name, detail = str(token)[1:-1], KEYWORDS[part.kind]
+            start = start_of(token) + 1
+            name, detail = bare(token), KEYWORDS[part.kind]
             behind = part.tokens[2:4]
             if [one.type for one in behind] == ["LABEL", "NAME"]:
                 detail += f" {behind[1]}"
@@ -58,29 +58,25 @@ def symbols(document: Document) -> Tuple[Symbol, ...]:
     return tuple(found)
 
 
-def folds(document: Document) -> Tuple[Fold, ...]:
+def folds(document: Draft) -> Tuple[Fold, ...]:
     """Sections (neighbouring statements of one kind), statements over several lines, and comments over several."""
-    line_of = document.positions.line_of
+    line_of = document.lines.of
     found: Dict[Tuple[int, int], Fold] = {}
 
     def add(first: int, last: int, comment: bool = False) -> None:
         if last > first:
             found.setdefault((first, last), Fold(first, last, comment))
 
-    section: List[Statement] = []
-    for part in document.statements:
-        add(line_of(part.start), line_of(part.end))
-        if section and _section(section[-1]) != _section(part):
-            add(line_of(section[0].start), line_of(section[-1].end))
-            section = []
-        section.append(part)
-    if section:
-        add(line_of(section[0].start), line_of(section[-1].end))
+    for _, section in groupby(document.statements, key=lambda part: section_of(part.kind)):
+        parts = list(section)
+        for part in parts:
+            add(line_of(part.start), line_of(part.end))
+        add(line_of(parts[0].start), line_of(parts[-1].end))
     block: List[int] = []
     for token in document.comments:
-        start = token.start_pos or 0
-        first, last = line_of(start), line_of(start + len(token))
-        alone = not document.text[document.positions.line_start(first) : start].strip()
+        start = start_of(token)
+        first, last = line_of(start), line_of(end_of(token))
+        alone = not document.text[document.lines.start(first) : start].strip()
         if token.type == "LINE_COMMENT" and alone and block and first == block[-1] + 1:
             block.append(first)
             continue
@@ -90,10 +86,6 @@ def folds(document: Document) -> Tuple[Fold, ...]:
             add(first, last, comment=True)
     add(*_ends(block), comment=True)
     return tuple(found[key] for key in sorted(found))
-
-
-def _section(part: Statement) -> str:
-    return _SECTION.get(part.kind, part.kind)
 
 
 def _ends(block: List[int]) -> Tuple[int, int]:

@@ -15,17 +15,18 @@ from pygls.exceptions import JsonRpcException
 
 from pursue_gen import __version__
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.language.edits import Edit
-from pursue_gen.language.formatter import format_text
+from pursue_gen.language.document import Edit
+from pursue_gen.language.formatter import formatted
+from pursue_gen.language.lines import plain
+from pursue_gen.language.navigation import definition, rename, same_name
 from pursue_gen.tools.lsp import convert
 from pursue_gen.tools.lsp.checker import Checker
 from pursue_gen.tools.lsp.completion import complete
-from pursue_gen.tools.lsp.document import Document
 from pursue_gen.tools.lsp.fixes import fixes
 from pursue_gen.tools.lsp.framing import BoundedInput
 from pursue_gen.tools.lsp.hover import hover
 from pursue_gen.tools.lsp.map_preview import picture
-from pursue_gen.tools.lsp.navigation import definition, rename, same_name
+from pursue_gen.tools.lsp.open_document import OpenDocument
 from pursue_gen.tools.lsp.outline import folds, symbols
 
 MAP = "pursue/map"
@@ -54,7 +55,7 @@ class Session:
     def __init__(self, pages: Optional[str] = None) -> None:
         self.pages = pages
         self.is_shut_down = False
-        self.documents: Dict[str, Document] = {}
+        self.documents: Dict[str, OpenDocument] = {}
         self._publishing = threading.Lock()  # a text that was closed has no findings any more, not even late ones
         self.server = _language_server()
         self.checker = Checker(self._publish)
@@ -86,7 +87,7 @@ class Session:
         address = urlsplit(uri)
         name = unquote(address.path).rsplit("/", 1)[-1]
         version = params.text_document.version
-        document = Document.of(source, name, address.scheme == "file", self._encoding, version)
+        document = OpenDocument(plain(source), name, address.scheme == "file", self._encoding, version)
         self.documents[uri] = document
         self.checker.request(uri, document)
 
@@ -104,12 +105,12 @@ class Session:
 
     # Requests ---------------------------------------------------------------------------------------------------------
 
-    def complete(self, document: Document, params: lsp.CompletionParams) -> lsp.CompletionList:
+    def complete(self, document: OpenDocument, params: lsp.CompletionParams) -> lsp.CompletionList:
         """Proposals for the text at a position."""
         items = complete(document, convert.offset_of(document, params.position))
         return lsp.CompletionList(False, convert.completion_items(document, items, self._snippets))
 
-    def hover(self, document: Document, params: lsp.HoverParams) -> Optional[lsp.Hover]:
+    def hover(self, document: OpenDocument, params: lsp.HoverParams) -> Optional[lsp.Hover]:
         """The explanation of the word at a position."""
         found = hover(document, convert.offset_of(document, params.position))
         if found is None:
@@ -117,54 +118,54 @@ class Session:
         text = lsp.MarkupContent(lsp.MarkupKind.Markdown, found.markdown)
         return lsp.Hover(text, convert.range_of(document, found.start, found.end))
 
-    def define(self, document: Document, params: lsp.DefinitionParams) -> List[lsp.Location]:
+    def define(self, document: OpenDocument, params: lsp.DefinitionParams) -> List[lsp.Location]:
         """The declaration of the name at a position."""
         places = definition(document, convert.offset_of(document, params.position))
         return convert.locations(document, params.text_document.uri, places)
 
-    def refer(self, document: Document, params: lsp.ReferenceParams) -> List[lsp.Location]:
+    def refer(self, document: OpenDocument, params: lsp.ReferenceParams) -> List[lsp.Location]:
         """The uses of the name at a position."""
         places = same_name(document, convert.offset_of(document, params.position))
         wanted = [place for place in places if params.context.include_declaration or not place.declares]
         return convert.locations(document, params.text_document.uri, wanted)
 
-    def highlight(self, document: Document, params: lsp.DocumentHighlightParams) -> List[lsp.DocumentHighlight]:
+    def highlight(self, document: OpenDocument, params: lsp.DocumentHighlightParams) -> List[lsp.DocumentHighlight]:
         """All places of the name at a position."""
         return convert.highlights(document, same_name(document, convert.offset_of(document, params.position)))
 
-    def prepare_rename(self, document: Document, params: lsp.PrepareRenameParams) -> Optional[lsp.Range]:
+    def prepare_rename(self, document: OpenDocument, params: lsp.PrepareRenameParams) -> Optional[lsp.Range]:
         """The range of the name that would be renamed."""
         here = document.occurrence_at(convert.offset_of(document, params.position))
         return convert.range_of(document, here.start, here.end) if here is not None else None
 
-    def rename(self, document: Document, params: lsp.RenameParams) -> lsp.WorkspaceEdit:
+    def rename(self, document: OpenDocument, params: lsp.RenameParams) -> lsp.WorkspaceEdit:
         """The edits that rename the name at a position."""
         edits = rename(document, convert.offset_of(document, params.position), params.new_name)
         return lsp.WorkspaceEdit(changes={params.text_document.uri: convert.text_edits(document, edits)})
 
-    def outline(self, document: Document, _params: lsp.DocumentSymbolParams) -> List[lsp.DocumentSymbol]:
+    def outline(self, document: OpenDocument, _params: lsp.DocumentSymbolParams) -> List[lsp.DocumentSymbol]:
         """The declarations as an outline."""
         return convert.document_symbols(document, symbols(document))
 
-    def fold(self, document: Document, _params: lsp.FoldingRangeParams) -> List[lsp.FoldingRange]:
+    def fold(self, document: OpenDocument, _params: lsp.FoldingRangeParams) -> List[lsp.FoldingRange]:
         """The ranges that can be folded."""
         return convert.folding_ranges(folds(document))
 
-    def count(self, document: Document, params: lsp.InlayHintParams) -> List[lsp.InlayHint]:
+    def count(self, document: OpenDocument, params: lsp.InlayHintParams) -> List[lsp.InlayHint]:
         """How many states the objectives in a range cost."""
         start, end = (convert.offset_of(document, place) for place in (params.range.start, params.range.end))
         return convert.inlay_hints(document, start, end)
 
-    def format(self, document: Document, _params: lsp.DocumentFormattingParams) -> List[lsp.TextEdit]:
+    def format(self, document: OpenDocument, _params: lsp.DocumentFormattingParams) -> List[lsp.TextEdit]:
         """The edit that formats the text; none while it has syntax errors, which are shown anyway."""
         try:
-            text = format_text(document.text, document.file)
+            text = formatted(document)
         except PursueError:
             return []
-        edits = [] if text == document.text else [Edit(*convert.whole(document), text)]
+        edits = [] if text == document.text else [Edit(0, len(document.text), text)]
         return convert.text_edits(document, edits)
 
-    def fix(self, document: Document, params: lsp.CodeActionParams) -> List[lsp.CodeAction]:
+    def fix(self, document: OpenDocument, params: lsp.CodeActionParams) -> List[lsp.CodeAction]:
         """The quick fixes for the findings in a range."""
         wanted = params.context.only
         if wanted is not None and not any(str(getattr(k, "value", k)) in ("", "quickfix") for k in wanted):
@@ -211,7 +212,7 @@ class Session:
         kinds = [lsp.CodeActionKind.QuickFix]
         self._register_request(lsp.TEXT_DOCUMENT_CODE_ACTION, self.fix, lsp.CodeActionOptions(code_action_kinds=kinds))
 
-    def _register_request(self, method: str, answer: Callable[[Document, Any], Any], options: Any = None) -> None:
+    def _register_request(self, method: str, answer: Callable[[OpenDocument, Any], Any], options: Any = None) -> None:
         """Register a request about an open text; the answer for any other text is null."""
 
         def answered(params: Any) -> Any:
@@ -231,7 +232,7 @@ class Session:
 
         self.server.feature(method, options)(self.server.thread()(answered))
 
-    def _publish(self, uri: str, document: Document) -> None:
+    def _publish(self, uri: str, document: OpenDocument) -> None:
         """Send the findings of a text, if it is still the one in the editor."""
         found = [convert.diagnostic(document, uri, f, self.pages, self._related) for f in document.findings]
         with self._publishing:

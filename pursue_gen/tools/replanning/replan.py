@@ -9,6 +9,7 @@ from math import ceil
 from typing import Any, Dict, Mapping, Optional, Sequence
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.document import statement_text
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.partition import partition
@@ -210,6 +211,5 @@ def _cannot_be_met(game: Network, request: Request) -> str:
 
 def _objectives(scenario: Scenario, some: Optional[Sequence[StatedObjective]] = None) -> str:
     """What is to be met, or these of it, in the author's words."""
-    lines = scenario.text.split("\n")
-    found = dict.fromkeys(part.span.line for part in some or (*scenario.reach, *scenario.safety))
-    return " and ".join(f"'{quoted(lines[line - 1].split('//')[0].strip())}'" for line in found)
+    spans = dict.fromkeys(part.span for part in some or (*scenario.reach, *scenario.safety))
+    return " and ".join(f"'{quoted(statement_text(scenario.text, span))}'" for span in spans)

@@ -11,12 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.draft import Draft
 from pursue_gen.language.formatter import format_text
-from pursue_gen.language.formatter_items import items_of
+from pursue_gen.language.forms import FORMS
 from pursue_gen.language.parser import parse
+from pursue_gen.language.syntax import COMMENTS
 from pursue_gen.tools.draw.operations import change
-from pursue_gen.tools.lsp.document import Document
-from pursue_gen.tools.lsp.forms import FORMS
+from pursue_gen.tools.draw.view import view
 from tests.conftest import thesis_scenario
 
 COMMENTED = """// the ward at night
@@ -45,7 +46,7 @@ control : A<>reachObj.win
 
 def comments(text: str) -> "Counter[str]":
     """The words of all comments but poses."""
-    found = (item.text for item in items_of(text) if item.is_comment)
+    found = (one for one in Draft(text).tokens if one.type in (*COMMENTS, "POSE"))
     words = (re.sub(r"//[ \t]*\[[^\]]*\]", "", one) for one in found)
     return Counter(word for one in words for word in one.replace("//", " ").split())
 
@@ -57,7 +58,7 @@ def done(text: str, do: str, **values: Any) -> str:
 
 
 def number(text: str, begins: str) -> int:
-    document = Document.of(text, "a.pur")
+    document = Draft.of(text, "a.pur")
     return next(k for k, one in enumerate(document.statements) if document.text[one.start :].startswith(begins))
 
 
@@ -235,7 +236,7 @@ def test_every_form_can_be_filled(kind: str, form: int) -> None:
     holes = re.findall(r"\{(=?)([^}]*)\}", FORMS[kind][form].words)
     values = [(what if what.isdigit() else f"{what}9") if example else given_[what] for example, what in holes]
     text = done(COMMENTED, "add form", kind=kind, form=form, values=values)
-    assert len(Document(text).statements) == len(Document(COMMENTED).statements) + 1
+    assert len(Draft(text).statements) == len(Draft(COMMENTED).statements) + 1
     assert comments(text) == comments(COMMENTED)
 
 
@@ -282,3 +283,12 @@ def test_any_changes_leave_a_text_as_fmt_writes_it_with_all_comments(text: str, 
             continue
         assert text == format_text(text, "a.pur")
         assert comments(text) == before
+
+
+def test_the_size_of_a_robot_stays_when_something_else_of_it_changes() -> None:
+    size = "radius 0.2 tolerance 0.1 inflation 0.5"
+    text = f'poi "a"\n\nagent "bot" controllable mobile 1 {size} location a\n'
+    assert view(text)["agents"][0]["mobile"] == "1"
+    at = number(text, "agent")
+    assert f"mobile 3 {size} location a" in done(text, "set", statement=at, fields={"mobile": "3"})
+    assert f'"bot" {size} location a' in done(text, "set", statement=at, fields={"mobile": "", "kind": "free"})

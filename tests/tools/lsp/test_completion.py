@@ -9,20 +9,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_gen.language.edits import Edit, edited
+from pursue_gen.language.document import Edit, edited
+from pursue_gen.language.draft import Draft
+from pursue_gen.language.forms import FORMS, MEANINGS
 from pursue_gen.language.messages import KEYWORDS
 from pursue_gen.language.parser import read
+from pursue_gen.language.syntax import COMMENTS, accepts
 from pursue_gen.tools.lsp.completion import complete, fill_in
-from pursue_gen.tools.lsp.document import Document
-from pursue_gen.tools.lsp.forms import FORMS, MEANINGS
-from pursue_gen.tools.lsp.tokens import COMMENTS, accepts
 
 from .scenarios import SCENARIOS, SMALL, marked
 
 
 def labels(text: str, kind: str = "") -> List[str]:
     plain, at = marked(text)
-    return [item.label for item in complete(Document.of(plain, "x.pur"), at) if not kind or item.kind == kind]
+    return [item.label for item in complete(Draft.of(plain, "x.pur"), at) if not kind or item.kind == kind]
 
 
 WHOLE = SMALL + "{}"
@@ -99,7 +99,7 @@ def test_robots_that_may_have_a_pose_of_their_own(comment: str, names: List[str]
 
 def test_a_robots_pose_begins_with_that_of_the_place() -> None:
     plain, at = marked(f'poi "a" //[1, 2, 0, 0, 0, 0, 1] bo| the hall\n{ROBOTS}')
-    item = complete(Document.of(plain, "x.pur"), at)[1]
+    item = complete(Draft.of(plain, "x.pur"), at)[1]
     changed = edited(plain, (Edit(item.start, item.end, item.insert),))
     assert changed.splitlines()[0] == 'poi "a" //[1, 2, 0, 0, 0, 0, 1] bot2 [1, 2, 0, 0, 0, 0, 1] the hall'
     assert read(changed, "x.pur").diagnostics == ()
@@ -148,7 +148,7 @@ def test_between_the_quotes_of_a_declaration_stand_names_that_are_used_only() ->
     uses = 'event "w" location there\nagent "x" location there can_do e\n'
     for text in (uses + 'poi "|', uses + 'poi "|"', uses + 'poi "th|"'):
         plain, at = marked(text)
-        (item,) = complete(Document.of(plain, "x.pur"), at)
+        (item,) = complete(Draft.of(plain, "x.pur"), at)
         assert edited(plain, (Edit(item.start, item.end, item.insert),)).endswith('poi "there"')
     assert labels(uses + 'event "|') == ["e"]
 
@@ -191,13 +191,13 @@ def test_an_agent_may_be_called_human() -> None:
 
 def test_a_name_in_the_middle_of_a_word_replaces_all_of_it() -> None:
     plain, at = marked(SMALL.replace("then hand", "then ha|nx"))
-    item = next(item for item in complete(Document.of(plain, "x.pur"), at) if item.label == "hand")
+    item = next(item for item in complete(Draft.of(plain, "x.pur"), at) if item.label == "hand")
     assert "if work then hand within" in edited(plain, (Edit(item.start, item.end, item.insert),))
 
 
 @given(st.sampled_from(sorted(SCENARIOS)), st.data())
 def test_after_every_prefix_of_a_scenario_what_comes_next_is_offered(name: str, data: st.DataObject) -> None:
-    document = Document.of(SCENARIOS[name], name + ".pur")
+    document = Draft.of(SCENARIOS[name], name + ".pur")
     part = data.draw(st.sampled_from(document.statements))
     index = data.draw(st.integers(0, len(part.tokens) - 1))
     token = part.tokens[index]
@@ -212,7 +212,7 @@ def test_after_every_prefix_of_a_scenario_what_comes_next_is_offered(name: str, 
         text += document.text[at:]  # what follows is there already
     named = [p for p in document.statements if p.name is not None and p.kind != "BATTERY"]  # a robot has one battery
     declarations = "\n".join(document.text[p.start : p.end] for p in named)
-    offered = complete(Document.of(text + "\n" + declarations, name + ".pur"), at + typed)
+    offered = complete(Draft.of(text + "\n" + declarations, name + ".pur"), at + typed)
     if token.type == "TAIL":
         return  # understood, but nobody should write it
     assert token.type in accepts(part.tokens[:index])
@@ -224,12 +224,12 @@ def test_after_every_prefix_of_a_scenario_what_comes_next_is_offered(name: str, 
 
 @given(st.sampled_from(sorted(SCENARIOS)), st.data())
 def test_whatever_is_offered_is_accepted(name: str, data: st.DataObject) -> None:
-    document = Document.of(SCENARIOS[name], name + ".pur")
+    document = Draft.of(SCENARIOS[name], name + ".pur")
     part = data.draw(st.sampled_from(document.statements))
     index = data.draw(st.integers(1, len(part.tokens)))
     at = (part.tokens[index - 1].start_pos or 0) + len(part.tokens[index - 1])
     before = document.text[:at] + " "
-    for item in complete(Document.of(before, name + ".pur"), at + 1):
+    for item in complete(Draft.of(before, name + ".pur"), at + 1):
         assert item.token in accepts(part.tokens[:index]) or "$END" in accepts(part.tokens[:index])
 
 
@@ -239,7 +239,7 @@ def expanded(snippet: str) -> str:
 
 
 def test_statements_to_fill_in_are_well_formed() -> None:
-    names = {kind: list(names) for kind, names in Document.of(SMALL, "x.pur").declared.items()}
+    names = {kind: list(names) for kind, names in Draft.of(SMALL, "x.pur").declared.items()}
     for token, forms in FORMS.items():
         for form in forms:
             for text in (fill_in(form.words, {}, plain=True), expanded(fill_in(form.words, names))):

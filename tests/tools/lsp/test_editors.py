@@ -10,9 +10,9 @@ from typing import Any, Dict, Iterator, List, Set, Tuple
 
 import pytest
 
+from pursue_gen.language.draft import Draft
 from pursue_gen.language.messages import FORMS, KEYWORDS
 from pursue_gen.language.parser import read
-from pursue_gen.tools.lsp.document import Document
 
 from .scenarios import ROOT, SCENARIOS
 from .test_completion import expanded
@@ -108,7 +108,7 @@ def scope_of(kind: str) -> str:
 
 @pytest.mark.parametrize("name", sorted(SCENARIOS))
 def test_textmate_sees_the_words_that_the_parser_sees(name: str) -> None:
-    document = Document.of(SCENARIOS[name], name)
+    document = Draft.of(SCENARIOS[name], name)
     ours = [(t.start_pos, str(t), scope_of(t.type)) for t in document.tokens]
     assert textmate(document.text) == ours
 
@@ -123,7 +123,7 @@ def test_snippets_are_well_formed() -> None:
         text = text.replace("$0", "")
         assert read(text, "x.pur").diagnostics == (), name
         if snippet["prefix"] == "scenario":
-            assert Document.of(text, "x.pur").findings == ()
+            assert Draft.of(text, "x.pur").findings == ()
 
 
 def test_the_manifest_names_files_that_are_there() -> None:
@@ -200,7 +200,7 @@ def type_of(kind: str, value: str) -> str:
 @pytest.mark.skipif(find_spec("pygments") is None, reason="pygments is not installed")
 @pytest.mark.parametrize("name", sorted(SCENARIOS))
 def test_pygments_sees_the_words_that_the_parser_sees(name: str) -> None:
-    document = Document.of(SCENARIOS[name], name)
+    document = Draft.of(SCENARIOS[name], name)
     assert token_types(document.text) == [(type_of(t.type, str(t)), str(t)) for t in document.tokens]
 
 

@@ -8,20 +8,20 @@ from typing import List
 import pytest
 
 from pursue_gen.diagnostics import Diagnostic
-from pursue_gen.language.edits import edited
-from pursue_gen.tools.lsp.document import Document
+from pursue_gen.language.document import edited
+from pursue_gen.language.draft import Draft
+from pursue_gen.language.syntax import COMMENTS
 from pursue_gen.tools.lsp.fixes import _PROPOSERS, Fix, fixes
-from pursue_gen.tools.lsp.tokens import COMMENTS
 
 from .scenarios import ROOT, SMALL
 
 
 def found(text: str) -> List[Fix]:
-    return list(fixes(Document.of(text, "x.pur"), 0, len(text)))
+    return list(fixes(Draft.of(text, "x.pur"), 0, len(text)))
 
 
 def findings(text: str) -> List[Diagnostic]:
-    return list(Document.of(text, "x.pur").findings)
+    return list(Draft.of(text, "x.pur").findings)
 
 
 def changed(old: str, new: str) -> str:
@@ -167,7 +167,7 @@ def test_every_code_with_a_fix_exists() -> None:
 
 def test_only_findings_in_the_selection_are_mended() -> None:
     text = changed("distance 3", "distance 0").replace("duration 3", "duration 0")
-    document = Document.of(text, "x.pur")
+    document = Draft.of(text, "x.pur")
     at = text.index("duration 0")
     assert {fix.finding.code for fix in fixes(document, at, at)} == {"PML141"}
 
@@ -213,7 +213,7 @@ control : A<>reachObj.win
     assert not findings(after)
 
     def told(text: str) -> List[str]:
-        return sorted(str(t) for t in Document.of(text, "x.pur").tokens if t.type in COMMENTS)
+        return sorted(str(t) for t in Draft.of(text, "x.pur").tokens if t.type in COMMENTS)
 
     assert told(after) == told(text)
 

@@ -11,13 +11,13 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.language.edits import edited
+from pursue_gen.language.document import edited
+from pursue_gen.language.draft import Draft
+from pursue_gen.language.navigation import definition, rename, same_name
 from pursue_gen.tools.lsp.completion import complete
-from pursue_gen.tools.lsp.document import Document
 from pursue_gen.tools.lsp.fixes import fixes
 from pursue_gen.tools.lsp.hover import hover
 from pursue_gen.tools.lsp.map_preview import picture
-from pursue_gen.tools.lsp.navigation import definition, rename, same_name
 from pursue_gen.tools.lsp.outline import folds, symbols
 from pursue_gen.tools.lsp.statements import ordered
 
@@ -40,8 +40,8 @@ def texts(draw: st.DrawFn) -> str:
     return text
 
 
-def asked(text: str, offset: int) -> Document:
-    document = Document.of(text, "x.pur")
+def asked(text: str, offset: int) -> Draft:
+    document = Draft.of(text, "x.pur")
     complete(document, offset)
     hover(document, offset)
     definition(document, offset)
@@ -65,15 +65,15 @@ def test_no_question_fails(text: str, data: st.DataObject) -> None:
     for fix in fixes(document, 0, len(document.text)):
         for edit in fix.edits:
             assert 0 <= edit.start <= edit.end <= len(document.text)
-        assert Document.of(edited(document.text, fix.edits), "x.pur").findings is not None
+        assert Draft.of(edited(document.text, fix.edits), "x.pur").findings is not None
 
 
 @given(texts())
 @example('poi "a" agent "b" location a\npoi "c" // c\n')
 @example('"a" poi "a" /*')
 def test_sorting_loses_nothing(text: str) -> None:
-    document = Document.of(text, "x.pur")
-    after = Document.of(edited(document.text, ordered(document)), "x.pur")
+    document = Draft.of(text, "x.pur")
+    after = Draft.of(edited(document.text, ordered(document)), "x.pur")
     assert sorted(map(str, after.tokens)) == sorted(map(str, document.tokens))
 
 
@@ -108,7 +108,7 @@ def large(lines: int) -> Tuple[str, int]:
 
 def test_ten_thousand_lines() -> None:
     text, at = large(10_000)
-    document = Document.of(text, "x.pur")
+    document = Draft.of(text, "x.pur")
     assert document.findings == ()
     assert len(complete(document, at)) == 5_000
     assert hover(document, at) is not None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pursue_gen.tools.lsp.document import Document
+from pursue_gen.language.draft import Draft
 from pursue_gen.tools.lsp.hover import hover
 
 from .scenarios import SMALL, marked
@@ -13,7 +13,7 @@ SMALL_WITH_MORE = SMALL.replace('"man" location', '"man" mobile 5 location')
 
 
 def told(before: str, text: str = SMALL) -> str:
-    found = hover(Document.of(text, "x.pur"), text.index(before) + len(before))
+    found = hover(Draft.of(text, "x.pur"), text.index(before) + len(before))
     return "" if found is None else found.markdown
 
 
@@ -152,4 +152,4 @@ def test_broken_statements_do_not_hide_the_others() -> None:
 @pytest.mark.parametrize("text", ["// po|i", 'poi "a"\n\n|\n\npoi "b"', "|", 'rule "r"|: a before b'])
 def test_where_there_is_nothing_to_tell(text: str) -> None:
     plain, at = marked(text)
-    assert hover(Document.of(plain, "x.pur"), at) is None
+    assert hover(Draft.of(plain, "x.pur"), at) is None

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import check, parse
-from pursue_gen.language.edits import edited
-from pursue_gen.tools.lsp.document import Document
-from pursue_gen.tools.lsp.navigation import definition, rename, same_name
+from pursue_gen.language.document import edited
+from pursue_gen.language.draft import Draft
+from pursue_gen.language.navigation import definition, rename, same_name
 
 from .scenarios import SCENARIOS, SMALL
 
@@ -20,14 +20,14 @@ def at(text: str, before: str) -> int:
 
 
 def test_a_use_leads_to_the_declaration() -> None:
-    document = Document.of(SMALL, "x.pur")
+    document = Draft.of(SMALL, "x.pur")
     (place,) = definition(document, at(SMALL, "if work then ha"))
     assert SMALL[place.start - 7 : place.end + 1] == 'event "hand"'
     assert definition(document, at(SMALL, "can_d")) == ()
 
 
 def test_all_uses_are_found() -> None:
-    document = Document.of(SMALL, "x.pur")
+    document = Draft.of(SMALL, "x.pur")
     places = same_name(document, at(SMALL, 'event "wo'))
     assert [SMALL[p.start : p.end] for p in places] == ["work"] * 5
     assert [p.declares for p in places] == [True, False, False, False, False]
@@ -35,19 +35,19 @@ def test_all_uses_are_found() -> None:
 
 def test_a_name_of_two_kinds_is_distinguished() -> None:
     text = 'poi "x"\nevent "x" location x\nagent "b" location x can_do x\n'
-    document = Document.of(text, "x.pur")
+    document = Draft.of(text, "x.pur")
     assert [p.start for p in same_name(document, at(text, 'event "'))] == [15, at(text, "can_do ")]
 
 
 def test_a_use_as_the_wrong_kind_still_leads_to_the_declaration() -> None:
     text = 'event "e"\nagent "b" location e\n'
-    (place,) = definition(Document.of(text, "x.pur"), at(text, "location "))
+    (place,) = definition(Draft.of(text, "x.pur"), at(text, "location "))
     assert place.kind == "event"
 
 
 def test_renaming_changes_every_occurrence_and_nothing_else() -> None:
     text = SMALL + "// hand in hand with handy\n"
-    document = Document.of(text, "x.pur")
+    document = Draft.of(text, "x.pur")
     renamed = edited(text, rename(document, at(text, "within 20\nreach_objective: do ha"), "give"))
     assert "// hand in hand with handy" in renamed
     assert 'event "give" collaborative' in renamed and "then give within" in renamed
@@ -58,7 +58,7 @@ def test_renaming_changes_every_occurrence_and_nothing_else() -> None:
 def test_renaming_a_robot_changes_its_poses() -> None:
     pose = "[1, 2, 0, 0, 0, 0, 1]"
     text = SMALL.replace('poi "a"', f'poi "a" //{pose} man {pose} bot {pose}, not bot')
-    document = Document.of(text, "x.pur")
+    document = Draft.of(text, "x.pur")
     (declared,) = definition(document, at(text, f"man {pose} bo"))
     assert text[declared.start - 7 : declared.end + 1] == 'agent "bot"'
     renamed = edited(text, rename(document, at(text, 'agent "bo'), "cart"))
@@ -84,7 +84,7 @@ def test_renaming_a_robot_changes_its_poses() -> None:
     ],
 )
 def test_a_name_that_cannot_be_is_refused_with_the_reason(new: str, reason: str) -> None:
-    document = Document.of(SMALL, "x.pur")
+    document = Draft.of(SMALL, "x.pur")
     with pytest.raises(PursueError) as refused:
         rename(document, at(SMALL, 'event "re'), new)
     assert reason in refused.value.diagnostics[0].message
@@ -92,27 +92,27 @@ def test_a_name_that_cannot_be_is_refused_with_the_reason(new: str, reason: str)
 
 def test_where_there_is_no_name_nothing_is_renamed() -> None:
     with pytest.raises(PursueError) as refused:
-        rename(Document.of(SMALL, "x.pur"), 2, "new")
+        rename(Draft.of(SMALL, "x.pur"), 2, "new")
     assert refused.value.diagnostics[0].code == "LSP001"
 
 
 def test_the_same_name_changes_nothing() -> None:
-    assert rename(Document.of(SMALL, "x.pur"), at(SMALL, 'poi "'), "a") == ()
+    assert rename(Draft.of(SMALL, "x.pur"), at(SMALL, 'poi "'), "a") == ()
 
 
 def test_renaming_works_beside_a_broken_statement() -> None:
     text = SMALL + "connect a and\n"
-    renamed = edited(text, rename(Document.of(text, "x.pur"), at(text, 'poi "'), "door"))
+    renamed = edited(text, rename(Draft.of(text, "x.pur"), at(text, 'poi "'), "door"))
     assert renamed.endswith("connect door and\n")
     assert "location door" in renamed
 
 
 @given(st.sampled_from(sorted(SCENARIOS)), st.data())
 def test_there_and_back_gives_the_same_text(name: str, data: st.DataObject) -> None:
-    document = Document.of(SCENARIOS[name], name + ".pur")
+    document = Draft.of(SCENARIOS[name], name + ".pur")
     place = data.draw(st.sampled_from(document.occurrences))
     once = edited(document.text, rename(document, place.start, "somethingNew"))
     assert {f.code for f in check(parse(once, name + ".pur"))} == {f.code for f in document.findings}
-    other = Document.of(once, name + ".pur")
+    other = Draft.of(once, name + ".pur")
     where = next(o.start for o in other.occurrences if o.name == "somethingNew")
     assert edited(once, rename(other, where, place.name)) == document.text

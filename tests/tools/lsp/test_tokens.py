@@ -9,11 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lark import Token
 
+from pursue_gen.language.draft import Draft
 from pursue_gen.language.names import KINDS
+from pursue_gen.language.occurrences import kinds_behind
 from pursue_gen.language.parser import parse
 from pursue_gen.language.scenario import Ref, Scenario
-from pursue_gen.tools.lsp.document import Document
-from pursue_gen.tools.lsp.tokens import DECLARED, accepts, kinds_behind
+from pursue_gen.language.syntax import DECLARED, accepts
 
 from .scenarios import SCENARIOS, SMALL
 
@@ -41,10 +42,11 @@ def parsed(scenario: Scenario) -> Set[Tuple[str, int, int, bool]]:
 
 @pytest.mark.parametrize("text", [*SCENARIOS.values(), SMALL])
 def test_the_names_are_those_that_the_parser_finds(text: str) -> None:
-    document = Document.of(text, "x.pur")
+    document = Draft.of(text, "x.pur")
     ours = set()
     for occurrence in document.occurrences:
-        line, column = document.positions.position(occurrence.start)
+        line = document.lines.of(occurrence.start)
+        column = occurrence.start - document.lines.start(line)
         assert document.text[occurrence.start : occurrence.end] == occurrence.name
         ours.add((occurrence.name, line + 1, column + 1, occurrence.declares))
     found = parsed(parse(document.text, "x.pur"))
@@ -55,7 +57,7 @@ def test_the_names_are_those_that_the_parser_finds(text: str) -> None:
 
 @pytest.mark.parametrize("text", [*SCENARIOS.values(), SMALL])
 def test_every_use_has_a_declaration_of_its_kind(text: str) -> None:
-    document = Document.of(text, "x.pur")
+    document = Draft.of(text, "x.pur")
     assert all(o.name in document.declared[o.kind] for o in document.occurrences)
 
 

@@ -9,8 +9,8 @@ from typing import Dict, Set, Tuple
 
 import pytest
 
+from pursue_gen.language.draft import Draft
 from pursue_gen.language.messages import FORMS, KEYWORDS
-from pursue_gen.tools.lsp.document import Document
 
 from .scenarios import ROOT, SCENARIOS
 
@@ -58,7 +58,7 @@ def run(folder: Path, text: str) -> "Tuple[str, Set[Tuple[int, int, str]], str]"
 
 def expected(text: str) -> Set[Tuple[int, int, str]]:
     found: Set[Tuple[int, int, str]] = set()
-    document = Document.of(text, "x.pur")
+    document = Draft.of(text, "x.pur")
     for token in document.tokens:
         word = (
             "pursueConstant"
@@ -71,8 +71,8 @@ def expected(text: str) -> Set[Tuple[int, int, str]]:
         if token.type in groups:
             start = token.start_pos or 0
             for offset in range(start, start + len(token)):
-                line, column = document.positions.line_of(offset), 0
-                column = len(text[document.positions.line_start(line) : offset].encode()) + 1
+                line, column = document.lines.of(offset), 0
+                column = len(text[document.lines.start(line) : offset].encode()) + 1
                 if text[offset] != "\n":
                     found.add((line + 1, column, groups[token.type]))
     return found

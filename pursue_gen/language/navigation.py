@@ -5,20 +5,19 @@ from __future__ import annotations
 from typing import Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
-from pursue_gen.language.edits import Edit, edited
+from pursue_gen.language.document import Edit
+from pursue_gen.language.draft import Draft
 from pursue_gen.language.names import KINDS, check_names
-from pursue_gen.language.parser import read
+from pursue_gen.language.occurrences import Occurrence
 from pursue_gen.language.scenario import Poi, Scenario
-from pursue_gen.tools.lsp.document import Document
-from pursue_gen.tools.lsp.tokens import Occurrence
 
 
-def definition(document: Document, offset: int) -> Tuple[Occurrence, ...]:
+def definition(document: Draft, offset: int) -> Tuple[Occurrence, ...]:
     """Where the name at an offset is declared; where it is declared as another kind of thing, if it is that only."""
     return tuple(occurrence for occurrence in same_name(document, offset) if occurrence.declares)
 
 
-def same_name(document: Document, offset: int) -> Tuple[Occurrence, ...]:
+def same_name(document: Draft, offset: int) -> Tuple[Occurrence, ...]:
     """Every place where the thing whose name is at an offset is declared or used, in the order of the text."""
     here = document.occurrence_at(offset)
     if here is None:
@@ -30,7 +29,7 @@ def same_name(document: Document, offset: int) -> Tuple[Occurrence, ...]:
     return tuple(named)
 
 
-def rename(document: Document, offset: int, new: str) -> Tuple[Edit, ...]:
+def rename(document: Draft, offset: int, new: str) -> Tuple[Edit, ...]:
     """The edits that give the thing at an offset another name, wherever it stands.
 
     Raises PursueError with the reason where there is no name at the offset, the new one is no valid name, or it is
@@ -48,7 +47,7 @@ def rename(document: Document, offset: int, new: str) -> Tuple[Edit, ...]:
     return edits
 
 
-def _check_new(document: Document, new: str) -> None:
+def _check_new(document: Draft, new: str) -> None:
     span = Span(document.file, 1, 1, 1, 1)
     alone = Scenario("name", document.file, "", (Poi(new, None, span),), (), (), (), (), (), (), (), ())
     findings = list(check_names(alone))
@@ -57,17 +56,15 @@ def _check_new(document: Document, new: str) -> None:
     for kind in KINDS:
         taken: Optional[Occurrence] = document.declared[kind].get(new)
         if taken is not None:
-            line = document.positions.line_of(taken.start) + 1
+            line = document.lines.of(taken.start) + 1
             message = f"{new} is taken: line {line} declares {'an' if kind[0] in 'ea' else 'a'} {kind} of this name"
             raise PursueError([error("LSP002", message, hint="choose another name")])
 
 
-def _check_after(document: Document, edits: Tuple[Edit, ...]) -> None:
+def _check_after(document: Draft, edits: Tuple[Edit, ...]) -> None:
     """Refuses names that are fine alone, but collide with others in what is generated."""
-    after = read(edited(document.text, edits), document.file, document.scenario.name).partial
-    if after is None:
-        return
     before = {finding.message for finding in check_names(document.scenario)}
-    new = [finding for finding in check_names(after) if finding.message not in before]
+    after = check_names(document.changed(*edits).scenario)
+    new = [finding for finding in after if finding.message not in before]
     if new:
         raise PursueError(new[:1])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Dict, Tuple
 
@@ -85,6 +86,10 @@ MEANINGS: Dict[str, str] = {
     "AFTER": "It counts when it happens later than so many units of time after the start.",
 }
 """What each word means, by token."""
+
+
+HOLE = re.compile(r"\{(=?)([^}]*)\}")
+"""A hole in the words of a form: {kind of thing}, or {=an example}."""
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,182 @@
+"""What each name in a text is used for, whether or not its statement is right."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, Iterator, List, Optional, Sequence, Tuple
+
+from lark import Token
+
+from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES, kind_of
+from pursue_gen.language.poses import robots_in
+from pursue_gen.language.syntax import DECLARED, Statement, bare, start_of
+
+_USED: Dict[Tuple[str, str], str] = {
+    ("CONNECT", "CONNECT"): "POI",
+    ("CONNECT", "AND"): "POI",
+    ("EVENT", "LOCATION"): "POI",
+    ("RULE", "RULE"): "event",
+    ("RULE", "ROBOT"): "event",
+    ("RULE", "AGENT"): "event",
+    ("RULE", "BEFORE"): "event",
+    ("RULE", "OR"): "event",
+    ("RULE", "AND"): "event",
+    ("STATE", "TRUE_IF"): "event",
+    ("STATE", "FALSE_IF"): "event",
+    ("STATEDEPENDENCY", "STATEDEPENDENCY"): "event",
+    ("STATEDEPENDENCY", "ONLY_IF"): "state",
+    ("AGENT", "LOCATION"): "POI",
+    ("AGENT", "CAN_DO"): "event",
+    ("AGENT", "REACTS_TO"): "event",
+    ("TRAVEL", "TRAVEL"): "agent",
+    ("TRAVEL", "FROM"): "POI",
+    ("TRAVEL", "TO"): "POI",
+    ("BATTERY", "BATTERY"): "agent",
+    ("BATTERY", "AT"): "POI",
+    ("ASSUME", "ASSUME"): "agent",
+    ("ASSUME", "DOES"): "event",
+    ("ASSUME", "BETWEEN"): "event",
+    ("ASSUME", "LEAVES"): "POI",
+    ("ASSUME", "AT"): "POI",
+    ("OBJECTIVE", "OBJECTIVE"): "agent",
+    ("OBJECTIVE", "NEVER_WITH"): "agent",
+    ("OBJECTIVE", "PATROL"): "POI",
+    ("OBJECTIVE", "BY"): "agent",
+    ("OBJECTIVE", "AT"): "POI",
+    ("OBJECTIVE", "IF"): "event",
+    ("OBJECTIVE", "THEN"): "event",
+    ("OBJECTIVE", "AVOID"): "event",
+    ("REACH_OBJECTIVE", "DO"): "event",
+    ("REACH_OBJECTIVE", "AND"): "event",
+}
+"""The kind of thing that a name stands for, by the statement and the last word of the language before the name."""
+
+_QUOTED = ("TRAVEL", "BATTERY")
+"""Statements in which the agent that they are about may have quotes."""
+
+_BEFORE_NAMES = frozenset({"COLON", "COMMA", "LPAR"})
+
+SUBJECTS = ("agent", "state")
+"""The kinds of things with which a part of a condition may begin."""
+
+_OPENS = {
+    ("CONNECT", "ONLY_IF"), ("EVENT", "ONLY_IF"), ("OBJECTIVE", "AVOID"), ("OBJECTIVE", "ALWAYS"), ("OBJECTIVE", "IF"),
+    ("ASSUME", "NOT"),
+}  # fmt: skip
+"""The statements with a condition in them, and the word behind which it begins."""
+
+_OBJECT = {"AT": "POI", "DOING": "event"}
+_SUBJECT = {"AT": "agent", "ON_WAY": "agent", "DOING": "agent", "IS_TRUE": "state", "IS_FALSE": "state"}
+_NAMES = frozenset(("WORD", *MAY_BE_NAMES))
+
+
+@dataclass(frozen=True)
+class Occurrence:
+    """A name where it stands, without quotes: text[start:end]. `declares`: this is where it is declared."""
+
+    name: str
+    kind: str
+    start: int
+    end: int
+    declares: bool
+    statement: int
+
+
+def kinds_behind(tokens: Sequence[Token]) -> Tuple[str, ...]:
+    """What a name may stand for that is used behind these tokens of one statement; (): no name is used there."""
+    if not tokens:
+        return ()
+    start = condition_start(tokens)
+    if start is not None:
+        return names_in_condition(tokens, start)[1]
+    named = are_names(tokens)
+    keywords = [token.type for token, is_name in zip(tokens, named) if token.type in KEYWORDS and not is_name]
+    kind = _USED.get((kind_of(tokens), keywords[-1])) if keywords else None
+    return () if kind is None else (kind,)
+
+
+def are_names(tokens: Sequence[Token]) -> List[bool]:
+    """Which tokens of one statement are names in use, as far as they stand where one may stand.
+
+    A word of the language that may be a name is one where a name has to stand.
+    """
+    named: List[bool] = []
+    kind = kind_of(tokens)
+    for index, token in enumerate(tokens):
+        before = tokens[index - 1] if index else None
+        behind = before is not None and not named[-1] and (
+            before.type in _BEFORE_NAMES or (kind, before.type) in _USED
+        )  # fmt: skip
+        following = tokens[index + 1].type if index + 1 < len(tokens) else ""
+        opens = before is not None and before.type == "COLON" and kind == "OBJECTIVE"
+        begins = opens and token.type in ("ALWAYS", "PATROL") and following != "NEVER_WITH"
+        named.append(token.type == "WORD" or (token.type in MAY_BE_NAMES and behind and not begins))
+    return named
+
+
+def occurrences(parts: Sequence[Statement]) -> Tuple[Occurrence, ...]:
+    """Every name in the statements that stands where one may stand, in the order of the text."""
+    return tuple(found for number, part in enumerate(parts) for found in _occurrences(part, number))
+
+
+def _occurrences(part: Statement, number: int) -> Iterator[Occurrence]:
+    def of(token: Token, kind: str, declares: bool = False) -> Occurrence:
+        quote = token.type == "NAME"
+        name, start = bare(token) if quote else str(token), start_of(token) + quote
+        return Occurrence(name, kind, start, start + len(name), declares, number)
+
+    kind: Optional[str] = None
+    named = are_names(part.tokens)
+    condition = condition_start(part.tokens)
+    for index, token in enumerate(part.tokens[:condition]):
+        used = named[index] and (index > 1 or part.kind not in DECLARED)
+        if index == 1 and token.type == "NAME" and part.kind in DECLARED:
+            yield of(token, DECLARED[part.kind], declares=True)
+        elif token.type in KEYWORDS and not named[index]:
+            kind = _USED.get((part.kind, token.type))
+        elif kind is not None and (used or (token.type == "NAME" and part.kind in _QUOTED)):
+            yield of(token, kind)
+        elif token.type == "POSE":
+            for name, offset, _ in robots_in(str(token)):
+                start = start_of(token) + offset
+                yield Occurrence(name, "agent", start, start + len(name), False, number)
+    if condition is not None:
+        for index, kind in names_in_condition(part.tokens, condition)[0].items():
+            yield of(part.tokens[index], kind)
+
+
+def condition_start(tokens: Sequence[Token]) -> Optional[int]:
+    """The number of the first token of the condition in a statement, be it there or missing; None: it has none."""
+    for number, token in enumerate(tokens):
+        if (kind_of(tokens), token.type) in _OPENS:
+            following = tokens[number + 1].type if number + 1 < len(tokens) else ""
+            return None if following == "NEVER_WITH" else number + 1  # always may be an agent's name
+    return None
+
+
+def names_in_condition(tokens: Sequence[Token], start: int) -> Tuple[Dict[int, str], Tuple[str, ...]]:
+    """By the number of its token the kind of thing that each name from `start` on stands for; and the kinds of names
+    that may follow the last token."""
+    found: Dict[int, str] = {}
+    # an event may stand there alone
+    subjects = ("event", *SUBJECTS) if tokens[start - 1].type in ("AVOID", "IF") else SUBJECTS
+    expected: Tuple[str, ...] = subjects
+    number = start
+    while number < len(tokens):
+        kind = tokens[number].type
+        following = tokens[number + 1].type if number + 1 < len(tokens) else ""
+        if len(expected) > 1 and kind in ("ANY", "NO") and following in ("ROBOT", "AGENT"):
+            number, expected = number + 1, ()
+        elif expected and kind in _NAMES:
+            found[number] = expected[0] if len(expected) == 1 else _SUBJECT.get(following, subjects[0])
+            expected = ()
+        elif kind in _OBJECT:
+            expected = (_OBJECT[kind],)
+        elif kind in ("AND", "OR", "NOT", "LPAR"):
+            expected = subjects = SUBJECTS
+        elif kind == "THEN":
+            expected = subjects = ("event", *SUBJECTS)
+        elif kind == "WITHIN":
+            expected = ()
+        number += 1
+    return found, expected
