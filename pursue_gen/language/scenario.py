@@ -64,22 +64,24 @@ __all__ = [
 class Scenario:
     """A whole scenario. `name` is the file's stem, `text` the source; parts are in the order of their declaration.
 
+    One that is built in Python has neither file nor text before `writer.written` gives it both.
+
     All of `safety` has to hold until all of `reach` is reached; for ever where there is none. `given_up` are optional
     objectives that are in neither of them: what is not promised together with the rest.
     """
 
     name: str
-    file: str
-    text: str
-    pois: Tuple[Poi, ...]
-    connections: Tuple[Connection, ...]
-    events: Tuple[Event, ...]
-    rules: Tuple[Rule, ...]
-    states: Tuple[State, ...]
-    dependencies: Tuple[Dependency, ...]
-    agents: Tuple[Agent, ...]
-    safety: Tuple[Safety, ...]
-    reach: Tuple[Reach, ...]
+    file: str = ""
+    text: str = ""
+    pois: Tuple[Poi, ...] = ()
+    connections: Tuple[Connection, ...] = ()
+    events: Tuple[Event, ...] = ()
+    rules: Tuple[Rule, ...] = ()
+    states: Tuple[State, ...] = ()
+    dependencies: Tuple[Dependency, ...] = ()
+    agents: Tuple[Agent, ...] = ()
+    safety: Tuple[Safety, ...] = ()
+    reach: Tuple[Reach, ...] = ()
     travels: Tuple[Travel, ...] = ()
     assumptions: Tuple[Assumption, ...] = ()
     given_up: Tuple[GivenUp, ...] = ()
