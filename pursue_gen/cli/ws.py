@@ -47,11 +47,12 @@ def ws(
 
     The folder is printed on stdout.
     """
+    from pursue_gen import api
     from pursue_gen.cli.inputs import scenario_from
     from pursue_gen.cli.solution import solve_and_print
     from pursue_gen.drawing.floor_picture import read_floor
     from pursue_gen.drawing.ground import read_ground
-    from pursue_gen.workspace.make import Extras, make_workspace
+    from pursue_gen.workspace.make import Extras
     from pursue_gen.workspace.map_spots import spare_spots, with_spots
     from pursue_gen.workspace.robot_size import read_sizes, sizes_of
 
@@ -70,8 +71,7 @@ def ws(
         extras = replace(extras, floor=replace(under, paths=ways), spare=spare)
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")
-    found = solve_and_print(read, request, explain)
-    made = make_workspace(found.scenario, found.solution, request, extras, folder, force)
+    made = api.write_workspace(solve_and_print(read, request, explain), folder, extras, force)
     info(made.margin)
     show(made.findings)
     print(made.folder)

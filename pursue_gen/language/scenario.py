@@ -16,7 +16,7 @@ from pursue_gen.language.assumptions import (
     NeverHolds,
     Waits,
 )
-from pursue_gen.language.conditions import Condition
+from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, Holds, Not, OnWay, Who
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.objectives import (
     Always,
@@ -52,10 +52,10 @@ from pursue_gen.language.parts import (
 from pursue_gen.language.refs import Ref
 
 __all__ = [
-    "AboutOne", "Agent", "Always", "Assumption", "AtMost", "Avoid", "Battery", "Both", "Choice", "Connection",
-    "Dependency", "Event", "GivenUp", "Leaves", "NeverAt", "NeverHolds", "NeverWith", "Patrol", "Poi", "Pose",
-    "Reach", "Ref", "Respond", "Rule", "RuleBody", "Safety", "Scenario", "Sequence", "Spot", "State",
-    "StatedObjective", "Travel", "Waits", "Window",
+    "AboutOne", "Agent", "AllOf", "Always", "AnyOf", "Assumption", "At", "AtMost", "Avoid", "Battery", "Both", "Choice",
+    "Condition", "Connection", "Dependency", "Doing", "Event", "GivenUp", "Holds", "Leaves", "NeverAt", "NeverHolds",
+    "NeverWith", "Not", "OnWay", "Patrol", "Poi", "Pose", "Reach", "Ref", "Respond", "Rule", "RuleBody", "Safety",
+    "Scenario", "Sequence", "Spot", "State", "StatedObjective", "Travel", "Waits", "Who", "Window",
 ]
 """All parts of a scenario: whoever works with scenarios imports them from here."""
 

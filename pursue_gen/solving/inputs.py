@@ -22,7 +22,6 @@ from pursue_gen.synthesis.limits import Listener
 from pursue_gen.tga import scenario_objective, translate, translation_notes
 from pursue_gen.tga.network import Network, Objective
 
-_NETWORK_SUFFIX = ".xml"
 _UNREADABLE = ("PML001", "PML002")
 
 
@@ -53,14 +52,9 @@ def outcome_of(findings: Iterable[Diagnostic]) -> Optional[PursueError]:
     return outcome(errors) if errors else None
 
 
-def are_scenario(files: Sequence[Path]) -> bool:
-    """True for one file that is not a network of UPPAAL."""
-    return len(files) == 1 and files[0].suffix != _NETWORK_SUFFIX
-
-
 def load_scenario(file: Path) -> Scenario:
     """The scenario in a file. Raises PursueError."""
-    if file.suffix == _NETWORK_SUFFIX:
+    if file.suffix == ".xml":
         raise usage_error(f"{file} is not a scenario", "only solve and verify take UPPAAL's files")
     return language.load(file)
 

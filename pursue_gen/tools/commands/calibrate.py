@@ -62,14 +62,14 @@ def calibrate(
     The times are those of movements and actions in recorded missions, and those of drives that were measured without a
     mission (rosrun UI drive_legs). Needs no ROS.
     """
-    from pursue_gen.solving.inputs import findings_in, load_scenario
+    from pursue_gen import api
     from pursue_gen.tools.calibration import texts
     from pursue_gen.tools.calibration.proposal import propose
     from pursue_gen.tools.calibration.recordings import samples_in
 
     _check_targets(output, picture, force)
-    scenario = load_scenario(file)
-    show(findings_in(file))
+    scenario = api.read(file)
+    show(api.check(scenario))
     options = _options(scenario, request, time_unit, step, share, outliers)
     samples, findings = samples_in(recordings, scenario, time_unit)
     show(findings)
