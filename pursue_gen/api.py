@@ -155,8 +155,9 @@ def request(
     time, "none" for the first strategy found. `controllers` ("distributed", "centralized", "general") and `reach_obj`
     ("dedicated", "all", a robot): who commands what. `plan`: a file with a plan to use instead of solving.
 
-    Limits: `seconds` of processor time (60 by default, 0: none), `memory` in MiB (of the whole process; by default
-    1024, or 80 % of what is available; 0: none), `work` of a game in one piece (0: no limit): the same everywhere.
+    Limits: `seconds` of processor time (60 by default, 0: none), `memory` of the process in MiB (0: none; by
+    default 1024 beside what it holds already, or 80 % of what there is), `work` of a game in one piece (0: no limit):
+    the same everywhere.
     `whole`, `solver`, `verifytga`: as the command line has them. Raises PursueError for what has no meaning.
 
     >>> request(reaction=0.05, slack={"bot1": 2}, seconds=10).slack
@@ -235,12 +236,15 @@ def read_game(*files: File) -> Game:
 # Solutions ------------------------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SolvedGame:
     """A game that is won: the solution, whose strategy is proven, and what was asked for."""
 
     solution: Solution
     request: SolveRequest
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self.in_words()[0]}>"
 
     @property
     def plan(self) -> str:
@@ -287,7 +291,7 @@ class SolvedGame:
         return verdict_json(self.solution.rules, self.solution, *(margins or ()))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Solved(SolvedGame):
     """A scenario that is won: `scenario` has what is promised, `given_up` in it is what is optional and is not."""
 

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import doctest
 import io
+import os
 import pickle
 import re
+import signal
 import subprocess
 import sys
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import replace
 from pathlib import Path
+from threading import Timer
 from types import FunctionType
 from typing import Any, Dict
 
@@ -19,6 +22,7 @@ import pytest
 import pursue_gen
 from pursue_gen import api
 from tests.conftest import ROOT, thesis_scenario
+from tests.large_scenarios import many_walkers
 
 PAGE = ROOT / "docs" / "api.md"
 FIRST = thesis_scenario("1")
@@ -134,6 +138,18 @@ def test_what_is_changed_in_python_is_what_is_solved_and_what_robots_get(tmp_pat
     texts = [file.read_text("utf-8", "replace") for file in made.folder.rglob("*") if file.is_file()]
     assert any("if callBot then fetch within 50" in text for text in texts)
     assert not any("if callBot then fetch within 5\n" in text for text in texts)
+
+
+def test_a_solution_is_shown_in_a_line() -> None:
+    assert repr(pursue_gen.solve(called(5))).startswith("<Solved: won: ends reported, reaction 0.1; ")
+    assert len(repr(pursue_gen.simulate(pursue_gen.solve(called(5)), 2))) < 1000
+
+
+def test_ctrl_c_ends_a_search() -> None:
+    large = pursue_gen.parse(many_walkers(), "large")
+    Timer(1, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        pursue_gen.solve(large, pursue_gen.request(seconds=0, memory=0, whole=True))
 
 
 def test_answers_and_verdict_are_those_of_the_command() -> None:

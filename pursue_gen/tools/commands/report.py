@@ -136,29 +136,29 @@ def _check_target(target: Path) -> None:
 
 
 def _print_tables(scenario: Scenario, reach_obj: Optional[str], request: SolveRequest, as_json_: bool) -> None:
+    from pursue_gen import api
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.proof.margin import as_json as margin_json
-    from pursue_gen.solving.verdict import margin_text, margins
     from pursue_gen.tools.report import commands
     from pursue_gen.tools.report.make import solved_games
 
     with progress_line(as_json_) as progress:
         scenario, played = solved_games(scenario, request, progress)
-        found = [margins(won, False, request.options.limits)[0] for won in played]
+        games = [api.SolvedGame(won, request) for won in played]
+        margins = [solved.margins() for solved in games]
     names = [_NAMES[won.rules.ends] for won in played]
     game, *ideal = [commands.game_of_solution(won) for won in played]
     table = commands.commands_table(scenario.name, scenario.agents, game, ideal[0] if ideal else None, reach_obj)
     if as_json_:
-        of_games = {name: margin_json(margin) for name, margin in zip(names, found)}
+        of_games = {name: margin.as_json() for name, (margin, _) in zip(names, margins)}
         times = {name: won.guarantee.as_json() for name, won in zip(names, played) if won.guarantee}
         extra = {"margins": of_games, **({"times": times} if times else {})}
         print(json.dumps({**commands.as_json(table), **extra}, indent=1))
         return
     print(commands.render_table(table))
-    for name, won, margin in zip(names, played, found):
-        print(f"{name} game: {margin_text(won, margin)}")
-        if won.guarantee:
-            print(f"{name} game: {won.guarantee.in_words()}")
+    for name, solved, found in zip(names, games, margins):
+        print(f"{name} game: {solved.margin_text(found)}")
+        if solved.solution.guarantee:
+            print(f"{name} game: {solved.solution.guarantee.in_words()}")
 
 
 def _made(scenario: Scenario, options: ReportOptions, solving: SolveOptions) -> Report:
