@@ -21,6 +21,7 @@ import pytest
 
 import pursue_gen
 from pursue_gen import api
+from pursue_gen.api import requests, scenarios, solutions, uses
 from tests.conftest import ROOT, thesis_scenario
 from tests.large_scenarios import many_walkers
 
@@ -36,12 +37,13 @@ def in_the_checkout(monkeypatch: pytest.MonkeyPatch) -> None:
 
 # Examples -------------------------------------------------------------------------------------------------------------
 
+PARTS = (requests, scenarios, solutions, uses)
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
 def test_the_examples_of_functions_are_true() -> None:
-    found = doctest.testmod(api, optionflags=FLAGS)
-    assert found.attempted > 20 and not found.failed
+    found = [doctest.testmod(part, extraglobs=vars(api), optionflags=FLAGS) for part in PARTS]
+    assert sum(one.attempted for one in found) > 20 and not any(one.failed for one in found)
 
 
 def test_the_page_is_true(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
