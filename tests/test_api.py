@@ -215,8 +215,8 @@ def test_periods_that_nobody_named_are_found() -> None:
     rooms = 'poi "a" poi "b" connect a and b distance 2 agent "bot" controllable mobile 1 location a'
     patrol = pursue_gen.parse(f"{rooms} objective: patrol a, b by bot")
     solved = pursue_gen.solve(patrol)
-    assert "least period" in solved.promises()[0]
-    assert pursue_gen.solve(solved.scenario).promises() == solved.promises()
+    assert "least period" in pursue_gen.promises_of(solved.scenario)[0]
+    assert pursue_gen.solve(solved.scenario).scenario.safety == solved.scenario.safety
 
 
 def test_a_game_of_uppaal_is_solved_and_verified(tmp_path: Path) -> None:

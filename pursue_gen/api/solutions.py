@@ -102,17 +102,13 @@ class Solved(SolvedGame):
 
         return unneeded(self.scenario, self.solution.strategy)
 
-    def promises(self) -> List[str]:
-        """Which periods were found for patrols, and which optional objectives are promised, in sentences."""
-        return promises_of(self.scenario)
-
     def in_words(self) -> List[str]:
         """The verdict, answers, promises, what is assumed of others and who is not needed, in lines for people."""
         from pursue_gen.language.wording import condition_of_promise
         from pursue_gen.partition import unneeded_words
 
         assumed = condition_of_promise(self.scenario) if self.request.plan is None else ""
-        lines = [*super().in_words(), *(answer.in_words() for answer in self.answers), *self.promises()]
+        lines = [*super().in_words(), *(answer.in_words() for answer in self.answers), *promises_of(self.scenario)]
         lines += [f"This holds {assumed}."] if assumed else []
         return [line for line in (*lines, unneeded_words(self.unneeded)) if line]
 
@@ -127,7 +123,10 @@ class Solved(SolvedGame):
 
 
 def promises_of(scenario: Scenario, won: bool = True) -> List[str]:
-    """As `Solved.promises`; of a scenario that is not won, what is known of periods."""
+    """Which periods were found for patrols, and which optional objectives are promised, in sentences.
+
+    Of a scenario that is not won, what is known of periods.
+    """
     from pursue_gen.language.wording import periods_found, promise_words
 
     promised = promise_words(scenario) if won else []

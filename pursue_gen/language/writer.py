@@ -8,39 +8,18 @@ from fractions import Fraction
 from typing import Any, Iterable, Iterator, List
 
 from pursue_gen.diagnostics import NOWHERE, PursueError, Span, error
+from pursue_gen.language import scenario as pml
 from pursue_gen.language.conditions import condition_text
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.parser import read
 from pursue_gen.language.rewriting import pose_text
-from pursue_gen.language.scenario import (
-    Agent,
-    Assumption,
-    AtMost,
-    Battery,
-    Both,
-    Connection,
-    Event,
-    Leaves,
-    NeverHolds,
-    Patrol,
-    Poi,
-    Pose,
-    Ref,
-    Rule,
-    RuleBody,
-    Scenario,
-    Sequence,
-    State,
-    StatedObjective,
-    Travel,
-    Waits,
-)
+from pursue_gen.language.scenario import Patrol, Ref, Scenario
 from pursue_gen.language.wording import statement_text
 
 
 def written(scenario: Scenario) -> Scenario:
-    """The scenario itself if it has a text that says the same, poses and labels aside; else as its new text is read.
+    """The scenario itself if it has a text that says the same, poses aside; else as its new text is read.
 
     Raises as `scenario_text`; whether it makes sense is for `checks` to say.
     """
@@ -67,16 +46,16 @@ def scenario_text(scenario: Scenario) -> str:
     return text
 
 
-def assumption_text(assumption: Assumption) -> str:
+def assumption_text(assumption: pml.Assumption) -> str:
     """The statement, as in `assume: visitor never at lab`."""
-    if isinstance(assumption, NeverHolds):
+    if isinstance(assumption, pml.NeverHolds):
         return f"assume: not ({condition_text(assumption.condition)})"
     name = assumption.agent.name
-    if isinstance(assumption, AtMost):
+    if isinstance(assumption, pml.AtMost):
         return f"assume: {name} does {assumption.event.name} at_most {assumption.times} times"
-    if isinstance(assumption, Waits):
+    if isinstance(assumption, pml.Waits):
         return f"assume: {name} waits {assumption.time} between {assumption.event.name}"
-    if isinstance(assumption, Leaves):
+    if isinstance(assumption, pml.Leaves):
         return f"assume: {name} leaves {assumption.place.name} within {assumption.time}"
     return f"assume: {name} never at {assumption.place.name}"
 
@@ -87,13 +66,13 @@ def _plain(value: Any) -> Any:
         return exact(Fraction(str(value))) if math.isfinite(value) else value
     if isinstance(value, (tuple, list)):
         return tuple(map(_plain, value))
-    if not is_dataclass(value) or isinstance(value, (Span, Pose, type)):
+    if not is_dataclass(value) or isinstance(value, (Span, pml.Pose, type)):
         return value
     return type(value)(**{field.name: _plain(getattr(value, field.name)) for field in fields(value)})
 
 
 def _meaning(value: Any) -> Any:
-    """A part without what does not matter for which game is played: places in the text, labels, poses, files."""
+    """A part without what does not matter for which game is played: places in the text, poses, files."""
     if isinstance(value, Span):
         return NOWHERE
     if isinstance(value, tuple):
@@ -102,7 +81,7 @@ def _meaning(value: Any) -> Any:
         return value
     if isinstance(value, Scenario):
         value = replace(value, file="", text="", given_up=())
-    elif isinstance(value, Poi):
+    elif isinstance(value, pml.Poi):
         value = replace(value, pose=None, spots=())
     elif isinstance(value, Patrol):
         value = replace(value, least=None)
@@ -153,20 +132,20 @@ def _window(low: object, high: object) -> str:
     return f"{low}" if high is None else f"{low} to {high}"
 
 
-def _poi(poi: Poi) -> str:
+def _poi(poi: pml.Poi) -> str:
     spots = "".join(f" {spot.robot.name} {pose_text(spot.pose)}" for spot in poi.spots)
     own = pose_text(poi.pose) if poi.pose is not None else "[none]"
     pose = f"//{own}{spots}" if poi.pose is not None or spots else ""
     return _joined(f'poi "{poi.name}"', _label(poi.label), pose)
 
 
-def _connection(way: Connection) -> str:
+def _connection(way: pml.Connection) -> str:
     only_if = None if way.only_if is None else condition_text(way.only_if)
     one_way = "one_way" if way.one_way else ""
     return _joined(f"connect {way.a} and {way.b} distance {way.distance}", one_way, _word("only_if", only_if))
 
 
-def _event(event: Event) -> str:
+def _event(event: pml.Event) -> str:
     return _joined(
         f'event "{event.name}"',
         _label(event.label),
@@ -179,24 +158,25 @@ def _event(event: Event) -> str:
     )
 
 
-def _rule(rule: Rule) -> str:
+def _rule(rule: pml.Rule) -> str:
     who = f" for each {rule.each}" if rule.each else ""
     return f'rule "{rule.name}"{who}: {_body(rule.body)}'
 
 
-def _body(body: RuleBody) -> str:
+def _body(body: pml.RuleBody) -> str:
     if isinstance(body, Ref):
         return body.name
+    word = "before" if isinstance(body, pml.Sequence) else "and" if isinstance(body, pml.Both) else "or"
     sides = (f"({_body(side)})" if not isinstance(side, Ref) else side.name for side in (body.first, body.second))
-    return (" before " if isinstance(body, Sequence) else " and " if isinstance(body, Both) else " or ").join(sides)
+    return f" {word} ".join(sides)
 
 
-def _state(state: State) -> str:
+def _state(state: pml.State) -> str:
     sets = _joined(_word("true_if", _names(state.true_if)), _word("false_if", _names(state.false_if)))
     return f'state "{state.name}": initially {_truth(state.initially)}{sets and f", {sets}"}'
 
 
-def _agent(agent: Agent) -> str:
+def _agent(agent: pml.Agent) -> str:
     return _joined(
         f'agent "{agent.name}"',
         _label(agent.label),
@@ -209,19 +189,19 @@ def _agent(agent: Agent) -> str:
     )
 
 
-def _travel(travel: Travel) -> str:
+def _travel(travel: pml.Travel) -> str:
     takes = _window(travel.earliest, travel.latest)
     return f'travel "{travel.agent.name}" from {travel.a.name} to {travel.b.name} takes {takes}'
 
 
-def _battery(battery: Battery) -> str:
+def _battery(battery: pml.Battery) -> str:
     uses = f'battery "{battery.agent.name}" capacity {battery.capacity} uses {battery.uses} per unit'
     return uses if battery.dock is None else f"{uses} recharges {battery.recharges} per unit at {battery.dock.name}"
 
 
-def _objectives(objectives: Iterable[StatedObjective]) -> Iterator[str]:
+def _objectives(objectives: Iterable[pml.StatedObjective]) -> Iterator[str]:
     """A statement for each objective; the places of a patrol in order have one together."""
-    turns: List[StatedObjective] = []
+    turns: List[pml.StatedObjective] = []
     for objective in objectives:
         turns.append(objective)
         if not isinstance(objective, Patrol) or len(turns) >= len(objective.order):

@@ -86,7 +86,7 @@ def sim(
     with naming_costs(read, request, as_json_), progress_line(as_json_) as progress:
         solved = api.solve(read, request, progress)
     show(solved.solution.warnings)
-    for sentence in solved.promises():
+    for sentence in api.promises_of(solved.scenario):
         info(sentence)
     with counting(runs, as_json_) as count:
         how: Dict[str, Any] = {"jobs": jobs, "scheduler": scheduler, "progress": count}
