@@ -22,6 +22,7 @@ import pytest
 import pursue_gen
 from pursue_gen import api
 from pursue_gen.api import requests, scenarios, solutions, uses
+from pursue_gen.language import scenario as language_scenario
 from tests.conftest import ROOT, thesis_scenario
 from tests.large_scenarios import many_walkers
 
@@ -93,6 +94,10 @@ def test_importing_the_package_imports_nothing_else_of_it() -> None:
         "pursue_gen",
         "pursue_gen.diagnostics",
     ]
+
+
+def test_scenarios_can_be_built_of_all_values_of_the_language() -> None:
+    assert set(language_scenario.__all__) < set(api.__all__)
 
 
 def test_types_are_there_for_type_checkers() -> None:
