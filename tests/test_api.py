@@ -16,6 +16,7 @@ from pathlib import Path
 from threading import Timer
 from types import FunctionType
 from typing import Any, Dict
+from unittest import mock
 
 import pytest
 
@@ -150,6 +151,12 @@ def test_what_is_changed_in_python_is_what_is_solved_and_what_robots_get(tmp_pat
 def test_a_solution_is_shown_in_a_line() -> None:
     assert repr(pursue_gen.solve(called(5))).startswith("<Solved: won: ends reported, reaction 0.1; ")
     assert len(repr(pursue_gen.simulate(pursue_gen.solve(called(5)), 2))) < 1000
+
+
+def test_a_notebook_shows_the_text_of_a_scenario() -> None:
+    printer = mock.Mock()
+    called(5)._repr_pretty_(printer, False)
+    printer.text.assert_called_once_with(CALLED.format(deadline=5))
 
 
 def test_ctrl_c_ends_a_search() -> None:

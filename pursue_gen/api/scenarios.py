@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional, Tuple, Union
 
 from pursue_gen.api.requests import File, default_request
-from pursue_gen.diagnostics import Diagnostic, PursueError
+from pursue_gen.diagnostics import Diagnostic, PursueError, usage_error
 from pursue_gen.language.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -25,9 +25,11 @@ def read(file: File) -> Scenario:
     >>> [agent.name for agent in floor.agents]
     ['bot1', 'bot2']
     """
-    from pursue_gen.solving.inputs import load_scenario
+    from pursue_gen import language
 
-    return load_scenario(Path(file))
+    if Path(file).suffix == ".xml":
+        raise usage_error(f"{file} is not a scenario", "only solve and verify take UPPAAL's files")
+    return language.load(file)
 
 
 def parse(text: str, name: str = "scenario") -> Scenario:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Collection, Dict, Iterator, Tuple, Union
+from typing import Any, Collection, Dict, Iterator, Tuple, Union
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.assumptions import (
@@ -86,6 +86,10 @@ class Scenario:
     assumptions: Tuple[Assumption, ...] = ()
     given_up: Tuple[GivenUp, ...] = ()
     batteries: Tuple[Battery, ...] = ()
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
+        """Show it in a notebook."""
+        printer.text(self.text or repr(self))
 
     @property
     def optional(self) -> Tuple[int, ...]:

@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Optional, Sequence, Tuple
 
-from pursue_gen import language
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, in_order, usage_error
 from pursue_gen.files import LARGEST_TEXT, read_text
 from pursue_gen.language.checks import check_reading
@@ -40,13 +39,6 @@ def findings_of(reading: Reading) -> Tuple[Diagnostic, ...]:
     return in_order(
         (*findings, *translation_notes(scenario), *check_assumed_alone(scenario), *check_forbidden(scenario))
     )
-
-
-def load_scenario(file: Path) -> Scenario:
-    """The scenario in a file. Raises PursueError."""
-    if file.suffix == ".xml":
-        raise usage_error(f"{file} is not a scenario", "only solve and verify take UPPAAL's files")
-    return language.load(file)
 
 
 def settled(scenario: Scenario, request: SolveRequest, progress: Optional[Listener] = None) -> Scenario:
