@@ -231,6 +231,17 @@ def test_periods_that_nobody_named_are_found() -> None:
     assert pursue_gen.solve(solved.scenario).scenario.safety == solved.scenario.safety
 
 
+def test_a_scenario_without_periods_is_explained_and_written_for_uppaal() -> None:
+    """Its periods are found first: there is no game before."""
+    rooms = 'poi "a" poi "b" connect a and b distance 2 agent "bot" controllable mobile 1 location a'
+    guest = 'event "come" location b agent "guest" mobile 1 location b can_do come'
+    lost = pursue_gen.parse(f"{rooms} {guest} objective: patrol a, b by bot objective: avoid come")
+    with pytest.raises(pursue_gen.Lost) as problem:
+        pursue_gen.solve(lost)
+    assert pursue_gen.explain(lost, problem.value).text
+    assert "control" in pursue_gen.as_uppaal(lost)[1]
+
+
 def test_a_game_of_uppaal_is_solved_and_verified(tmp_path: Path) -> None:
     from pursue_gen.tga.uppaal import write_network, write_query
 

@@ -105,7 +105,7 @@ def game(scenario: Scenario, request: Optional[SolveRequest] = None) -> Game:
     from pursue_gen.solving.inputs import game_of
     from pursue_gen.solving.rules import played
 
-    network, objective = game_of(sound(scenario))
+    network, objective = game_of(settle(scenario, request))
     return (network if request is None else played(network, request.rules(network))), objective
 
 

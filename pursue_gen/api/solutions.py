@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Optional, Tuple
 
 from pursue_gen.api.requests import File, default_request
-from pursue_gen.api.scenarios import Game, game, settle, sound
+from pursue_gen.api.scenarios import Game, game, settle
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.outcomes import LimitHit, Lost
@@ -187,7 +187,7 @@ def verify(
     from pursue_gen.solving.optional import try_plan_of
 
     wanted = request or default_request()
-    return try_plan_of(sound(scenario), Path(plan), wanted, replace(wanted.options, progress=progress))
+    return try_plan_of(settle(scenario, wanted), Path(plan), wanted, replace(wanted.options, progress=progress))
 
 
 def verify_game(
@@ -250,7 +250,8 @@ def explain(
     from pursue_gen.explanation import explain as lost
 
     traceback.clear_frames(problem.__traceback__)  # what the search that has ended holds, else counts as in use
-    wanted, scenario = request or default_request(), sound(scenario)
+    wanted = request or default_request()
+    scenario = settle(scenario, wanted, progress)
     scenario = scenario.giving_up(scenario.optional)
     rules, limits = wanted.rules(game(scenario)[0]), wanted.options.limits
     if isinstance(problem, Lost):
