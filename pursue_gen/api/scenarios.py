@@ -63,7 +63,8 @@ def check(scenario: Union[Scenario, File]) -> Tuple[Diagnostic, ...]:
         scenario = written(scenario)
     except PursueError as problem:
         return problem.diagnostics
-    return findings_of(Reading(scenario, read_text(scenario.text, scenario.file, scenario.name).diagnostics))
+    found = read_text(scenario.text, scenario.file, scenario.name).diagnostics
+    return findings_of(Reading(scenario, found, scenario))
 
 
 def as_text(scenario: Scenario) -> str:
