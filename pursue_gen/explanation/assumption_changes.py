@@ -10,7 +10,6 @@ from pursue_gen.explanation.number_changes import NumberChange
 from pursue_gen.language.conditions import At, atoms
 from pursue_gen.language.numbers import Number, whole_above, whole_below
 from pursue_gen.language.scenario import AboutOne, Agent, Always, AtMost, Leaves, NeverAt, Ref, Respond, Scenario, Waits
-from pursue_gen.language.writer import assumption_text
 
 _SHORTEST_STAY = 2
 """Time units within which an agent can leave: whoever arrives rests for one before it can set off."""
@@ -49,10 +48,10 @@ def _tighter(
         return replace(scenario, assumptions=tuple(changed(k) if a == known else a for a in scenario.assumptions))
 
     def say(k: int) -> str:
-        return f"{assumption_text(changed(k))} instead of {before}"
+        return f"{_text(changed(k))} instead of {before}"
 
     if values:
-        label = f"more than {assumption_text(known)}"
+        label = f"more than {_text(known)}"
         yield NumberChange("assumption", known.agent.name, label, before, values, make, say, known.span)
 
 
@@ -77,7 +76,7 @@ def _pause(scenario: Scenario, agent: Ref, event: Ref, longest: Number) -> Numbe
         return replace(scenario, assumptions=(*scenario.assumptions, pause(k)))
 
     def say(k: int) -> str:
-        return assumption_text(pause(k))
+        return _text(pause(k))
 
     label = f"assume: {agent.name} waits … between {event.name}"
     return NumberChange("assumption", agent.name, label, 0, whole_above(0, longest), make, say, event.span)
@@ -104,5 +103,15 @@ def _never_at(scenario: Scenario, agent: Ref, place: Ref) -> NumberChange:
     def make(k: int) -> Scenario:
         return replace(scenario, assumptions=(*scenario.assumptions, never))
 
-    text = assumption_text(never)
-    return NumberChange("assumption", agent.name, text, 0, (1,), make, lambda k: text, agent.span)
+    return NumberChange("assumption", agent.name, _text(never), 0, (1,), make, lambda k: _text(never), agent.span)
+
+
+def _text(assumption: AboutOne) -> str:
+    """The statement."""
+    if isinstance(assumption, AtMost):
+        return f"assume: {assumption.agent.name} does {assumption.event.name} at_most {assumption.times} times"
+    if isinstance(assumption, Waits):
+        return f"assume: {assumption.agent.name} waits {assumption.time} between {assumption.event.name}"
+    if isinstance(assumption, Leaves):
+        return f"assume: {assumption.agent.name} leaves {assumption.place.name} within {assumption.time}"
+    return f"assume: {assumption.agent.name} never at {assumption.place.name}"
