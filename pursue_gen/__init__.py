@@ -1,8 +1,12 @@
-"""PuRSUE-gen: from a scenario in PuRSUE-ML to a ROS 1 workspace with one proven controller per robot."""
+"""PuRSUE-gen: from a scenario in PuRSUE-ML to a ROS 1 workspace with one proven controller per robot.
+
+All names of `api` are here, too (docs/api.md): `import pursue_gen`, then `pursue_gen.read("my_floor.pur")`.
+"""
 
 import importlib.util
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, List
 
 
 def _use_own_runtime() -> None:
@@ -30,6 +34,21 @@ def _use_own_runtime() -> None:
 
 _use_own_runtime()
 
-from pursue_runtime import __version__  # noqa: E402 (the own one)
+from pursue_runtime import __version__ as __version__  # noqa: E402 (the own one)
 
-__all__ = ["__version__"]
+if TYPE_CHECKING:
+    from pursue_gen.api import *  # noqa: F403
+
+
+def __getattr__(name: str) -> Any:
+    """A name of `api`, which is imported now: whoever wants a part of the project alone need not wait for it."""
+    if name.startswith("_") or importlib.util.find_spec(f"{__name__}.{name}") is not None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")  # a part that is imported by its name
+    api = importlib.import_module(f"{__name__}.api")
+    if name not in api.__all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(api, name)
+
+
+def __dir__() -> List[str]:
+    return sorted({*globals(), *importlib.import_module(f"{__name__}.api").__all__})

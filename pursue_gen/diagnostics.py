@@ -32,6 +32,10 @@ class Span:
     end_column: int
 
 
+NOWHERE = Span("", 1, 1, 1, 1)
+"""The place of what stands in no text: of a scenario that is built in Python."""
+
+
 @dataclass(frozen=True)
 class Diagnostic:
     """One finding. `code` is stable (PML001 …), `message` what is wrong and was expected, `hint` what to do."""

@@ -6,7 +6,7 @@ import contextlib
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Dict, List, Optional, Tuple
+from typing import TYPE_CHECKING, Dict, Iterable, List, Optional, Tuple
 
 import typer
 
@@ -15,8 +15,10 @@ from pursue_gen.cli.on_map import on_map
 from pursue_gen.cli.options import ROBOT, SPOT_DISTANCE
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, as_json, counted
 from pursue_gen.files import shell_quoted
+from pursue_gen.outcomes import Invalid
 
 if TYPE_CHECKING:
+    from pursue_gen.language.scenario import Scenario
     from pursue_gen.workspace.robot_size import Told
     from pursue_gen.workspace.spots import Fit
 
@@ -35,11 +37,11 @@ def check(
 
     Findings go to stdout; the exit status is 3 where there are errors, 2 where a file cannot be read.
     """
-    from pursue_gen.solving.inputs import findings_in, outcome_of
+    from pursue_gen import api
     from pursue_gen.workspace.robot_size import read_sizes
 
     told = read_sizes(robot)
-    findings = [finding for file in files for finding in findings_in(file)]
+    findings = [finding for file in files for finding in api.check(file)]
     fits: Dict[Path, Fit] = {}
     if floor is not None:
         more, fits = _on_map(files, floor, spot_distance, told)
@@ -50,31 +52,35 @@ def check(
         show(findings, sys.stdout)
     errors = sum(finding.severity is Severity.ERROR for finding in findings)
     info(f"{counted(len(files), 'file')}: {counted(errors, 'error')}, {counted(len(findings) - errors, 'warning')}")
-    problem = outcome_of(findings)
+    problem = _outcome_of(findings)
     if problem is not None:
         suggest(f"pursue-gen explain {problem.diagnostics[0].code}")
         raise ended(problem)
     for file in files:
-        for sentence in (*_periods(file), *_moved(file, spot_distance, fits.get(file))):
+        scenario = api.read(file)
+        for sentence in (*_periods(scenario), *_moved(scenario, spot_distance, fits.get(file))):
             info(f"{file}: {sentence}")
     suggest(f"pursue-gen ws {shell_quoted(files[0])}")
 
 
-def _periods(file: Path) -> List[str]:
+def _outcome_of(findings: Iterable[Diagnostic]) -> Optional[PursueError]:
+    """How the command ends that found this: None without errors, Invalid unless a file cannot be read."""
+    errors = [finding for finding in findings if finding.severity is Severity.ERROR]
+    outcome = PursueError if any(finding.code in ("PML001", "PML002") for finding in errors) else Invalid
+    return outcome(errors) if errors else None
+
+
+def _periods(scenario: Scenario) -> List[str]:
     """What is quickly found out about the periods of patrols that name none."""
-    from pursue_gen.language import load
     from pursue_gen.solving.periods import quickly_found, without_period
 
-    scenario = load(file)
     return quickly_found(scenario) if without_period(scenario) else []
 
 
-def _moved(file: Path, distance: float, fit: Optional[Fit]) -> List[str]:
+def _moved(scenario: Scenario, distance: float, fit: Optional[Fit]) -> List[str]:
     """Which robots are sent beside the pose that the scenario gives for a place, and how far."""
-    from pursue_gen.language import load
     from pursue_gen.workspace.spots import moved
 
-    scenario = load(file)
     several = sum(agent.is_robot for agent in scenario.agents) > 1
     return moved(scenario, distance, fit) if several and any(poi.pose for poi in scenario.pois) else []
 

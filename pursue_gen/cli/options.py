@@ -213,15 +213,7 @@ def with_request(*names: str, **own: Any) -> Callable[[Callable[..., None]], Cal
 
 def _request(values: Dict[str, Any]) -> SolveRequest:
     """The request of parsed options; limits that are not given are the default ones."""
-    from pursue_gen.solving.options import SolveOptions
-    from pursue_gen.solving.request import SolveRequest
-    from pursue_gen.synthesis.limits import DEFAULT_SECONDS, Limits, careful_memory
+    from pursue_gen import api
 
-    texts = {name: value.value if isinstance(value, Enum) else value for name, value in values.items()}
-    memory, seconds = texts.pop("memory", None), texts.pop("limit", None)
-    memory = careful_memory() if memory is None else memory
-    limits = Limits(DEFAULT_SECONDS, memory, by_default=True) if seconds is None else Limits(seconds, memory)
-    how = {name: texts.pop(name) for name in ("solver", "verifytga", "optimize", "whole") if name in texts}
-    if "slack" in texts:
-        texts["slack"] = tuple(texts["slack"])
-    return SolveRequest(**texts, options=SolveOptions(limits=limits, **how))
+    given = {name: value.value if isinstance(value, Enum) else value for name, value in values.items()}
+    return api.request(seconds=given.pop("limit", None), **given)

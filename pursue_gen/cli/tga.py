@@ -11,7 +11,7 @@ import typer
 from pursue_gen.cli.console import guarded, suggest
 from pursue_gen.cli.inputs import scenario_from
 from pursue_gen.cli.options import REQUEST, SCENARIO, Ends, with_request
-from pursue_gen.files import shell_quoted
+from pursue_gen.files import shell_quoted, write_texts
 
 if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest
@@ -29,14 +29,10 @@ def tga(
     request: SolveRequest = REQUEST,
 ) -> None:
     """Write a scenario's timed game as UPPAAL's files TGA.xml and TCTL.q (the original's ideal game)."""
-    from pursue_gen.files import write_texts
-    from pursue_gen.solving.inputs import game_of
-    from pursue_gen.solving.rules import played
-    from pursue_gen.tga.uppaal import write_network, write_query
+    from pursue_gen import api
 
-    network, objective = game_of(scenario_from(scenario, request))
-    network = played(network, replace(request, reaction="0").rules(network))
+    network, query_text = api.as_uppaal(scenario_from(scenario, request), replace(request, reaction="0"))
     model, query = folder / "TGA.xml", folder / "TCTL.q"
-    write_texts({model: write_network(network, objective), query: write_query(objective)})
+    write_texts({model: network, query: query_text})
     print(model, query, sep="\n")
     suggest(f"pursue-gen solve {shell_quoted(model)} {shell_quoted(query)}")

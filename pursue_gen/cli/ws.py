@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, List, Optional
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
-from pursue_gen.cli.on_map import on_map
+from pursue_gen.cli.on_map import placed_on
 from pursue_gen.cli.options import EXPLAIN, MISSION, REQUEST, ROBOT, SCENARIO, SPOT_DISTANCE, Controllers, with_request
 from pursue_gen.files import shell_quoted
 
@@ -47,31 +47,25 @@ def ws(
 
     The folder is printed on stdout.
     """
+    from pursue_gen import api
     from pursue_gen.cli.inputs import scenario_from
     from pursue_gen.cli.solution import solve_and_print
-    from pursue_gen.drawing.floor_picture import read_floor
-    from pursue_gen.drawing.ground import read_ground
-    from pursue_gen.workspace.make import Extras, make_workspace
-    from pursue_gen.workspace.map_spots import spare_spots, with_spots
-    from pursue_gen.workspace.robot_size import read_sizes, sizes_of
+    from pursue_gen.workspace.make import Extras
+    from pursue_gen.workspace.map_spots import spare_spots
+    from pursue_gen.workspace.robot_size import read_sizes
 
     told = read_sizes(robot)
     extras = Extras(machines, docker, systemd, spot_distance)
-    under = None if floor is None else read_floor(floor)
     start = request.options.limits.now()
     read = scenario_from(scenario, request)
     request = request.since(start)
-    if floor is not None and under is not None:
-        ground, sizes = read_ground(floor), sizes_of(read, told)
-        findings, ways = on_map(read, ground, spot_distance, sizes)
-        show(findings)
-        read = with_spots(read, ground, spot_distance, sizes, ways)
-        spare = spare_spots(read, ground, spot_distance, sizes, ways) if ways else {}
-        extras = replace(extras, floor=replace(under, paths=ways), spare=spare)
+    if floor is not None:
+        read, plan, ground, sizes = placed_on(read, floor, spot_distance, told)
+        spare = spare_spots(read, ground, spot_distance, sizes, plan.paths) if plan.paths else {}
+        extras = replace(extras, floor=plan, spare=spare)
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")
-    found = solve_and_print(read, request, explain)
-    made = make_workspace(found.scenario, found.solution, request, extras, folder, force)
+    made = api.write_workspace(solve_and_print(read, request, explain), folder, extras, force)
     info(made.margin)
     show(made.findings)
     print(made.folder)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Union
 
-from pursue_gen.diagnostics import Span
+from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.conditions import Condition
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
@@ -18,7 +18,7 @@ class AtMost:
     agent: Ref
     event: Ref
     times: int
-    span: Span
+    span: Span = NOWHERE
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Waits:
     agent: Ref
     event: Ref
     time: Number
-    span: Span
+    span: Span = NOWHERE
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Leaves:
     agent: Ref
     place: Ref
     time: Number
-    span: Span
+    span: Span = NOWHERE
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class NeverAt:
 
     agent: Ref
     place: Ref
-    span: Span
+    span: Span = NOWHERE
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class NeverHolds:
     """
 
     condition: Condition
-    span: Span
+    span: Span = NOWHERE
 
 
 AboutOne = Union[AtMost, Waits, Leaves, NeverAt]

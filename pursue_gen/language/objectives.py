@@ -6,7 +6,7 @@ import enum
 from dataclasses import dataclass
 from typing import Optional, Tuple, Union
 
-from pursue_gen.diagnostics import Span
+from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.conditions import Condition, Not, Who
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
@@ -23,7 +23,7 @@ class Respond:
     trigger: Union[Ref, Condition]
     response: Union[Ref, Condition]
     deadline: Number
-    span: Span
+    span: Span = NOWHERE
     optional: int = 0
 
     @property
@@ -42,7 +42,7 @@ class Avoid:
     """`avoid event`."""
 
     event: Ref
-    span: Span
+    span: Span = NOWHERE
     optional: int = 0
 
 
@@ -52,7 +52,7 @@ class NeverWith:
 
     first: Ref
     second: Ref
-    span: Span
+    span: Span = NOWHERE
     place: Optional[Ref] = None
     optional: int = 0
 
@@ -62,8 +62,8 @@ class Always:
     """`always condition`, or with `holds` False `avoid condition`: it holds at every moment, or at none."""
 
     condition: Condition
-    holds: bool
-    span: Span
+    holds: bool = True
+    span: Span = NOWHERE
     optional: int = 0
 
     @property
@@ -85,7 +85,7 @@ class Patrol:
     place: Ref
     every: Optional[Number]
     who: Who
-    span: Span
+    span: Span = NOWHERE
     order: Tuple[str, ...] = ()
     least: Optional[int] = None
     optional: int = 0
@@ -106,8 +106,8 @@ class Reach:
     units from the start (None: without a deadline)."""
 
     events: Tuple[Ref, ...]
-    after: Number
-    span: Span
+    after: Number = 0
+    span: Span = NOWHERE
     within: Optional[Number] = None
     optional: int = 0
 

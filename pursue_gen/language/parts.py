@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Optional, Tuple, Union
 
-from pursue_gen.diagnostics import Span
+from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.conditions import Condition
 from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.refs import Ref
@@ -40,8 +40,8 @@ class Poi:
     """
 
     name: str
-    pose: Optional[Pose]
-    span: Span
+    pose: Optional[Pose] = None
+    span: Span = NOWHERE
     spots: Tuple[Spot, ...] = ()
     label: Optional[str] = None
 
@@ -62,8 +62,8 @@ class Connection:
     a: str
     b: str
     distance: Number
-    span: Span
-    ends: Tuple[Span, Span]
+    span: Span = NOWHERE
+    ends: Tuple[Span, Span] = (NOWHERE, NOWHERE)
     one_way: bool = False
     only_if: Optional[Condition] = None
 
@@ -93,10 +93,10 @@ class Event:
     """
 
     name: str
-    collaborative: bool
-    location: Optional[Ref]
-    duration: Optional[Number]
-    span: Span
+    collaborative: bool = False
+    location: Optional[Ref] = None
+    duration: Optional[Number] = None
+    span: Span = NOWHERE
     together: bool = False
     latest: Optional[Number] = None
     at_most: Optional[int] = None
@@ -125,7 +125,7 @@ class Sequence:
 
     first: RuleBody
     second: RuleBody
-    span: Span
+    span: Span = NOWHERE
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ class Choice:
 
     first: RuleBody
     second: RuleBody
-    span: Span
+    span: Span = NOWHERE
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,7 @@ class Both:
 
     first: RuleBody
     second: RuleBody
-    span: Span
+    span: Span = NOWHERE
 
 
 RuleBody = Union[Ref, Sequence, Choice, Both]
@@ -159,7 +159,7 @@ class Rule:
 
     name: str
     body: RuleBody
-    span: Span
+    span: Span = NOWHERE
     each: str = ""
 
 
@@ -169,9 +169,9 @@ class State:
 
     name: str
     initially: bool
-    true_if: Tuple[Ref, ...]
-    false_if: Tuple[Ref, ...]
-    span: Span
+    true_if: Tuple[Ref, ...] = ()
+    false_if: Tuple[Ref, ...] = ()
+    span: Span = NOWHERE
 
 
 @dataclass(frozen=True)
@@ -181,7 +181,7 @@ class Dependency:
     event: Ref
     state: Ref
     value: bool
-    span: Span
+    span: Span = NOWHERE
 
 
 @dataclass(frozen=True)
@@ -194,13 +194,13 @@ class Agent:
     """
 
     name: str
-    human: bool
-    controllable: bool
-    mobile: Optional[Number]
     location: Ref
-    can_do: Tuple[Ref, ...]
-    reacts_to: Tuple[Ref, ...]
-    span: Span
+    human: bool = False
+    controllable: bool = False
+    mobile: Optional[Number] = None
+    can_do: Tuple[Ref, ...] = ()
+    reacts_to: Tuple[Ref, ...] = ()
+    span: Span = NOWHERE
     label: Optional[str] = None
     radius: Optional[Number] = None
     tolerance: Optional[Number] = None
@@ -227,8 +227,8 @@ class Travel:
     a: Ref
     b: Ref
     earliest: Number
-    latest: Optional[Number]
-    span: Span
+    latest: Optional[Number] = None
+    span: Span = NOWHERE
 
     @property
     def way(self) -> Tuple[str, str]:
@@ -250,6 +250,6 @@ class Battery:
     agent: Ref
     capacity: int
     uses: Number
-    recharges: Number
-    dock: Optional[Ref]
-    span: Span
+    recharges: Number = 0
+    dock: Optional[Ref] = None
+    span: Span = NOWHERE

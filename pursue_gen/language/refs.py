@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pursue_gen.diagnostics import Span
+from pursue_gen.diagnostics import NOWHERE, Span
 
 
 @dataclass(frozen=True)
@@ -12,7 +12,7 @@ class Ref:
     """A name where it is used (not declared), with the label of what it stands for; "": it has none."""
 
     name: str
-    span: Span
+    span: Span = NOWHERE
     label: str = ""
 
     @property

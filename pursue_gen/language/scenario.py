@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Collection, Dict, Iterator, Tuple, Union
+from typing import Any, Collection, Dict, Iterator, Tuple, Union
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.assumptions import (
@@ -16,7 +16,7 @@ from pursue_gen.language.assumptions import (
     NeverHolds,
     Waits,
 )
-from pursue_gen.language.conditions import Condition
+from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, Holds, Not, OnWay, Who
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.objectives import (
     Always,
@@ -52,10 +52,10 @@ from pursue_gen.language.parts import (
 from pursue_gen.language.refs import Ref
 
 __all__ = [
-    "AboutOne", "Agent", "Always", "Assumption", "AtMost", "Avoid", "Battery", "Both", "Choice", "Connection",
-    "Dependency", "Event", "GivenUp", "Leaves", "NeverAt", "NeverHolds", "NeverWith", "Patrol", "Poi", "Pose",
-    "Reach", "Ref", "Respond", "Rule", "RuleBody", "Safety", "Scenario", "Sequence", "Spot", "State",
-    "StatedObjective", "Travel", "Waits", "Window",
+    "AboutOne", "Agent", "AllOf", "Always", "AnyOf", "Assumption", "At", "AtMost", "Avoid", "Battery", "Both", "Choice",
+    "Condition", "Connection", "Dependency", "Doing", "Event", "GivenUp", "Holds", "Leaves", "NeverAt", "NeverHolds",
+    "NeverWith", "Not", "OnWay", "Patrol", "Poi", "Pose", "Reach", "Ref", "Respond", "Rule", "RuleBody", "Safety",
+    "Scenario", "Sequence", "Spot", "State", "StatedObjective", "Travel", "Waits", "Who", "Window",
 ]
 """All parts of a scenario: whoever works with scenarios imports them from here."""
 
@@ -64,26 +64,32 @@ __all__ = [
 class Scenario:
     """A whole scenario. `name` is the file's stem, `text` the source; parts are in the order of their declaration.
 
+    One that is built in Python has neither file nor text before `writer.written` gives it both.
+
     All of `safety` has to hold until all of `reach` is reached; for ever where there is none. `given_up` are optional
     objectives that are in neither of them: what is not promised together with the rest.
     """
 
     name: str
-    file: str
-    text: str
-    pois: Tuple[Poi, ...]
-    connections: Tuple[Connection, ...]
-    events: Tuple[Event, ...]
-    rules: Tuple[Rule, ...]
-    states: Tuple[State, ...]
-    dependencies: Tuple[Dependency, ...]
-    agents: Tuple[Agent, ...]
-    safety: Tuple[Safety, ...]
-    reach: Tuple[Reach, ...]
+    file: str = ""
+    text: str = ""
+    pois: Tuple[Poi, ...] = ()
+    connections: Tuple[Connection, ...] = ()
+    events: Tuple[Event, ...] = ()
+    rules: Tuple[Rule, ...] = ()
+    states: Tuple[State, ...] = ()
+    dependencies: Tuple[Dependency, ...] = ()
+    agents: Tuple[Agent, ...] = ()
+    safety: Tuple[Safety, ...] = ()
+    reach: Tuple[Reach, ...] = ()
     travels: Tuple[Travel, ...] = ()
     assumptions: Tuple[Assumption, ...] = ()
     given_up: Tuple[GivenUp, ...] = ()
     batteries: Tuple[Battery, ...] = ()
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
+        """Show it in a notebook."""
+        printer.text(self.text or repr(self))
 
     @property
     def optional(self) -> Tuple[int, ...]:

@@ -43,6 +43,10 @@ class Margin:
     wins: Fraction
     fails: Optional[Fraction]
 
+    def as_json(self) -> Dict[str, Any]:
+        """For programs: numbers of time units, null where no failing delay is known."""
+        return {"wins": float(self.wins), "fails": None if self.fails is None else float(self.fails)}
+
 
 def strategy_margin(
     network: Network,
@@ -133,11 +137,6 @@ def describe(margin: Margin, strategy: Strategy) -> str:
 def decides_ends(strategy: Strategy) -> bool:
     """True if it commands ends of movements or actions, as the original's do; a real robot reports them."""
     return any(command.moves[0].edge.is_end for block in strategy.blocks for command in block.commands)
-
-
-def as_json(margin: Margin) -> Dict[str, Any]:
-    """The margin as a JSON object: numbers of time units, null where no failing delay is known."""
-    return {"wins": float(margin.wins), "fails": None if margin.fails is None else float(margin.fails)}
 
 
 def _decimal(value: Fraction) -> str:

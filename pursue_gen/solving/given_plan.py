@@ -43,6 +43,10 @@ class Trial:
             return "the plan wins"
         return "not decided" if isinstance(self.problem, LimitHit) else "the plan does not win"
 
+    def in_words(self) -> str:
+        """The game, and the outcome in it."""
+        return f"{rules_text(self.rules)}: {self.outcome}"
+
 
 def problem_of(tried: Sequence[Trial]) -> Optional[PursueError]:
     """Why a plan is not proven in any of these games; None where it wins one."""

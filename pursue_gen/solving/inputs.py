@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Iterable, Optional, Sequence, Tuple
+from typing import Optional, Sequence, Tuple
 
-from pursue_gen import language
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, in_order, usage_error
 from pursue_gen.files import LARGEST_TEXT, read_text
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import Reading, read
 from pursue_gen.language.parser import read_text as read_scenario
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.outcomes import Invalid
 from pursue_gen.solving.forbidden import check_forbidden
 from pursue_gen.solving.periods import least_period, longest, with_period, without_period
 from pursue_gen.solving.request import SolveRequest
@@ -21,9 +19,6 @@ from pursue_gen.solving.vacuity import check_assumed_alone
 from pursue_gen.synthesis.limits import Listener
 from pursue_gen.tga import scenario_objective, translate, translation_notes
 from pursue_gen.tga.network import Network, Objective
-
-_NETWORK_SUFFIX = ".xml"
-_UNREADABLE = ("PML001", "PML002")
 
 
 def findings_in(file: Path) -> Tuple[Diagnostic, ...]:
@@ -44,25 +39,6 @@ def findings_of(reading: Reading) -> Tuple[Diagnostic, ...]:
     return in_order(
         (*findings, *translation_notes(scenario), *check_assumed_alone(scenario), *check_forbidden(scenario))
     )
-
-
-def outcome_of(findings: Iterable[Diagnostic]) -> Optional[PursueError]:
-    """How a command ends that found this: None without errors, Invalid unless a file cannot be read."""
-    errors = [finding for finding in findings if finding.severity is Severity.ERROR]
-    outcome = PursueError if any(finding.code in _UNREADABLE for finding in errors) else Invalid
-    return outcome(errors) if errors else None
-
-
-def are_scenario(files: Sequence[Path]) -> bool:
-    """True for one file that is not a network of UPPAAL."""
-    return len(files) == 1 and files[0].suffix != _NETWORK_SUFFIX
-
-
-def load_scenario(file: Path) -> Scenario:
-    """The scenario in a file. Raises PursueError."""
-    if file.suffix == _NETWORK_SUFFIX:
-        raise usage_error(f"{file} is not a scenario", "only solve and verify take UPPAAL's files")
-    return language.load(file)
 
 
 def settled(scenario: Scenario, request: SolveRequest, progress: Optional[Listener] = None) -> Scenario:

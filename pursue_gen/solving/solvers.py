@@ -7,11 +7,8 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import replace
-from pathlib import Path
-from typing import Optional
 
-from pursue_gen.diagnostics import PursueError, usage_error
-from pursue_gen.files import write_texts
+from pursue_gen.diagnostics import usage_error
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.calm import calm
 from pursue_gen.solving.options import DEFAULT, SolveOptions
@@ -71,20 +68,3 @@ def _built_in(network: Network, objective: Objective, rules: Rules, options: Sol
 def _timed(won: Solution, limits: Limits) -> Solution:
     """With the worst-case time of the strategy, where that is quickly computed."""
     return replace(won, guarantee=guaranteed(won, limits=limits)) if won.objective.reaches else won
-
-
-def keep_counter(problem: PursueError, network: Network, objective: Objective, plan: Optional[Path]) -> Optional[Path]:
-    """Writes verifytga's counter-strategy beside the file that is named for the plan, and returns its file.
-
-    None, with nothing written, where there is no counter-strategy or no such file.
-    """
-    from pursue_gen.solving.verifytga import ToolError
-    from pursue_gen.synthesis.plan import write_plan
-
-    if not isinstance(problem, ToolError) or problem.counter is None or plan is None:
-        return None
-    if plan.exists() and not plan.is_file():  # nothing stands beside /dev/null
-        return None
-    kept = plan.with_name(f"{plan.stem}_failed{plan.suffix}")
-    write_texts({kept: write_plan(problem.counter, network, objective)})
-    return kept

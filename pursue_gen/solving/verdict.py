@@ -11,7 +11,6 @@ from pursue_gen.language.scenario import Patrol, Scenario
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT
 from pursue_gen.proof.margin import USUAL, Margin, decides_ends, describe, game_margin, strategy_margin
-from pursue_gen.proof.margin import as_json as margin_json
 from pursue_gen.proof.margin import in_words as margin_in_words
 from pursue_gen.solving.rules import Rules, rules_text
 from pursue_gen.solving.solution import Solution
@@ -74,13 +73,13 @@ def verdict_json(
         result.update(blocks=len(won.strategy.blocks), commands=_commands(won), left_out=_left_out(won))
     if won and margin:
         playable = margin.wins > 0 and not decides_ends(won.strategy)
-        result.update(margin=margin_json(margin), playable=playable)
+        result.update(margin=margin.as_json(), playable=playable)
     if won and won.guarantee:
         result["time"] = won.guarantee.as_json()
     if won and won.within is not None:
         result["within"] = float(won.within)
     if game_margin:
-        result["game_margin"] = margin_json(game_margin)
+        result["game_margin"] = game_margin.as_json()
     result["diagnostics"] = [as_json(finding) for finding in findings]
     return result
 

@@ -29,7 +29,7 @@ from pursue_gen.proof.checker import pruned, verify
 from pursue_gen.solving.least_time import unscaled
 from pursue_gen.solving.proving import play_that_shows
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
-from pursue_gen.synthesis.plan import read_plan
+from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.solve import Stats, Verdict
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Network, Objective
@@ -96,13 +96,16 @@ class Run:
 class ToolError(PursueError):
     """A run of the tool that gave no strategy to use.
 
-    `run` is that run; `counter` the counter-strategy, where the tool found that the objective cannot be met and why.
+    `run` is that run; `counter` the counter-strategy, where the tool found that the objective cannot be met and why,
+    and `counter_plan` its text.
     """
 
-    def __init__(self, diagnostics: Sequence[Diagnostic], run: Run, counter: Optional[Strategy] = None) -> None:
+    def __init__(
+        self, diagnostics: Sequence[Diagnostic], run: Run, counter: Optional[Strategy] = None, counter_plan: str = ""
+    ) -> None:
         super().__init__(diagnostics)
         self.run = run
-        self.counter = counter
+        self.counter, self.counter_plan = counter, counter_plan
 
 
 class ToolLost(ToolError, Lost):
@@ -143,7 +146,7 @@ def run_verifytga(
     start = limits.now()
     run = _first_with_strategy(tool, network, objective, limits)
     taken = limits.now() - start
-    strategy = _strategy(run, network)
+    strategy = _strategy(run, network, objective)
     sizes = _SIZE.findall(run.before)
     proven = _proven(run, network, objective, strategy, reaction, limits.since(start), progress)
     return Verdict(True, proven, Stats(TOOL, len(strategy.blocks), int(sizes[-1]) if sizes else 0, taken))
@@ -288,7 +291,7 @@ def _failure(run: Run, limits: Limits) -> ToolError:
     return outcome([error(code, message, hint=hint + _particulars(run))], run)
 
 
-def _strategy(run: Run, network: Network) -> Strategy:
+def _strategy(run: Run, network: Network, objective: Objective) -> Strategy:
     """The strategy in the output. Raises ToolError for a counter-strategy, and for a text that cannot be read."""
     try:
         factor = common_denominator(network.times)
@@ -301,7 +304,8 @@ def _strategy(run: Run, network: Network) -> Strategy:
     if strategy.counter:
         message = f"{TOOL} finds that the objective cannot be met"
         hint = f"{_LOST}; solve -o FILE keeps its counter-strategy ({len(strategy.blocks)} states) beside that file"
-        raise ToolLost([error("SYN033", message, hint=hint + _particulars(run))], run, strategy)
+        plan = write_plan(strategy, network, objective)
+        raise ToolLost([error("SYN033", message, hint=hint + _particulars(run))], run, strategy, plan)
     return strategy
 
 

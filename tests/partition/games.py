@@ -27,7 +27,7 @@ SAFETY = Objective(Kind.SAFETY, bad=(("obj", "lose"),))
 
 def agent(name: str, controllable: bool = True, human: bool = False) -> Agent:
     """An agent as the partition sees it."""
-    return Agent(name, human, controllable, 1, Ref("a", SPAN), (), (), SPAN)
+    return Agent(name, Ref("a", SPAN), human, controllable, 1, (), (), SPAN)
 
 
 AGENTS = (agent("bot1"), agent("bot2"), agent("nurse", human=True), agent("thief", controllable=False))

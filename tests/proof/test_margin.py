@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from pursue_gen.language import load
 from pursue_gen.proof.checker import verify
-from pursue_gen.proof.margin import CAP, STEP, Margin, as_json, describe, game_margin, in_words, strategy_margin
+from pursue_gen.proof.margin import CAP, STEP, Margin, describe, game_margin, in_words, strategy_margin
 from pursue_gen.solving.rules import IDEAL, Rules
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.solve import solve
@@ -107,7 +107,7 @@ def test_the_thief_is_caught_with_commands_that_are_late_but_not_by_the_ideal_st
 def test_margins_in_words_and_as_json() -> None:
     some, most = Margin(Fraction(7, 20), Fraction(2, 5)), Margin(CAP, None)
     assert in_words(some) == "0.35, not 0.4" and in_words(most) == "at least 10"
-    assert as_json(some) == {"wins": 0.35, "fails": 0.4} and as_json(most) == {"wins": 10, "fails": None}
+    assert some.as_json() == {"wins": 0.35, "fails": 0.4} and most.as_json() == {"wins": 10, "fails": None}
     late = "Margin: it still wins when commands take effect 0.35 time units late, not 0.4."
     assert describe(some, plan("", "")) == late
 

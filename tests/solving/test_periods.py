@@ -141,7 +141,6 @@ def test_the_limit_of_a_command_is_for_the_search_and_for_what_is_solved_then(
         raise usage_error("that is enough", "")
 
     monkeypatch.setattr("pursue_gen.solving.inputs.settled", searched)
-    monkeypatch.setattr("pursue_gen.cli.solution.promised_of", solved)  # so it is imported before the next one
     monkeypatch.setattr("pursue_gen.solving.optional.promised_of", solved)
     pursue("solve", file, "--limit", "10")
     assert left and 0 < left[0] < 10

@@ -6,14 +6,11 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Dict, Optional, Tuple
 
+from pursue_gen import api
 from pursue_gen.language.numbers import Number, at_most
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.scenario import Patrol, Scenario
 from pursue_gen.outcomes import LimitHit, Lost
-from pursue_gen.solving.inputs import settled
-from pursue_gen.solving.optional import promised_of
 from pursue_gen.solving.request import SolveRequest
-from pursue_gen.solving.solution import guaranteed
-from pursue_gen.solving.verdict import margin_text, margins, periods_json
 from pursue_gen.synthesis.limits import Listener
 
 WON, LOST, UNDECIDED = "won", "lost", "not decided"
@@ -58,18 +55,13 @@ class Verdict:
 def verdict_of(scenario: Scenario, request: SolveRequest, progress: Optional[Listener] = None) -> Verdict:
     """Solves the scenario within the limits of the request. Raises PursueError for what is no verdict."""
     try:
-        found = promised_of(settled(scenario, request, progress), request, progress)
+        solved = api.solve(scenario, request, progress)
     except (Lost, LimitHit) as problem:
         return Verdict(LOST if isinstance(problem, Lost) else UNDECIDED, problem.diagnostics[0].message)
-    won = found.solution
-    has_goal = won.objective.reaches
-    takes = won.guarantee.worst if won.guarantee is not None else None
-    if has_goal and takes is None:
-        takes = guaranteed(won, limits=request.options.limits).worst
-    given_up = tuple(sorted({each.objective.optional for each in found.scenario.given_up}))
-    margin = margin_text(won, *margins(won, False, request.options.limits))
-    period = periods_json(found.scenario).get("period", {}).get("every")
-    return Verdict(WON, "", takes, has_goal, period, margin, given_up)
+    given_up = tuple(sorted({each.objective.optional for each in solved.scenario.given_up}))
+    period = next((each.every for each in solved.scenario.safety if isinstance(each, Patrol) and each.least), None)
+    has_goal = solved.solution.objective.reaches
+    return Verdict(WON, "", solved.worst_time, has_goal, period, solved.margin_text(), given_up)
 
 
 def compared(

@@ -93,19 +93,17 @@ def mission_of_scenario(
 
     `explain`: where the scenario is not won, why is printed.
     """
-    from pursue_gen.cli.inputs import with_periods
+    from pursue_gen import api
+    from pursue_gen.cli.inputs import settled
     from pursue_gen.cli.solution import solve_and_print
-    from pursue_gen.language import load
-    from pursue_gen.solving.verdict import margin_text, margins
     from pursue_gen.tools.transport.bundles import make_mission, placed
     from pursue_gen.workspace.spots import spots_in_one
 
-    scenario = with_periods(placed(load(file), poses.file, poses.computed), request)
+    scenario = settled(placed(api.read(file), poses.file, poses.computed), request)
     show(spots_in_one(scenario, poses.spot_distance))
-    found = solve_and_print(scenario, request, explain)
-    won = found.solution
-    info(margin_text(won, margins(won, False, request.options.limits)[0]))
-    return make_mission(found.scenario, won, request, poses.spot_distance)
+    solved = solve_and_print(scenario, request, explain)
+    info(solved.margin_text())
+    return make_mission(solved.scenario, solved.solution, request, poses.spot_distance)
 
 
 def _print_bundle(file: Path, folder: Path) -> None:

@@ -62,14 +62,14 @@ def calibrate(
     The times are those of movements and actions in recorded missions, and those of drives that were measured without a
     mission (rosrun UI drive_legs). Needs no ROS.
     """
-    from pursue_gen.solving.inputs import findings_in, load_scenario
+    from pursue_gen import api
     from pursue_gen.tools.calibration import texts
     from pursue_gen.tools.calibration.proposal import propose
     from pursue_gen.tools.calibration.recordings import samples_in
 
     _check_targets(output, picture, force)
-    scenario = load_scenario(file)
-    show(findings_in(file))
+    scenario = api.read(file)
+    show(api.check(scenario))
     options = _options(scenario, request, time_unit, step, share, outliers)
     samples, findings = samples_in(recordings, scenario, time_unit)
     show(findings)
@@ -118,8 +118,8 @@ def _options(
     scenario: Scenario, request: SolveRequest, unit: Optional[float], step: str, share: float, outliers: bool
 ) -> Options:
     """What was asked for. Raises PursueError (exit status 2) for what cannot be meant."""
+    from pursue_gen import api
     from pursue_gen.language.numbers import is_fine, read_number
-    from pursue_gen.tga import translate
     from pursue_gen.tools.calibration.proposal import Options
     from pursue_gen.tools.calibration.recordings import timed
 
@@ -130,7 +130,7 @@ def _options(
     exact_step = read_number(step)
     if exact_step is None or not 0 < exact_step <= 1000 or not is_fine(exact_step):
         raise usage_error(f"the step is '{step}'", "a number of time units from 0.001 to 1000, such as 0.1 or 1")
-    slack = request.rules(translate(timed(scenario))).slack
+    slack = request.rules(api.game(timed(scenario))[0]).slack
     return Options(unit or 1.0, Fraction(exact_step), share, slack, outliers)
 
 

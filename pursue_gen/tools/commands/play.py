@@ -44,17 +44,16 @@ def play(
 
     Commands are read from stdin, with or without a terminal; help lists them. The exit status is 0.
     """
-    from pursue_gen.cli.inputs import with_periods
+    from pursue_gen import api
+    from pursue_gen.cli.inputs import settled
     from pursue_gen.cli.progress import progress_line
     from pursue_gen.cli.solution import naming_costs
-    from pursue_gen.language import load
-    from pursue_gen.tga import translate
     from pursue_gen.tools.play.counter import CounterPlay
     from pursue_gen.tools.play.games import session_of
     from pursue_gen.tools.play.session import answer, farewell, opening
 
-    read = with_periods(load(scenario), request)
-    rules = request.rules(translate(read))
+    read = settled(api.read(scenario), request)
+    rules = request.rules(api.game(read)[0])
     with naming_costs(read, request), progress_line() as progress:
         session = session_of(read, rules, seed, request.options.limits, progress)
     is_robots = isinstance(session.game, CounterPlay)

@@ -21,7 +21,7 @@ def replan() -> None:
     proven. The exit status is 0 also where there is none, 2 for a request that cannot be used, and 141 where nobody
     reads the answer any more.
     """
-    from pursue_gen.tools.replanning import replan as answer
+    from pursue_gen import api
     from pursue_runtime.bounded import DATA, BadText, read_json
 
     threading.Thread(target=_end_with_reader, daemon=True).start()
@@ -30,7 +30,7 @@ def replan() -> None:
     except BadText as problem:
         hint = "see docs/run_time.md, 'game.yaml, and what a planner is asked'"
         raise usage_error(f"the request cannot be read: {problem}", hint) from None
-    print(json.dumps(answer(request)))
+    print(json.dumps(api.replan(request)))
 
 
 def _end_with_reader() -> None:

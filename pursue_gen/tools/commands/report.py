@@ -11,7 +11,7 @@ import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.inputs import scenario_from
-from pursue_gen.cli.on_map import on_map
+from pursue_gen.cli.on_map import placed_on
 from pursue_gen.cli.options import DEFAULT_DISTANCE, JSON, REQUEST, ROBOT, SCENARIO, with_request
 from pursue_gen.diagnostics import counted, error, usage_error
 from pursue_gen.files import shell_quoted
@@ -67,24 +67,17 @@ def report(
     With --html or --pictures: show the scenario, its strategy and its workspace instead. A scenario that cannot be won
     gets a page that says why.
     """
-    from pursue_gen.cli.solution import naming_costs
-    from pursue_gen.drawing.floor_picture import read_floor
-    from pursue_gen.drawing.ground import read_ground
     from pursue_gen.tools.report.make import ReportOptions
-    from pursue_gen.workspace.map_spots import with_spots
-    from pursue_gen.workspace.robot_size import read_sizes, sizes_of
+    from pursue_gen.workspace.robot_size import read_sizes
 
     html = html or output is not None
     seen = html or pictures is not None
     _check_options(seen, html, file, output, floor, as_json_)
-    if request.ends is not None and seen:
-        raise usage_error("--ends is for the tables alone", "leave it out: the page has the tables of both")
     if not seen:
-        request = replace(request, reaction="0" if request.ends == "controllable" else None)
-        read = scenario_from(scenario, request, as_json_)
-        with naming_costs(read, request, as_json_):
-            _print_tables(read, reach_obj, request, as_json_)
+        _print_tables(scenario, reach_obj, request, as_json_)
         return
+    if request.ends is not None:
+        raise usage_error("--ends is for the tables alone", "leave it out: the page has the tables of both")
     solving = replace(request.options, within=request.deadline)
     target = _target(scenario, file or output)
     if html and not force:
@@ -93,11 +86,8 @@ def report(
     options = ReportOptions(reach_obj, runs if html else 0)
     read = scenario_from(scenario, request)
     if floor is not None:
-        ground, sizes = read_ground(floor), sizes_of(read, told)
-        findings, paths = on_map(read, ground, DEFAULT_DISTANCE, sizes)
-        show(findings)
-        options = replace(options, floor=replace(read_floor(floor), paths=paths))
-        read = with_spots(read, ground, DEFAULT_DISTANCE, sizes, paths)
+        read, plan, *_ = placed_on(read, floor, DEFAULT_DISTANCE, told)
+        options = replace(options, floor=plan)
     made = _made(read, options, solving)
     if pictures is not None:
         _write_pictures(made, pictures)
@@ -135,30 +125,33 @@ def _check_target(target: Path) -> None:
             raise usage_error(f"{target} is there and is no report", "name another file, or replace it with --force")
 
 
-def _print_tables(scenario: Scenario, reach_obj: Optional[str], request: SolveRequest, as_json_: bool) -> None:
+def _print_tables(file: Path, reach_obj: Optional[str], request: SolveRequest, as_json_: bool) -> None:
+    from pursue_gen import api
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.proof.margin import as_json as margin_json
-    from pursue_gen.solving.verdict import margin_text, margins
+    from pursue_gen.cli.solution import naming_costs
     from pursue_gen.tools.report import commands
     from pursue_gen.tools.report.make import solved_games
 
-    with progress_line(as_json_) as progress:
-        scenario, played = solved_games(scenario, request, progress)
-        found = [margins(won, False, request.options.limits)[0] for won in played]
+    request = replace(request, reaction="0" if request.ends == "controllable" else None)
+    read = scenario_from(file, request, as_json_)
+    with naming_costs(read, request, as_json_), progress_line(as_json_) as progress:
+        scenario, played = solved_games(read, request, progress)
+        games = [api.SolvedGame(won, request) for won in played]
+        margins = [solved.margins() for solved in games]
     names = [_NAMES[won.rules.ends] for won in played]
     game, *ideal = [commands.game_of_solution(won) for won in played]
     table = commands.commands_table(scenario.name, scenario.agents, game, ideal[0] if ideal else None, reach_obj)
     if as_json_:
-        of_games = {name: margin_json(margin) for name, margin in zip(names, found)}
+        of_games = {name: margin.as_json() for name, (margin, _) in zip(names, margins)}
         times = {name: won.guarantee.as_json() for name, won in zip(names, played) if won.guarantee}
         extra = {"margins": of_games, **({"times": times} if times else {})}
         print(json.dumps({**commands.as_json(table), **extra}, indent=1))
         return
     print(commands.render_table(table))
-    for name, won, margin in zip(names, played, found):
-        print(f"{name} game: {margin_text(won, margin)}")
-        if won.guarantee:
-            print(f"{name} game: {won.guarantee.in_words()}")
+    for name, solved, found in zip(names, games, margins):
+        print(f"{name} game: {solved.margin_text(found)}")
+        if solved.solution.guarantee:
+            print(f"{name} game: {solved.solution.guarantee.in_words()}")
 
 
 def _made(scenario: Scenario, options: ReportOptions, solving: SolveOptions) -> Report:

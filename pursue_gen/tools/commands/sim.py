@@ -19,7 +19,7 @@ from pursue_gen.outcomes import NO
 
 if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest
-    from pursue_gen.tools.simulation.runs import Case, Summary
+    from pursue_gen.tools.simulation.runs import Summary
 
 
 class OpponentKind(str, Enum):
@@ -67,16 +67,13 @@ def sim(
     The exit status is 1 where a mission failed: without faults it did not reach the goal (or did not
     stay safe), with faults it neither did that nor stopped; or, ever, a robot got a wrong command. Its play is shown.
     """
-    from pursue_gen.cli.inputs import with_periods
+    from pursue_gen import api
+    from pursue_gen.cli.inputs import settled
     from pursue_gen.cli.progress import progress_line
-    from pursue_gen.cli.solution import naming_costs, show_promise
-    from pursue_gen.language import load
-    from pursue_gen.solving.optional import promised_of
+    from pursue_gen.cli.solution import naming_costs
     from pursue_gen.tools.commands.mission_count import counting
-    from pursue_gen.tools.simulation.cluster import cluster, outcomes_on
     from pursue_gen.tools.simulation.faults import FAULTS, read_faults
-    from pursue_gen.tools.simulation.make import check_until, make_case
-    from pursue_gen.tools.simulation.runs import simulate
+    from pursue_gen.tools.simulation.make import check_until
 
     if faults == "help":
         print("\n".join(f"{name:10}  {what}" for name, what in FAULTS.items()))
@@ -85,23 +82,21 @@ def sim(
     check_until(until)
     if timeline is not None:
         _check_timeline(timeline, runs, seed)
-    read = with_periods(load(scenario), request, as_json_)
+    read = settled(api.read(scenario), request, as_json_)
     with naming_costs(read, request, as_json_), progress_line(as_json_) as progress:
-        found = promised_of(read, request, progress)
-    read, won = found.scenario, found.solution
-    show(won.warnings)
-    show_promise(read, assumptions=False)
-    case, knows = make_case(read, won, request, opponent.value, kinds, until)
-    if not knows:
-        info("the worst opponent acts at random: the game is too large, or its strategy in stages, to look far ahead")
+        solved = api.solve(read, request, progress)
+    show(solved.solution.warnings)
+    for sentence in api.promises_of(solved.scenario):
+        info(sentence)
     with counting(runs, as_json_) as count:
-        seeds = range(seed, seed + runs)
-        played = None if scheduler is None else outcomes_on(cluster(scheduler), case, seeds)
-        summary = simulate(case, seeds, jobs, count, played=played)
+        how: Dict[str, Any] = {"jobs": jobs, "scheduler": scheduler, "progress": count}
+        summary = api.simulate(solved, runs, seed, opponent.value, faults, until, **how)
+    if not summary.remaining:
+        info("the worst opponent acts at random: the game is too large, or its strategy in stages, to look far ahead")
     if timeline is not None:
-        _draw(case, seed, timeline)
+        _draw(summary, seed, timeline)
     facts = {"scenario": read.name, "seed": seed, "opponent": opponent.value, "faults": list(kinds)}
-    _print(case, summary, facts, as_json_)
+    _print(summary, facts, as_json_)
     if summary.failed:
         raise typer.Exit(NO)
     suggest(f"pursue-gen ws {shell_quoted(scenario)}")
@@ -115,21 +110,22 @@ def _check_timeline(timeline: Path, runs: int, seed: int) -> None:
         raise usage_error("a timeline shows one mission", f"add --runs 1, and --seed {seed} or another")
 
 
-def _draw(case: Case, seed: int, timeline: Path) -> None:
+def _draw(summary: Summary, seed: int, timeline: Path) -> None:
     from pursue_gen.tools.report.animation import write
     from pursue_gen.tools.report.recording import simulated
 
-    write(simulated(case, seed), timeline)
+    write(simulated(summary.case, seed), timeline)
     info(f"{timeline} shows the mission")
 
 
-def _print(case: Case, summary: Summary, facts: Dict[str, Any], as_json_: bool) -> None:
+def _print(summary: Summary, facts: Dict[str, Any], as_json_: bool) -> None:
     from pursue_gen.tools.simulation.outcome_texts import as_json, failure, table
 
     if as_json_:
         print(json.dumps(as_json(summary, facts), indent=1))
     else:
-        print(table(summary, case.won.guarantee.in_words() if case.won.guarantee else None))
+        guarantee = summary.case.won.guarantee
+        print(table(summary, guarantee.in_words() if guarantee else None))
     if summary.failed:
         info(f"{counted(summary.failed, 'mission')} of {summary.missions} failed; the first:")
         for outcome in summary.failures:

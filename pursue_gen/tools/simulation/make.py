@@ -36,6 +36,7 @@ def make_case(
     `opponent` and `faults` as for `Settings`; `until`: when a mission is over, in time units; None for the default. It
     does not know where the game is too large or the strategy has stages: then it does anything.
     """
+    check_until(until)
     goal = won.objective.reaches
     settings = Settings(opponent, faults, until or (_LONG if goal else _SHORT))
     case, knows = case_of(scenario, won, options_for(request, won), settings)

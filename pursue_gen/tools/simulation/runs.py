@@ -80,11 +80,12 @@ class Answers:
 
 @dataclass(frozen=True)
 class Summary:
-    """What the missions came to. `failures`: the first few that must never be, with their plays; `failed`: how many
-    there are; `happened`: how often which fault did; `planned`: missions in which a new plan came into force;
+    """What the missions of a case came to. `failures`: the first few that must never be, with their plays; `failed`:
+    how many there are; `happened`: how often which fault did; `planned`: missions in which a new plan came into force;
     `answers`: one for each objective that is called upon with a limit; `driven`: how far each robot drove
     on average, in units of distance."""
 
+    case: Case = field(repr=False)
     missions: int
     rows: Tuple[Row, ...]
     failures: Tuple[Outcome, ...]
@@ -205,7 +206,7 @@ def simulate(case: Case, seeds: Sequence[int], jobs: int = 1, progress: Callable
     plays = tuple(players.run(outcome.seed, record=True) for outcome in failed) if players else ()
     kinds, answers = dict(sorted(happened.items())), _answers(case.scenario, duties)
     average = {name: units / max(1, done) for name, units in driven.items()}
-    return Summary(done, rows, plays, count, kinds, planned, case.settings.bound, remaining, answers, average)
+    return Summary(case, done, rows, plays, count, kinds, planned, case.settings.bound, remaining, answers, average)
 
 
 def _answers(scenario: Scenario, missions: Sequence[Sequence[Duty]]) -> Tuple[Answers, ...]:
