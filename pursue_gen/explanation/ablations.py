@@ -10,22 +10,16 @@ from pursue_gen.language.scenario import (
     Agent,
     Assumption,
     AtMost,
-    Avoid,
     Both,
     Choice,
     NeverHolds,
-    NeverWith,
-    Patrol,
-    Reach,
     Ref,
-    Respond,
     RuleBody,
     Scenario,
     Sequence,
     StatedObjective,
     Waits,
 )
-from pursue_gen.language.wording import objective_text
 
 
 @dataclass(frozen=True)
@@ -52,11 +46,7 @@ def without_each(scenario: Scenario, objectives: bool = True) -> Iterator[Tuple[
     found += [Part(f"only_if {text} on {what}", left_out) for what, text, left_out in without_conditions(scenario)]
     if objectives and len(scenario.statements) > 1:
         for first, *_ in scenario.statements:
-            if isinstance(first, Reach):
-                text = f"reach_objective {_reach_text(first)}"
-            else:
-                text = f"objective {objective_text(first)}"
-            found.append(Part(text, _without(first)))
+            found.append(Part(f"{first.word} {first.full_text}", _without(first)))
     for part in found:
         smaller = part.left_out(scenario)
         if smaller is not None:
@@ -173,10 +163,6 @@ def _without(objective: StatedObjective) -> Callable[[Scenario], Optional[Scenar
     return lambda scenario: without_objective(scenario, objective)
 
 
-def _reach_text(reach: Reach) -> str:
-    return objective_text(reach) if reach.after or reach.within else f"{objective_text(reach)} after 0"
-
-
 def _events(scenario: Scenario, agents: Tuple[Agent, ...]) -> Set[str]:
     """The events that these agents can do among themselves."""
     doing = {ref.name for agent in agents for ref in agent.can_do}
@@ -188,16 +174,9 @@ def _events(scenario: Scenario, agents: Tuple[Agent, ...]) -> Set[str]:
 def _wanted(scenario: Scenario) -> Set[str]:
     """The events and agents that the objectives and conditions name."""
     names = {ref.name for condition, _ in scenario.conditions() for _, ref in names_in(condition)}
-    names |= {ref.name for reach in scenario.reach for ref in reach.events}
-    for safety in scenario.safety:
-        if isinstance(safety, Respond):
-            names |= {ref.name for ref in safety.events}
-        elif isinstance(safety, Avoid):
-            names.add(safety.event.name)
-        elif isinstance(safety, NeverWith):
-            names |= {safety.first.name, safety.second.name}
-        elif isinstance(safety, Patrol):
-            names |= {agent.name for agent in scenario.on_patrol(safety)}
+    stated = (each.names() for each in scenario.objectives)
+    names |= {ref.name for each in stated for kind, ref in each if kind in ("event", "agent")}
+    names |= {agent.name for patrol in scenario.patrols for agent in scenario.on_patrol(patrol)}
     return names
 
 

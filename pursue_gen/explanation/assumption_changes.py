@@ -9,7 +9,7 @@ from typing import Callable, Iterator, Sequence
 from pursue_gen.explanation.number_changes import NumberChange
 from pursue_gen.language.conditions import At, atoms
 from pursue_gen.language.numbers import Number, whole_above, whole_below
-from pursue_gen.language.scenario import AboutOne, Agent, Always, AtMost, Leaves, NeverAt, Ref, Respond, Scenario, Waits
+from pursue_gen.language.scenario import AboutOne, Agent, AtMost, Leaves, NeverAt, Ref, Scenario, Waits
 
 _SHORTEST_STAY = 2
 """Time units within which an agent can leave: whoever arrives rests for one before it can set off."""
@@ -57,8 +57,8 @@ def _tighter(
 
 def _pauses(scenario: Scenario, longest: Number) -> Iterator[NumberChange]:
     """For each event that has to be answered, and each agent that may begin it again and again as it likes."""
-    triggers = [safety.trigger for safety in scenario.safety if isinstance(safety, Respond)]
-    answered = {trigger.name: trigger for trigger in triggers if isinstance(trigger, Ref)}
+    calls = (each.breaks.begins for each in scenario.safety)
+    answered = {call.name: call for call in calls if isinstance(call, Ref)}
     known = {(a.agent.name, a.event.name) for a in scenario.assumptions if isinstance(a, (AtMost, Waits))}
     counted = {event.name for event in scenario.events if event.at_most is not None}
     for name, event in answered.items():
@@ -84,7 +84,7 @@ def _pause(scenario: Scenario, agent: Ref, event: Ref, longest: Number) -> Numbe
 
 def _elsewhere(scenario: Scenario) -> Iterator[NumberChange]:
     """For each place in a condition that must always, or never, hold, and each agent of whom it is said."""
-    conditions = [safety.condition for safety in scenario.safety if isinstance(safety, Always)]
+    conditions = [each.breaks.condition for each in scenario.safety if each.breaks.condition is not None]
     said = [atom for condition in conditions for atom in atoms(condition) if isinstance(atom, At)]
     known = {(a.agent.name, a.place.name) for a in scenario.assumptions if isinstance(a, NeverAt)}
     for agent in (agent for agent in scenario.agents if not agent.controllable and agent.mobile is not None):

@@ -19,8 +19,9 @@ from pursue_gen.explanation.part import part_of_scenario, rules_for, statements_
 from pursue_gen.explanation.play import Play, counter_plays
 from pursue_gen.explanation.texts import Attempt, TimedLine, attempt, describe, time_text
 from pursue_gen.explanation.together import Conflict, conflict
+from pursue_gen.language.english import listed
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import listed, statement_text
+from pursue_gen.language.wording import statement_text
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.lost_promises import lost_to_one_walk, quoted
 from pursue_gen.solving.one_robot import lost_game

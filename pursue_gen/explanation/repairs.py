@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Callable, Dict, Iterable, Iterator, Optional, Sequence, Tuple
+from typing import Callable, Iterable, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.explanation.ablations import without_conditions
@@ -17,9 +17,9 @@ from pursue_gen.explanation.number_changes import (
     event_changes,
     travel_changes,
 )
+from pursue_gen.language.english import listed
 from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole_below
-from pursue_gen.language.scenario import Agent, Connection, Event, Patrol, Reach, Respond, Safety, Scenario
-from pursue_gen.language.wording import answer_text, answer_words, events_words, listed
+from pursue_gen.language.scenario import Agent, Connection, Event, Reach, Scenario, StatedObjective
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
 from pursue_gen.tga.counts import counted
 
@@ -105,87 +105,39 @@ def _slack_knob(scenario: Scenario, rules: Rules, agent: str, late: int) -> Knob
 
 def _objective_knobs(scenario: Scenario, rules: Rules) -> Iterator[Knob]:
     for safety in scenario.safety:
-        if isinstance(safety, Respond):
-            yield _deadline_knob(scenario, rules, safety)
-        elif isinstance(safety, Patrol) and safety is _of_one_statement(scenario, safety)[0]:
-            yield _patrol_knob(scenario, rules, safety)
+        yield from _limit_knobs(scenario, rules, safety)
     for reach in scenario.reach:
         if reach.after > 0:
             yield _after_knob(scenario, rules, reach)
-        if reach.within is not None:
-            yield _within_knob(scenario, rules, reach, reach.within)
+        yield from _limit_knobs(scenario, rules, reach)
 
 
-def _deadline_knob(scenario: Scenario, rules: Rules, safety: Respond) -> Knob:
-    deadline, answer = safety.deadline, answer_words(safety)
-
-    def make(k: int) -> Variant:
-        changed = tuple(replace(safety, deadline=k) if each is safety else each for each in scenario.safety)
-        return replace(scenario, safety=changed), rules
-
-    def say(k: int) -> str:
-        return f"a deadline of {k} instead of {deadline} for {answer}"
-
-    furthest = deadline + max(deadline, 2 * _all_time(scenario))
-    later = whole_above(deadline, furthest)
-    return _number("deadline", answer_text(safety), "a later deadline", deadline, later, make, say, safety.span, 1)
-
-
-def _of_one_statement(scenario: Scenario, patrol: Patrol) -> Sequence[Patrol]:
-    """The patrols of all places that the statement names."""
-    return [each for each in scenario.safety if isinstance(each, Patrol) and each.span == patrol.span]
-
-
-def _patrol_knob(scenario: Scenario, rules: Rules, patrol: Patrol) -> Knob:
-    every, together = patrol.period, _of_one_statement(scenario, patrol)
-    in_order = " in order" if patrol.order else ""
-    place = listed(each.place.shown for each in together) + in_order
-    name = listed(each.place.name for each in together) + in_order
+def _limit_knobs(scenario: Scenario, rules: Rules, objective: StatedObjective) -> Iterator[Knob]:
+    """A larger limit for all objectives of the statement that begins with this one."""
+    before, statement = objective.limit, objective.stated_with(scenario.objectives)
+    if before is None or statement[0] is not objective:
+        return
 
     def make(k: int) -> Variant:
-        rarer: Dict[Safety, Safety] = {each: replace(each, every=k) for each in together}
-        changed = tuple(rarer.get(each, each) for each in scenario.safety)
-        return replace(scenario, safety=changed), rules
+        return scenario.with_changed({id(each): each.with_limit(k) for each in statement}), rules
 
     def say(k: int) -> str:
-        return f"a patrol of {place} every {k} instead of {every}"
+        return f"{words.before} {k} instead of {before}{words.behind}"
 
-    rarer = whole_above(every, every + max(every, 2 * _all_time(scenario)))
-    return _number("deadline", name, "a rarer patrol", every, rarer, make, say, patrol.span, 1)
-
-
-def _with_reach(scenario: Scenario, old: Reach, new: Reach) -> Scenario:
-    return replace(scenario, reach=tuple(new if each is old else each for each in scenario.reach))
-
-
-def _names(reach: Reach) -> str:
-    return listed(ref.name for ref in reach.events)
+    words = objective.later(statement)
+    later = whole_above(before, before + max(before, 2 * _all_time(scenario)))
+    yield _number(words.what, words.name, words.label, before, later, make, say, objective.span, 1)
 
 
 def _after_knob(scenario: Scenario, rules: Rules, reach: Reach) -> Knob:
-    goal = events_words(reach)
-
     def make(k: int) -> Variant:
-        return _with_reach(scenario, reach, replace(reach, after=k)), rules
+        return scenario.with_changed({id(reach): replace(reach, after=k)}), rules
 
     def say(k: int) -> str:
-        return f"{goal} after {k} instead of {reach.after}"
+        return f"{reach.words.due} after {k} instead of {reach.after}"
 
-    earlier = whole_below(reach.after, 0)
-    return _number("after", _names(reach), f"an earlier {goal}", reach.after, earlier, make, say, reach.span, 1)
-
-
-def _within_knob(scenario: Scenario, rules: Rules, reach: Reach, within: Number) -> Knob:
-    goal = events_words(reach)
-
-    def make(k: int) -> Variant:
-        return _with_reach(scenario, reach, replace(reach, within=k)), rules
-
-    def say(k: int) -> str:
-        return f"{goal} within {k} instead of {within}"
-
-    later = whole_above(within, within + max(within, 2 * _all_time(scenario)))
-    return _number("within", _names(reach), f"a later deadline for {goal}", within, later, make, say, reach.span, 1)
+    earlier, name = whole_below(reach.after, 0), listed(ref.name for ref in reach.events)
+    return _number("after", name, f"an earlier {reach.words.due}", reach.after, earlier, make, say, reach.span, 1)
 
 
 def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[Knob]:

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import List, Optional, Tuple
 
 from pursue_gen.explanation.part import with_objectives
+from pursue_gen.language.english import listed
 from pursue_gen.language.scenario import Scenario, StatedObjective
-from pursue_gen.language.wording import listed, statement_text
+from pursue_gen.language.wording import statement_text
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of

@@ -19,9 +19,8 @@ from pursue_gen.language.numbers import MOST_DIGITS, Number, exact, is_fine
 from pursue_gen.language.objective_checks import check_objectives
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
-from pursue_gen.language.scenario import Agent, NeverWith, Patrol, Respond, Safety, Scenario
+from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
-from pursue_gen.language.wording import answer_text, answered_text
 
 _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
 """Codes of findings that need a scenario that was read as a whole."""
@@ -141,13 +140,6 @@ def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
         elif longest * agent.mobile > _LONGEST:
             message = f"{agent.name} takes more than {_LONGEST} time units for the longest way"
             yield error("PML144", message, agent.span, "choose a larger unit of time or of distance")
-    for safety in scenario.safety:
-        if isinstance(safety, Respond) and safety.deadline <= 0:
-            message = "within 0 leaves no time to answer: expected more than 0"
-            yield error("PML143", message, safety.span, "write the time units that the answer may take")
-        if isinstance(safety, Patrol) and safety.every is not None and safety.every < 2:
-            message = f"every {safety.every} leaves no time to go away and come back: expected 2 or more"
-            yield error("PML143", message, safety.span, "write the time units between two visits")
 
 
 def _size(agent: Agent) -> Iterator[Diagnostic]:
@@ -264,28 +256,6 @@ def _objectives(scenario: Scenario) -> Iterator[Diagnostic]:
     if not scenario.objectives:
         hint = "add one: reach_objective: do e after 0, or objective: if e1 then e2 within 20"
         yield error("PML171", "the scenario has no objective", _end(scenario), hint)
-    for safety in scenario.safety:
-        yield from _safety(scenario, safety)
-
-
-def _safety(scenario: Scenario, safety: Safety) -> Iterator[Diagnostic]:
-    if isinstance(safety, Respond) and answered_text(safety) == answer_text(safety):
-        name, place = answer_text(safety), safety.span if safety.conditions else safety.events[1].span
-        kind = "condition" if safety.conditions else "event"
-        yield error("PML172", f"{name} cannot be its own answer", place, f"name the {kind} that has to follow")
-    if isinstance(safety, NeverWith):
-        start = {agent.name: agent.location.name for agent in scenario.agents}
-        first, second = safety.first.name, safety.second.name
-        if first == second:
-            yield error("PML173", f"{first} is always with itself", safety.span, "name two different agents")
-        elif first in start and start[first] == start.get(second) and _counts(safety, start[first]):
-            message = f"{first} and {second} both start in {start[first]}: the objective is lost before anything moves"
-            yield error("PML174", message, safety.span, "let one of them start somewhere else")
-
-
-def _counts(safety: NeverWith, place: str) -> bool:
-    """True if the objective forbids that both are there."""
-    return safety.place is None or safety.place.name == place
 
 
 def _order(scenario: Scenario) -> Iterator[Diagnostic]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Collection, Dict, Iterator, Tuple, Union
+from typing import Any, Collection, Dict, Iterator, Mapping, Tuple, Union
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.assumptions import (
@@ -29,6 +29,7 @@ from pursue_gen.language.objectives import (
     Safety,
     StatedObjective,
     WhyGivenUp,
+    patrols_in,
 )
 from pursue_gen.language.parts import (
     Agent,
@@ -100,6 +101,12 @@ class Scenario:
             given_up=tuple(sorted((*self.given_up, *given_up), key=lambda each: each.objective.optional)),
         )
 
+    def with_changed(self, changed: Mapping[int, StatedObjective]) -> Scenario:
+        """The scenario with other objectives in place of those with these identities (`id`)."""
+        safety: Tuple[Any, ...] = tuple(changed.get(id(each), each) for each in self.safety)
+        reach: Tuple[Any, ...] = tuple(changed.get(id(each), each) for each in self.reach)
+        return replace(self, safety=safety, reach=reach)
+
     @property
     def objectives(self) -> Tuple[StatedObjective, ...]:
         """All objectives: those that always hold, then those that are reached once."""
@@ -129,12 +136,17 @@ class Scenario:
         able = (agent for agent in self.agents if any(ref.name in named for ref in agent.can_do))
         return tuple(agent for agent in able if agent.is_robot or rule.each == "agent")
 
+    @cached_property
+    def patrols(self) -> Tuple[Patrol, ...]:
+        """The patrols among its objectives, one for each place."""
+        return patrols_in(self.safety)
+
     @property
     def statements(self) -> Tuple[Tuple[StatedObjective, ...], ...]:
         """All objectives, those in one part that have a meaning together only: the places of a patrol in order."""
         found: Dict[object, Tuple[StatedObjective, ...]] = {}
         for number, each in enumerate(self.objectives):
-            key = each.span if isinstance(each, Patrol) and each.order else number
+            key = each.span if each.order else number
             found[key] = (*found.get(key, ()), each)
         return tuple(found.values())
 
@@ -145,11 +157,7 @@ class Scenario:
             if part.only_if is not None:
                 yield part.only_if, part.span
         for safety in self.safety:
-            condition = getattr(safety, "condition", None)
-            if condition is not None:
-                yield condition, safety.span
-            for condition in getattr(safety, "conditions", ()):
-                yield condition, safety.span
+            yield from ((condition, safety.span) for condition in safety.conditions)
         for assumption in self.assumptions:
             condition = getattr(assumption, "condition", None)
             if condition is not None:

@@ -15,7 +15,7 @@ from typing import Dict, List, Optional, Tuple
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.scenario import Leaves, Patrol, Scenario, Waits
-from pursue_gen.language.wording import patrol_text, periods_found
+from pursue_gen.language.wording import periods_found
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import Rules, played
@@ -43,7 +43,7 @@ _WALKS = 2
 
 def without_period(scenario: Scenario) -> Tuple[Patrol, ...]:
     """The patrols whose period is to be found."""
-    return tuple(each for each in scenario.safety if isinstance(each, Patrol) and each.every is None)
+    return tuple(each for each in scenario.patrols if each.every is None)
 
 
 def with_period(scenario: Scenario, every: int, least: Optional[int] = None) -> Scenario:
@@ -52,16 +52,13 @@ def with_period(scenario: Scenario, every: int, least: Optional[int] = None) -> 
     `least`: nothing below it can be promised, where that is known.
     """
     given: Dict[Span, List[Patrol]] = {}
-    for patrol in without_period(scenario):
-        given.setdefault(patrol.span, []).append(replace(patrol, every=every, least=least))
+    changed = {id(each): replace(each, every=every, least=least) for each in without_period(scenario)}
+    for patrol in changed.values():
+        given.setdefault(patrol.span, []).append(patrol)
     text = scenario.text
     for span, patrols in sorted(given.items(), key=lambda item: (item[0].line, item[0].column), reverse=True):
         text = _rewritten(text, span, patrols)
-    changed = {(each.span, each.place): each for patrols in given.values() for each in patrols}
-    safety = tuple(
-        changed.get((each.span, each.place), each) if isinstance(each, Patrol) else each for each in scenario.safety
-    )
-    return replace(scenario, safety=safety, text=text)
+    return replace(scenario.with_changed(changed), text=text)
 
 
 def _rewritten(text: str, span: Span, patrols: List[Patrol]) -> str:
@@ -69,7 +66,7 @@ def _rewritten(text: str, span: Span, patrols: List[Patrol]) -> str:
     lines = text.split("\n")
     begin = sum(len(line) + 1 for line in lines[: span.line - 1]) + span.column - 1
     end = sum(len(line) + 1 for line in lines[: span.end_line - 1]) + span.end_column - 1
-    words = patrol_text(patrols[0], (patrol.place.name for patrol in patrols))
+    words = patrols[0].text_of(patrols)
     return f"{text[:begin]}objective: {words}" + "\n" * text.count("\n", begin, end) + text[end:]
 
 
@@ -121,7 +118,7 @@ def quickly_found(scenario: Scenario) -> List[str]:
     """What little work finds out about the least period in the default game, in sentences; nothing if that is open."""
     limits = Limits(work=_LITTLE, memory=careful_memory())
     found = least_period(scenario, Rules(), SolveOptions(limits=limits))
-    patrols = [each for each in found.safety if isinstance(each, Patrol) and each.least is not None]
+    patrols = [each for each in found.patrols if each.least is not None]
     decided = [each for each in patrols if each.least is not None and each.least >= each.period]
     return periods_found(found, won=decided[0].least == decided[0].period) if decided else []
 

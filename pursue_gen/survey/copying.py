@@ -7,10 +7,10 @@ from fractions import Fraction
 from typing import FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.language.edits import Edit, edited
+from pursue_gen.language.english import listed
 from pursue_gen.language.numbers import Number, exact, is_fine
 from pursue_gen.language.rewriting import Rewriting
 from pursue_gen.language.scenario import Connection, Pose, Scenario
-from pursue_gen.language.wording import listed
 from pursue_gen.workspace.robot_size import Sizes, sizes_of
 
 _SIZE = ("radius", "tolerance", "inflation")

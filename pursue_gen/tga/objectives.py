@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import combinations
-from typing import Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Type
 
 from pursue_gen.diagnostics import error
 from pursue_gen.language import network_names as names
@@ -14,7 +14,6 @@ from pursue_gen.language.scenario import (
     NeverWith,
     Patrol,
     Reach,
-    Ref,
     Respond,
     Safety,
     Scenario,
@@ -22,10 +21,9 @@ from pursue_gen.language.scenario import (
 )
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.outcomes import Invalid
-from pursue_gen.tga.conditions import Conditions
+from pursue_gen.tga.agents import Surroundings
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Objective, Sync, Test
 from pursue_gen.tga.patrols import patrol_automaton
-from pursue_gen.tga.positions import Positions
 from pursue_gen.tga.responses import respond_automaton
 
 Happened = Mapping[str, str]
@@ -101,37 +99,32 @@ def _done(events: Sequence[int], count: int) -> str:
     return names.did(*(k + 1 for k in sorted(events))) if events else names.UNLOCKED
 
 
-def events_done(reach: Reach, location: str) -> Tuple[Ref, ...]:
-    """The events that have happened in a location of a reach objective's automaton, some and not all."""
-    done = Symbol.of(location)
-    return tuple(reach.events[int(k) - 1] for k in done.parts) if done.role is Role.DID else ()
-
-
-def safety_automaton(
-    safety: Safety, scenario: Scenario, positions: Positions, conditions: Conditions, number: int = 0
-) -> Automaton:
+def safety_automaton(safety: Safety, around: Surroundings, number: int = 0) -> Automaton:
     """The automaton that goes to `lose` when the safety objective of the scenario is broken."""
-    happened = {event.name: names.has_happened(event) for event in scenario.events}
-    name, locations = names.safety_objective(number), (Location(IDLE), Location(LOSE))
-    if isinstance(safety, Respond):
-        return respond_automaton(safety, scenario, conditions, number)
-    if isinstance(safety, Avoid):
-        lose = Edge(IDLE, LOSE, sync=Sync(happened[safety.event.name], sends=False))
-        return Automaton(name, locations, IDLE, (lose,))
-    if isinstance(safety, Patrol):
-        return patrol_automaton(safety, scenario, positions, number)
-    if isinstance(safety, Always):
-        broken = conditions.ways_to_hold(safety.broken_if)
-        edges = tuple(Edge(IDLE, LOSE, Guard(integers=guard), controllable=False) for guard in broken)
-        return Automaton(name, locations, IDLE, edges)
-    return Automaton(name, locations, IDLE, _never_with(safety, positions))
+    return _AUTOMATA[type(safety)](safety, around, number)
 
 
-def _never_with(safety: NeverWith, positions: Positions) -> Tuple[Edge, ...]:
+def _avoid(safety: Avoid, around: Surroundings, number: int) -> Automaton:
+    happened = names.has_happened(around.event(safety.event.name))
+    return _losing((Edge(IDLE, LOSE, sync=Sync(happened, sends=False)),), number)
+
+
+def _always(safety: Always, around: Surroundings, number: int) -> Automaton:
+    broken = around.conditions.ways_to_hold(safety.broken_if)
+    return _losing((Edge(IDLE, LOSE, Guard(integers=guard), controllable=False) for guard in broken), number)
+
+
+def _losing(edges: Iterable[Edge], number: int) -> Automaton:
+    """An automaton that waits for what must not be."""
+    return Automaton(names.safety_objective(number), (Location(IDLE), Location(LOSE)), IDLE, tuple(edges))
+
+
+def _never_with(safety: NeverWith, around: Surroundings, number: int) -> Automaton:
     """The environment may strike whenever both agents share a POI (idle or at work) or a connection, either way.
 
     Where the objective names a place, that POI alone counts.
     """
+    positions = around.positions
     shared: List[Tuple[int, int]] = [(positions.at(poi), positions.doing(poi)) for poi in positions.pois]
     shared += [
         (code, positions.going(b, a))
@@ -145,12 +138,15 @@ def _never_with(safety: NeverWith, positions: Positions) -> Tuple[Edge, ...]:
     def among(agent: str, codes: Tuple[int, int]) -> Clause:
         return tuple(Test(agent_position(agent), code) for code in codes)
 
-    return tuple(
-        Edge(
-            IDLE,
-            LOSE,
-            Guard(integers=(among(safety.first.name, codes), among(safety.second.name, codes))),
-            controllable=False,
-        )
-        for codes in shared
-    )
+    both = ((among(safety.first.name, codes), among(safety.second.name, codes)) for codes in shared)
+    return _losing((Edge(IDLE, LOSE, Guard(integers=each), controllable=False) for each in both), number)
+
+
+_AUTOMATA: Mapping[Type[Safety], Callable[[Any, Surroundings, int], Automaton]] = {
+    Respond: respond_automaton,
+    Avoid: _avoid,
+    NeverWith: _never_with,
+    Always: _always,
+    Patrol: patrol_automaton,
+}
+"""For each kind of objective what makes its automaton."""

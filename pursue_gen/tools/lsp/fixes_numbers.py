@@ -12,7 +12,6 @@ from pursue_gen.language.assumption_checks import SHORTEST_STAY
 from pursue_gen.language.checks import MOST_TIMES
 from pursue_gen.language.edits import Edit
 from pursue_gen.language.numbers import exact, read_number
-from pursue_gen.language.scenario import Avoid
 from pursue_gen.tools.lsp.document import Document
 from pursue_gen.tools.lsp.edits import bare, cut, first, pair, written
 from pursue_gen.tools.lsp.edits import behind as added
@@ -105,8 +104,8 @@ def done_or_avoided(document: Document, finding: Diagnostic, part: Optional[Stat
     yield from to_be_done_once(document, finding, part, at)
     for safety in document.scenario.safety:
         other = document.statement_at(document.positions.of_span(safety.span)[0])
-        if isinstance(safety, Avoid) and other is not None and _is_about(document, safety, at):
-            yield f"Delete the objective to avoid {safety.event.name}", deleted(document, other)
+        if safety.breaks.event is not None and other is not None and _is_named(document, safety.breaks.event.name, at):
+            yield f"Delete the objective to avoid {safety.breaks.event.name}", deleted(document, other)
 
 
 def later_deadline(document: Document, finding: Diagnostic, part: Optional[Statement], at: int) -> Iterator[Proposal]:
@@ -139,7 +138,7 @@ def possible_number(document: Document, finding: Diagnostic, part: Optional[Stat
         yield "Delete this statement", deleted(document, part)
 
 
-def _is_about(document: Document, safety: Avoid, at: int) -> bool:
-    """True if the objective avoids the event that is named at this offset."""
+def _is_named(document: Document, name: str, at: int) -> bool:
+    """True if this name stands at the offset."""
     here: Optional[Token] = next((t for p in document.statements for t in p.tokens if t.start_pos == at), None)
-    return here is not None and str(here) == safety.event.name
+    return here is not None and str(here) == name

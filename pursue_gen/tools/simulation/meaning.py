@@ -7,9 +7,8 @@ from typing import FrozenSet, Mapping, Optional
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Holds, Not, OnWay
-from pursue_gen.language.scenario import Always, Scenario
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, role_of
-from pursue_gen.tga.objectives import stated
 
 
 def holds(condition: Condition, scenario: Scenario, locations: Mapping[str, str], values: Mapping[str, int]) -> bool:
@@ -53,11 +52,13 @@ class Broken:
 
     def __call__(self, locations: Mapping[str, str], values: Mapping[str, int]) -> bool:
         """True if one of them is broken there."""
-        some = (safety for safety in self.scenario.safety if isinstance(safety, Always))
-        return any(holds(safety.broken_if, self.scenario, locations, values) for safety in some)
+        conditions = (safety.breaks.condition for safety in self.scenario.safety)
+        return any(one is not None and holds(one, self.scenario, locations, values) for one in conditions)
 
 
 def broken_of(scenario: Scenario) -> Optional[Broken]:
     """What says whether the scenario's objectives on conditions are broken; None where it has no such objective."""
-    automata = frozenset(name for name, objective in stated(scenario).items() if isinstance(objective, Always))
+    automata = frozenset(
+        names.safety_objective(k) for k, safety in enumerate(scenario.safety) if safety.breaks.condition is not None
+    )
     return Broken(scenario, automata) if automata else None
