@@ -63,7 +63,7 @@ def _named(scenario: Scenario, robot: Agent) -> Iterator[Tuple[Form, Scenario]]:
         if named != statement:
             safety = tuple(each.kept_by(ref) if each.span == span else each for each in scenario.safety)
             meaning = "other robots do not count there then, but the promise is kept as it stands, too"
-            yield Form(span.line, named[0].text_of(named), meaning), replace(scenario, safety=safety)
+            yield Form(span.line, named[0].statement(named).text, meaning), replace(scenario, safety=safety)
 
 
 def _once(scenario: Scenario) -> Iterator[Tuple[Form, Scenario]]:

@@ -9,9 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import Span
+from pursue_gen.diagnostics import Span, listed
 from pursue_gen.explanation.part import part_of_scenario, rules_for
-from pursue_gen.language.english import listed
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.options import SolveOptions
@@ -144,4 +143,4 @@ def each_statement(scenario: Scenario) -> Iterator[Tuple[str, _Statement]]:
     for objective in scenario.objectives:
         found.setdefault(objective.span, []).append(objective)
     for some in found.values():
-        yield some[0].text_of(some), tuple(some)
+        yield some[0].statement(some).text, tuple(some)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Iterator, Mapping, Optional, Tuple
 
+from pursue_gen.diagnostics import listed, units
 from pursue_gen.language import network_names as names
-from pursue_gen.language.english import listed, units
 from pursue_gen.language.numbers import decimal_text
+from pursue_gen.language.objectives.base import STATUSES
 from pursue_gen.language.scenario import Leaves, Scenario, StatedObjective, Waits
 from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.synthesis.plan_text import constraint_texts
@@ -17,11 +18,6 @@ from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.objectives import clock_of, stated
 from pursue_gen.tga.own_turns import own_turns
 from pursue_gen.tga.status_words import own_words, turn_words
-
-_OBJECTIVES = {
-    Role.IDLE: "kept", Role.AT_RISK: "a deadline is running", Role.LOSE: "broken",
-    Role.START: "not counting yet", Role.UNLOCKED: "to be reached", Role.WIN: "reached", Role.LATE: "too late",
-}  # fmt: skip
 
 _PLACES = {Role.WAY: "on the way from {} to {}", Role.WORK: "doing {} at {}"}
 _MOVES = {
@@ -50,7 +46,7 @@ class Words:
         objective = self.objectives.get(automaton)
         if objective is not None:
             done = [ref.shown for ref in objective.done_in(location)]
-            return f"{listed(done)} done" if done else _OBJECTIVES.get(role_of(location), location)
+            return f"{listed(done)} done" if done else STATUSES.get(role_of(location), location)
         return self.turns.get((automaton, location)) or place_words(self.scenario, location)
 
     def move(self, automaton: str, edge: Edge) -> str:

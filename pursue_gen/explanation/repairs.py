@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Callable, Iterable, Iterator, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import Span
+from pursue_gen.diagnostics import Span, listed
 from pursue_gen.explanation.ablations import without_conditions
 from pursue_gen.explanation.assumption_changes import assumption_changes
 from pursue_gen.explanation.number_changes import (
@@ -17,7 +17,6 @@ from pursue_gen.explanation.number_changes import (
     event_changes,
     travel_changes,
 )
-from pursue_gen.language.english import listed
 from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole_below
 from pursue_gen.language.scenario import Agent, Connection, Event, Reach, Scenario, StatedObjective
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
@@ -114,19 +113,19 @@ def _objective_knobs(scenario: Scenario, rules: Rules) -> Iterator[Knob]:
 
 def _limit_knobs(scenario: Scenario, rules: Rules, objective: StatedObjective) -> Iterator[Knob]:
     """A larger limit for all objectives of the statement that begins with this one."""
-    before, statement = objective.limit, objective.stated_with(scenario.objectives)
-    if before is None or statement[0] is not objective:
+    before, statement = objective.limit, objective.statement(scenario.objectives)
+    if before is None or statement.objectives[0] is not objective:
         return
 
     def make(k: int) -> Variant:
-        return scenario.with_changed({id(each): each.with_limit(k) for each in statement}), rules
+        return scenario.with_changed({id(each): each.with_limit(k) for each in statement.objectives}), rules
 
     def say(k: int) -> str:
-        return f"{words.before} {k} instead of {before}{words.behind}"
+        return f"{statement.before} {k} instead of {before}{statement.behind}"
 
-    words = objective.later(statement)
     later = whole_above(before, before + max(before, 2 * _all_time(scenario)))
-    yield _number(words.what, words.name, words.label, before, later, make, say, objective.span, 1)
+    _, _, change, about, label, *_ = statement
+    yield _number(change, about, label, before, later, make, say, objective.span, 1)
 
 
 def _after_knob(scenario: Scenario, rules: Rules, reach: Reach) -> Knob:

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Callable, Dict, Iterator, List, Optional, Tuple
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.network_words import place_words
 from pursue_gen.explanation.play import CounterStep, Play
 from pursue_gen.language import network_names as names
-from pursue_gen.language.english import listed
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga.objectives import stated

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import List, Optional, Tuple
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.part import with_objectives
-from pursue_gen.language.english import listed
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.language.wording import statement_text
 from pursue_gen.outcomes import LimitHit

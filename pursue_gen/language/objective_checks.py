@@ -20,7 +20,7 @@ def check_objectives(scenario: Scenario) -> Iterator[Diagnostic]:
         text = objective.text
         if text in lines:
             message = f"the same objective stands in line {lines[text]} already"
-            if len(objective.stated_with(scenario.objectives)) > 1:
+            if len(objective.statement(scenario.objectives).objectives) > 1:
                 message = f"{next(objective.names())[1].name} stands twice in this patrol"
             yield error("PML220", message, objective.span, "delete one of the two")
         lines.setdefault(text, objective.span.line)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Dict, List
 
+from pursue_gen.diagnostics import units
 from pursue_gen.language.conditions import condition_words
-from pursue_gen.language.english import units
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import (
     Agent,

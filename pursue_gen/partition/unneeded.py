@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Sequence, Set, Tuple
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.language.clauses import Domains
 from pursue_gen.language.conditions import Holds, atoms
-from pursue_gen.language.english import listed
 from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.synthesis.strategy import Strategy
 

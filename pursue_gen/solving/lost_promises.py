@@ -12,7 +12,7 @@ from fractions import Fraction
 from itertools import combinations, islice
 from typing import Iterable, List, Optional, Sequence, Tuple
 
-from pursue_gen.language.english import listed
+from pursue_gen.diagnostics import listed
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.outcomes import LimitHit, Lost
 from pursue_gen.solving.freer import standing, with_one_walk, without_turns

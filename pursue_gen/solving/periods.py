@@ -66,7 +66,7 @@ def _rewritten(text: str, span: Span, patrols: List[Patrol]) -> str:
     lines = text.split("\n")
     begin = sum(len(line) + 1 for line in lines[: span.line - 1]) + span.column - 1
     end = sum(len(line) + 1 for line in lines[: span.end_line - 1]) + span.end_column - 1
-    words = patrols[0].text_of(patrols)
+    words = patrols[0].statement(patrols).text
     return f"{text[:begin]}objective: {words}" + "\n" * text.count("\n", begin, end) + text[end:]
 
 

@@ -6,8 +6,8 @@ from dataclasses import astuple
 from fractions import Fraction
 from typing import FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.language.edits import Edit, edited
-from pursue_gen.language.english import listed
 from pursue_gen.language.numbers import Number, exact, is_fine
 from pursue_gen.language.rewriting import Rewriting
 from pursue_gen.language.scenario import Connection, Pose, Scenario

@@ -12,9 +12,8 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 import jinja2
 
 from pursue_gen import __version__
-from pursue_gen.diagnostics import error
+from pursue_gen.diagnostics import error, listed
 from pursue_gen.drawing import map_svg
-from pursue_gen.language.english import listed
 from pursue_gen.language.labels import in_markdown
 from pursue_gen.language.scenario import Reach, Safety, Scenario
 from pursue_gen.language.wording import condition_of_promise

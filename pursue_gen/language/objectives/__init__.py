@@ -5,8 +5,7 @@ from __future__ import annotations
 import enum
 from dataclasses import dataclass
 
-from pursue_gen.language.objectives.always import Always
-from pursue_gen.language.objectives.avoid import Avoid
+from pursue_gen.language.objectives.avoid import Always, Avoid
 from pursue_gen.language.objectives.base import Safety, StatedObjective
 from pursue_gen.language.objectives.never_with import NeverWith
 from pursue_gen.language.objectives.patrol import Patrol, patrols_in

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Callable, ClassVar, Iterator, NamedTuple, Optional, Sequence, Tuple, TypeVar, cast
+from typing import Any, Callable, ClassVar, Iterator, Mapping, NamedTuple, Optional, Sequence, Tuple, TypeVar, cast
 
-from pursue_gen.diagnostics import Diagnostic, Span
+from pursue_gen.diagnostics import Diagnostic, Span, listed
 from pursue_gen.language.conditions import At, Condition, EventOrCondition
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.parts import Agent
@@ -15,6 +15,13 @@ from pursue_gen.language.symbols import Role, role_of
 Stated = TypeVar("Stated", bound="StatedObjective")
 
 
+STATUSES = {
+    Role.IDLE: "kept", Role.AT_RISK: "a deadline is running", Role.LOSE: "broken",
+    Role.START: "not counting yet", Role.UNLOCKED: "to be reached", Role.WIN: "reached", Role.LATE: "too late",
+}  # fmt: skip
+"""What an objective is at in the locations of its automaton, by their roles."""
+
+
 class Words(NamedTuple):
     """What an objective is called while a mission goes on; "": nothing is said of that."""
 
@@ -22,8 +29,7 @@ class Words(NamedTuple):
     due_by: str = ""  # the same, with who it is to come from
     lane: str = ""  # the line in a picture of when it was due
     since: str = "the start"  # the moment since which the clock of its automaton counts
-    idle: str = "kept"  # what it is at while nothing is due …
-    at_risk: str = "a deadline is running"  # … and while something is
+    statuses: Mapping[Role, str] = STATUSES  # the same as there, where it says more
     must: str = ""  # what has to be by the end of its limit
     in_time: str = ""  # said where that comes
     there: str = ""  # what is so as long as nothing is due
@@ -31,13 +37,16 @@ class Words(NamedTuple):
     which: str = ""  # which of the objectives of its statement it is
 
 
-class Later(NamedTuple):
-    """A larger limit: the kind of change, what it is about, its label, and what stands around `5 instead of 4`."""
+class Whole(NamedTuple):
+    """A statement as a whole: the objectives that it lists, its text, and what a larger limit is: the kind of change,
+    what it is about, its label, and what stands around `5 instead of 4`."""
 
-    what: str
-    name: str
-    label: str
-    before: str
+    objectives: Sequence[StatedObjective]
+    text: str
+    change: str = ""
+    about: str = ""
+    label: str = ""
+    before: str = ""
     behind: str = ""
 
 
@@ -90,13 +99,9 @@ class StatedObjective:
         """The places of its statement, where each counts in its turn only; () where there are no turns."""
         return ()
 
-    def stated_with(self, objectives: Sequence[StatedObjective]) -> Sequence[StatedObjective]:
-        """Those of the objectives that its statement lists, itself among them."""
-        return (self,)
-
-    def text_of(self, statement: Sequence[StatedObjective]) -> str:
-        """The text of a statement that lists these objectives, itself first."""
-        return self.text
+    def statement(self, objectives: Sequence[StatedObjective]) -> Whole:
+        """The statement that lists it, found among these objectives."""
+        return Whole((self,), self.text)
 
     @property
     def limit(self) -> Optional[Number]:
@@ -106,10 +111,6 @@ class StatedObjective:
     def with_limit(self: Stated, limit: int) -> Stated:
         """The same with another limit."""
         return cast(Stated, replace(cast(Any, self), **{self.limited_by: limit}))
-
-    def later(self, statement: Sequence[StatedObjective]) -> Later:
-        """What a larger limit is called, for a statement that lists these objectives."""
-        raise NotImplementedError
 
     @property
     def words(self) -> Words:
@@ -122,8 +123,9 @@ class StatedObjective:
 
     def status(self, location: str) -> str:
         """What it is at in a location of its automaton."""
-        texts = {Role.IDLE: self.words.idle, Role.AT_RISK: self.words.at_risk, Role.LOSE: "broken"}
-        return texts.get(role_of(location), location)
+        role, done = role_of(location), self.done_in(location)
+        said = f"{listed(ref.shown for ref in done)} done" if done else self.words.statuses.get(role)
+        return said or STATUSES.get(role, location)
 
     def about(self, kind: str, name: str) -> Iterator[str]:
         """What it means for an event or an agent, as in `must never happen`."""

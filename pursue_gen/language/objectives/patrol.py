@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Callable, ClassVar, Iterator, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, Span, error
+from pursue_gen.diagnostics import Diagnostic, Span, error, listed, units
 from pursue_gen.language.conditions import At, Not, Who, by_robot
-from pursue_gen.language.english import listed, units
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.objectives.base import Breaks, Later, Safety, StatedObjective, Words
+from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective, Whole, Words
 from pursue_gen.language.parts import Agent
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.symbols import Role
 
 
 @dataclass(frozen=True)
@@ -47,16 +47,18 @@ class Patrol(Safety):
 
     @property
     def text(self) -> str:
-        return self.text_of((self,))
+        return self.statement((self,)).text
 
-    def stated_with(self, objectives: Sequence[StatedObjective]) -> Sequence[Patrol]:
-        return tuple(each for each in patrols_in(objectives) if each.span == self.span)
-
-    def text_of(self, statement: Sequence[StatedObjective]) -> str:
-        places = (each.place.name for each in patrols_in(statement))
-        some = f"{', '.join(self.order)} in order" if self.order else ", ".join(places)
+    def statement(self, objectives: Sequence[StatedObjective]) -> Whole:
+        listing = tuple(each for each in patrols_in(objectives) if each.span == self.span)
+        places = ", ".join(self.order or (each.place.name for each in listing)) + " in order" * bool(self.order)
         every = "" if self.every is None else f" every {self.every}"
-        return f"patrol {some}{every} by {'any robot' if self.who.agent is None else self.who.agent.name}"
+        text = f"patrol {places}{every} by {'any robot' if self.who.agent is None else self.who.agent.name}"
+        about, shown = (
+            listed(names) + " in order" * bool(self.order)
+            for names in zip(*((each.place.name, each.place.shown) for each in listing))
+        )
+        return Whole(listing, text, "deadline", about, "a rarer patrol", f"a patrol of {shown} every")
 
     def sentence(self, shown: Callable[[str], str]) -> str:
         if self.order:
@@ -107,21 +109,16 @@ class Patrol(Safety):
             message = f"every {self.every} leaves no time to go away and come back: expected 2 or more"
             yield error("PML143", message, self.span, "write the time units between two visits")
 
-    def later(self, statement: Sequence[StatedObjective]) -> Later:
-        together, in_order = [each.place for each in patrols_in(statement)], " in order" if self.order else ""
-        name, shown = (listed(names) + in_order for names in zip(*((ref.name, ref.shown) for ref in together)))
-        return Later("deadline", name, "a rarer patrol", f"a patrol of {shown} every")
-
     @property
     def words(self) -> Words:
         place, turn = self.place.shown, ", in its turn" if self.order else ""
+        who = "a robot" if self.who.agent is None else self._patroller
         return Words(
             due=f"a visit of {place}{turn}",
             due_by=f"{self._patroller} at {place}{turn and turn + ','}",
             lane=f"visits: {place}",
             since=f"the last visit of {place}{turn.replace(',', '')}, or the start",
-            idle=f"{'a robot' if self.who.agent is None else self._patroller} is there",
-            at_risk="a visit is due",
+            statuses={Role.IDLE: f"{who} is there", Role.AT_RISK: "a visit is due"},
             must=f"{self._patroller} has to be back",
             there="there",
             kept="visited again",

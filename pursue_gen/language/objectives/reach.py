@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Callable, ClassVar, Iterator, Optional, Sequence, Set, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, Span, error
-from pursue_gen.language.english import listed, units
+from pursue_gen.diagnostics import Diagnostic, Span, error, listed, units
 from pursue_gen.language.numbers import Number, exact
-from pursue_gen.language.objectives.base import Later, StatedObjective, Words
+from pursue_gen.language.objectives.base import StatedObjective, Whole, Words
 from pursue_gen.language.parts import Agent
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.symbols import Role, Symbol, role_of
+from pursue_gen.language.symbols import Role, Symbol
 
 MOST_EVENTS = 5
 """So many events stand behind one `do` at most: the order in which they happen is free, and each order counts."""
@@ -68,25 +67,18 @@ class Reach(StatedObjective):
             hint = f"both count from the start of the mission: write within {exact(self.after + 1)} or more"
             yield error("PML223", message, self.span, hint)
 
-    def later(self, statement: Sequence[StatedObjective]) -> Later:
+    def statement(self, objectives: Sequence[StatedObjective]) -> Whole:
         names, due = listed(ref.name for ref in self.events), self.words.due
-        return Later("within", names, f"a later deadline for {due}", f"{due} within")
+        return Whole((self,), self.text, "within", names, f"a later deadline for {due}", f"{due} within")
 
     @property
     def words(self) -> Words:
-        return Words(due=listed(ref.shown for ref in self.events))
+        due = listed(ref.shown for ref in self.events)
+        return Words(due, statuses={Role.UNLOCKED: f"{due} to be done"})
 
     def done_in(self, location: str) -> Tuple[Ref, ...]:
         done = Symbol.of(location)
         return tuple(self.events[int(k) - 1] for k in done.parts) if done.role is Role.DID else ()
-
-    def status(self, location: str) -> str:
-        due, done = self.words.due, listed(ref.shown for ref in self.done_in(location) or self.events)
-        texts = {
-            Role.START: "not counting yet", Role.UNLOCKED: f"{due} to be done", Role.WIN: "reached",
-            Role.LATE: "too late", Role.DID: f"{done} done",
-        }  # fmt: skip
-        return texts.get(role_of(location), location)
 
     def about(self, kind: str, name: str) -> Iterator[str]:
         if kind == "event" and any(ref.name == name for ref in self.events):

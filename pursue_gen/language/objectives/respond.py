@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Callable, ClassVar, Iterator, Sequence, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, Span, error
+from pursue_gen.diagnostics import Diagnostic, Span, error, units
 from pursue_gen.language.conditions import Condition, EventOrCondition, condition_text, condition_words, held_by
-from pursue_gen.language.english import units
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.objectives.base import Breaks, Later, Safety, StatedObjective, Words
+from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective, Whole, Words
 from pursue_gen.language.parts import Agent
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.symbols import Role
 
 
 def _text(what: EventOrCondition) -> str:
@@ -72,14 +72,15 @@ class Respond(Safety):
     def conditions(self) -> Tuple[Condition, ...]:
         return tuple(what for what in (self.trigger, self.response) if not isinstance(what, Ref))
 
-    def later(self, statement: Sequence[StatedObjective]) -> Later:
-        return Later("deadline", _text(self.response), "a later deadline", "a deadline of", f" for {self.words.due}")
+    def statement(self, objectives: Sequence[StatedObjective]) -> Whole:
+        about, due = _text(self.response), _shown(self.response)
+        return Whole((self,), self.text, "deadline", about, "a later deadline", "a deadline of", f" for {due}")
 
     @property
     def words(self) -> Words:
         due, since = _shown(self.response), f"the last {_shown(self.trigger)} or {_shown(self.response)}"
-        must, idle = f"{due} is due", "nothing is due"
-        return Words(due, since=since, idle=idle, at_risk=must, must=must, in_time="in time", kept="answered")
+        must, statuses = f"{due} is due", {Role.IDLE: "nothing is due", Role.AT_RISK: f"{due} is due"}
+        return Words(due, since=since, statuses=statuses, must=must, in_time="in time", kept="answered")
 
     @property
     def breaks(self) -> Breaks:

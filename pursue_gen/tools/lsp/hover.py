@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Callable, Dict, Iterable, Iterator, List, Optional, Tuple
 
+from pursue_gen.diagnostics import units
 from pursue_gen.language.batteries import MOST_CAPACITY, levels
 from pursue_gen.language.behaviour import predecessors
 from pursue_gen.language.conditions import condition_words, names_in
@@ -68,11 +69,6 @@ def hover(document: Document, offset: int) -> Optional[Hover]:
         text = _number(document.scenario, part, start, number)
         return Hover(text, start, start + len(token)) if text else None
     return None
-
-
-def units(number: Number) -> str:
-    """`1 unit`, `2 units`."""
-    return f"{number} unit{'' if number == 1 else 's'}"
 
 
 def lasts(window: Window) -> str:

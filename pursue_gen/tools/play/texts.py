@@ -5,12 +5,12 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Dict, Iterator, List, Mapping, Optional, Sequence
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.network_words import Words
 from pursue_gen.explanation.policy import Window
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import condition_words
-from pursue_gen.language.english import listed
 from pursue_gen.language.scenario import Connection
 from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.synthesis.game import Game, JointMove
