@@ -46,7 +46,7 @@ def without_each(scenario: Scenario, objectives: bool = True) -> Iterator[Tuple[
     found += [Part(f"only_if {text} on {what}", left_out) for what, text, left_out in without_conditions(scenario)]
     if objectives and len(scenario.statements) > 1:
         for first, *_ in scenario.statements:
-            found.append(Part(f"{first.word} {first.full_text}", _without(first)))
+            found.append(Part(f"{first.word} {first.text}{first.words.behind}", _without(first)))
     for part in found:
         smaller = part.left_out(scenario)
         if smaller is not None:
@@ -155,8 +155,7 @@ def without_objective(scenario: Scenario, objective: StatedObjective) -> Optiona
     kept = [other for statement in scenario.statements if objective not in statement for other in statement]
     if all(other.optional for other in kept):
         return None
-    safety = tuple(other for other in scenario.safety if other in kept)
-    return replace(scenario, safety=safety, reach=tuple(other for other in scenario.reach if other in kept))
+    return scenario.with_each(lambda each: each if each in kept else None)
 
 
 def _without(objective: StatedObjective) -> Callable[[Scenario], Optional[Scenario]]:

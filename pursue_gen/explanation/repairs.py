@@ -118,7 +118,7 @@ def _limit_knobs(scenario: Scenario, rules: Rules, objective: StatedObjective) -
         return
 
     def make(k: int) -> Variant:
-        return scenario.with_changed({id(each): each.with_limit(k) for each in statement.objectives}), rules
+        return scenario.with_each(lambda each: each.with_limit(k) if each in statement.objectives else each), rules
 
     def say(k: int) -> str:
         return f"{statement.before} {k} instead of {before}{statement.behind}"
@@ -130,7 +130,7 @@ def _limit_knobs(scenario: Scenario, rules: Rules, objective: StatedObjective) -
 
 def _after_knob(scenario: Scenario, rules: Rules, reach: Reach) -> Knob:
     def make(k: int) -> Variant:
-        return scenario.with_changed({id(reach): replace(reach, after=k)}), rules
+        return scenario.with_each(lambda each: replace(reach, after=k) if each is reach else each), rules
 
     def say(k: int) -> str:
         return f"{reach.words.due} after {k} instead of {reach.after}"

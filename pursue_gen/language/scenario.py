@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Collection, Dict, Iterator, Mapping, Tuple, Union
+from typing import Any, Callable, Collection, Dict, Iterator, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.assumptions import (
@@ -94,17 +94,14 @@ class Scenario:
     def giving_up(self, numbers: Collection[int], why: WhyGivenUp = WhyGivenUp.IMPOSSIBLE) -> Scenario:
         """The scenario with these of its optional objectives given up."""
         given_up = (GivenUp(each, why) for each in self.objectives if each.optional in numbers)
-        return replace(
-            self,
-            safety=tuple(each for each in self.safety if each.optional not in numbers),
-            reach=tuple(each for each in self.reach if each.optional not in numbers),
-            given_up=tuple(sorted((*self.given_up, *given_up), key=lambda each: each.objective.optional)),
-        )
+        in_order = tuple(sorted((*self.given_up, *given_up), key=lambda each: each.objective.optional))
+        kept = self.with_each(lambda each: None if each.optional in numbers else each)
+        return replace(kept, given_up=in_order)
 
-    def with_changed(self, changed: Mapping[int, StatedObjective]) -> Scenario:
-        """The scenario with other objectives in place of those with these identities (`id`)."""
-        safety: Tuple[Any, ...] = tuple(changed.get(id(each), each) for each in self.safety)
-        reach: Tuple[Any, ...] = tuple(changed.get(id(each), each) for each in self.reach)
+    def with_each(self, changed: Callable[[Any], Optional[StatedObjective]]) -> Scenario:
+        """The scenario with what `changed` makes of each objective; without it where that is None."""
+        safety: Tuple[Any, ...] = tuple(new for new in map(changed, self.safety) if new is not None)
+        reach: Tuple[Any, ...] = tuple(new for new in map(changed, self.reach) if new is not None)
         return replace(self, safety=safety, reach=reach)
 
     @property

@@ -58,7 +58,7 @@ def with_period(scenario: Scenario, every: int, least: Optional[int] = None) -> 
     text = scenario.text
     for span, patrols in sorted(given.items(), key=lambda item: (item[0].line, item[0].column), reverse=True):
         text = _rewritten(text, span, patrols)
-    return replace(scenario.with_changed(changed), text=text)
+    return replace(scenario.with_each(lambda each: changed.get(id(each), each)), text=text)
 
 
 def _rewritten(text: str, span: Span, patrols: List[Patrol]) -> str:

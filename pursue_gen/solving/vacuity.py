@@ -27,7 +27,7 @@ def check_assumed_alone(scenario: Scenario) -> Iterator[Diagnostic]:
     budget = Budget(Limits(work=_WORK, memory=careful_memory()))
     try:
         for objective in scenario.safety:
-            if objective.by_robots:
+            if objective.breaks.by_robots:
                 continue
             everything = scenario.assumptions
             if not _holds(scenario, objective, everything, budget) or _holds(scenario, objective, (), budget):

@@ -123,7 +123,8 @@ def _groups(scenario: Scenario, poi: Poi, present: Sequence[str]) -> List[List[s
     """The robots without a pose of their own at the place, those together that may have one: no two of them are ever
     there at one time. Only objectives that have to be met (`never_with`) are relied on: a new plan keeps them too.
     """
-    apart = {frozenset(one.breaks.pair) for one in scenario.safety if one.excludes(poi.name) and not one.optional}
+    kept = (one.breaks for one in scenario.safety if not one.optional)
+    apart = {frozenset(one.pair) for one in kept if one.place in (None, poi.name)}
     groups: List[List[str]] = []
     for robot in _without_own(poi, present):
         for group in groups:

@@ -34,6 +34,7 @@ class Words(NamedTuple):
     in_time: str = ""  # said where that comes
     there: str = ""  # what is so as long as nothing is due
     kept: str = ""  # what happens within its limit, as in `answered within 5`
+    behind: str = ""  # what may be left out behind its text
     which: str = ""  # which of the objectives of its statement it is
 
 
@@ -67,11 +68,6 @@ class StatedObjective:
     def text(self) -> str:
         """As its author may write it, without the word that begins the statement; of a patrol in order all places."""
         raise NotImplementedError
-
-    @property
-    def full_text(self) -> str:
-        """Its text with what may be left out."""
-        return self.text
 
     def sentence(self, shown: Callable[[str], str]) -> str:
         """What it wants. `shown`: what people read for a name."""
@@ -138,26 +134,21 @@ class Breaks(NamedTuple):
 
     event: Optional[Ref] = None
     condition: Optional[Condition] = None
-    pair: Tuple[str, ...] = ()  # the names of two agents who must not be together where it `excludes` that
+    pair: Tuple[str, ...] = ()  # the names of two agents who must not be together …
+    place: Optional[str] = None  # … at this place; None: nowhere, nor on a connection
     begins: Optional[EventOrCondition] = None  # with what something becomes due …
     ends: Optional[EventOrCondition] = None  # … and with what it has come; None: that depends on turns
+    by_robots: bool = False  # nothing but what robots do can keep it
     stands: Tuple[At, ...] = ()  # who is at which place when it is kept, or broken: this has to be possible
 
 
 class Safety(StatedObjective):
     """An objective that holds until all that is to be reached is reached; for ever where nothing is."""
 
-    by_robots: ClassVar[bool] = False
-    """Nothing but what robots do can keep it."""
-
     @property
     def breaks(self) -> Breaks:
         """How it is broken."""
         raise NotImplementedError
-
-    def excludes(self, place: str) -> bool:
-        """True if a pair of agents must not be together at this place; "": on a connection."""
-        return False
 
     def kept_by(self, robot: Ref) -> Safety:
         """The objective kept by this robot; the same where any robot is not what keeps it."""

@@ -44,18 +44,17 @@ class NeverWith(Safety):
         first, second = self.first.name, self.second.name
         if first == second:
             yield error("PML173", f"{first} is always with itself", self.span, "name two different agents")
-        elif first in start and start[first] == start.get(second) and self.excludes(start[first]):
+        elif first in start and start[first] == start.get(second) and self.breaks.place in (None, start[first]):
             message = f"{first} and {second} both start in {start[first]}: the objective is lost before anything moves"
             yield error("PML174", message, self.span, "let one of them start somewhere else")
 
     @property
     def breaks(self) -> Breaks:
-        pair, place = (self.first, self.second), self.place
-        stands = () if place is None else tuple(At(Who(agent), place) for agent in pair)
-        return Breaks(pair=(self.first.name, self.second.name), stands=stands)
-
-    def excludes(self, place: str) -> bool:
-        return self.place is None or self.place.name == place
+        pair = (self.first.name, self.second.name)
+        if self.place is None:
+            return Breaks(pair=pair)
+        stands = (At(Who(self.first), self.place), At(Who(self.second), self.place))
+        return Breaks(pair=pair, place=self.place.name, stands=stands)
 
     def about(self, kind: str, name: str) -> Iterator[str]:
         if kind == "agent" and name in (self.first.name, self.second.name):

@@ -32,7 +32,6 @@ class Patrol(Safety):
     least: Optional[int] = None
     optional: int = 0
     limited_by: ClassVar[str] = "every"
-    by_robots: ClassVar[bool] = True
 
     @property
     def period(self) -> Number:
@@ -128,7 +127,7 @@ class Patrol(Safety):
     @property
     def breaks(self) -> Breaks:
         there = At(self.who, self.place)
-        return Breaks(begins=Not(there), ends=None if self.order else there, stands=(there,))
+        return Breaks(begins=Not(there), ends=None if self.order else there, by_robots=True, stands=(there,))
 
     def kept_by(self, robot: Ref) -> Patrol:
         return replace(self, who=by_robot(self.who, robot))

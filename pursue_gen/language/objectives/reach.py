@@ -36,10 +36,6 @@ class Reach(StatedObjective):
         within = "" if self.within is None else f" within {self.within}"
         return f"do {' and '.join(ref.name for ref in self.events)}{after}{within}"
 
-    @property
-    def full_text(self) -> str:
-        return self.text if self.after or self.within else f"{self.text} after 0"
-
     def sentence(self, shown: Callable[[str], str]) -> str:
         after = f" later than {units(self.after)} after the start" if self.after else ""
         within = "" if self.within is None else f" within {units(self.within)} after the start"
@@ -74,7 +70,8 @@ class Reach(StatedObjective):
     @property
     def words(self) -> Words:
         due = listed(ref.shown for ref in self.events)
-        return Words(due, statuses={Role.UNLOCKED: f"{due} to be done"})
+        behind = "" if self.after or self.within else " after 0"
+        return Words(due, statuses={Role.UNLOCKED: f"{due} to be done"}, behind=behind)
 
     def done_in(self, location: str) -> Tuple[Ref, ...]:
         done = Symbol.of(location)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import FrozenSet, Mapping, Optional
+from typing import Mapping
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Holds, Not, OnWay
@@ -38,27 +37,3 @@ def holds(condition: Condition, scenario: Scenario, locations: Mapping[str, str]
     else:
         here = {names.doing(condition.event.name, poi.name) for poi in scenario.pois}
     return any(place in here for place in places)
-
-
-@dataclass(frozen=True)
-class Broken:
-    """Whether objectives on conditions are broken: called with the locations of automata and the values of variables.
-
-    `automata` are those that watch these objectives.
-    """
-
-    scenario: Scenario
-    automata: FrozenSet[str]
-
-    def __call__(self, locations: Mapping[str, str], values: Mapping[str, int]) -> bool:
-        """True if one of them is broken there."""
-        conditions = (safety.breaks.condition for safety in self.scenario.safety)
-        return any(one is not None and holds(one, self.scenario, locations, values) for one in conditions)
-
-
-def broken_of(scenario: Scenario) -> Optional[Broken]:
-    """What says whether the scenario's objectives on conditions are broken; None where it has no such objective."""
-    automata = frozenset(
-        names.safety_objective(k) for k, safety in enumerate(scenario.safety) if safety.breaks.condition is not None
-    )
-    return Broken(scenario, automata) if automata else None

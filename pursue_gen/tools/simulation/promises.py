@@ -15,7 +15,7 @@ from pursue_gen.language.network_names import going, has_happened
 from pursue_gen.language.objectives.base import Breaks
 from pursue_gen.language.scenario import NeverHolds, Ref, Safety, Scenario
 from pursue_gen.language.wording import assumption_words
-from pursue_gen.tools.simulation.meaning import broken_of, holds
+from pursue_gen.tools.simulation.meaning import holds
 from pursue_gen.tools.simulation.recorder import EPSILON
 from pursue_runtime.locations import is_action, is_under_way, place_of
 from pursue_runtime.state import LOST, WON, SystemState
@@ -49,6 +49,8 @@ class Promises:
         self._since: Dict[int, float] = {}
         self._held: Set[int] = set()  # whose conditions that are to be answered have held in the state before
         self._how = [safety.breaks for safety in scenario.safety]
+        named = ((names.safety_objective(k), how.condition) for k, how in enumerate(self._how))
+        self._conditions = {name: condition for name, condition in named if condition is not None}
         firsts = (each for each in scenario.patrols if each.order[:1] == (each.place.name,))
         self._ordered = [(scenario.safety.index(patrol), patrol) for patrol in firsts]
         self._turns: Dict[Span, int] = {}
@@ -59,7 +61,7 @@ class Promises:
         self._begun: Optional[float] = None
         self._seq = 0
         self._called: Dict[int, float] = {}
-        self._condition, self._was_broken = broken_of(scenario), False
+        self._was_broken = False
         self._duties = {number: Duty() for number, _ in duties_of(scenario)}
 
     @property
@@ -128,7 +130,7 @@ class Promises:
         breaks = self._how[number]
         if safety.limit is None:
             over = state.status == WON
-            return self._is(breaks.event, event, state) or (not over and self._is_lost(safety, breaks, state))
+            return self._is(breaks.event, event, state) or (not over and self._is_lost(breaks, state))
         since, before = self._since.get(number), number in self._held
         begun = self._is(breaks.begins, event, state)
         self._held.discard(number)
@@ -140,19 +142,18 @@ class Promises:
             self._since.setdefault(number, latest)
         return since is not None and latest - since > safety.limit
 
-    def _is_lost(self, safety: Safety, breaks: Breaks, state: SystemState) -> bool:
+    def _is_lost(self, breaks: Breaks, state: SystemState) -> bool:
         """True if its condition holds, or its two agents are together."""
         if breaks.condition is not None:
             return holds(breaks.condition, self._scenario, state.locations, state.values)
         spots = {self._spot(state.locations.get(agent, "")) for agent in breaks.pair}
-        return len(spots) == 1 and all(safety.excludes("".join(spot) if len(spot) == 1 else "") for spot in spots)
+        return len(spots) == 1 and (breaks.place is None or spots == {frozenset((breaks.place,))})
 
     def _check_conditions(self, state: SystemState) -> None:
         """A mission is lost if and only if a condition of an objective says so, in the next state at the latest."""
-        if self._condition is None:
-            return
-        broken = self._condition(state.locations, state.values)
-        lost = any(state.locations.get(name) == names.LOSE for name in self._condition.automata)
+        conditions = self._conditions.values()
+        broken = any(holds(one, self._scenario, state.locations, state.values) for one in conditions)
+        lost = any(state.locations.get(name) == names.LOSE for name in self._conditions)
         if lost and not broken:
             self.problems.append(f"state {state.seq} counts as lost, but no condition of an objective is broken there")
         elif self._was_broken and not lost:
