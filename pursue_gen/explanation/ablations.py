@@ -116,37 +116,27 @@ def without_conditions(scenario: Scenario) -> Iterator[Tuple[str, str, Callable[
 
 
 def _agent(name: str) -> Callable[[Scenario], Optional[Scenario]]:
-    return lambda scenario: without_agent(scenario, name)
+    return lambda whole: without_agent(whole, name)
 
 
 def _rule(name: str) -> Callable[[Scenario], Scenario]:
-    def left_out(scenario: Scenario) -> Scenario:
-        return replace(scenario, rules=tuple(rule for rule in scenario.rules if rule.name != name))
-
-    return left_out
+    return lambda whole: replace(whole, rules=tuple(rule for rule in whole.rules if rule.name != name))
 
 
 def _battery(name: str) -> Callable[[Scenario], Scenario]:
-    def left_out(scenario: Scenario) -> Scenario:
-        return replace(scenario, batteries=tuple(one for one in scenario.batteries if one.agent.name != name))
-
-    return left_out
+    return lambda whole: replace(whole, batteries=tuple(b for b in whole.batteries if b.agent.name != name))
 
 
 def _limit(name: str) -> Callable[[Scenario], Scenario]:
-    def left_out(scenario: Scenario) -> Scenario:
-        events = (replace(event, at_most=None) if event.name == name else event for event in scenario.events)
-        return replace(scenario, events=tuple(events))
-
-    return left_out
+    return lambda whole: replace(
+        whole, events=tuple(replace(e, at_most=None) if e.name == name else e for e in whole.events)
+    )
 
 
 def _dependency(event: str, state: str) -> Callable[[Scenario], Scenario]:
-    def left_out(scenario: Scenario) -> Scenario:
-        kept = (d for d in scenario.dependencies if (d.event.name, d.state.name) != (event, state))
-        return replace(scenario, dependencies=tuple(kept))
-
-    return left_out
+    return lambda whole: replace(
+        whole, dependencies=tuple(d for d in whole.dependencies if (d.event.name, d.state.name) != (event, state))
+    )
 
 
 def without_objective(scenario: Scenario, objective: StatedObjective) -> Optional[Scenario]:

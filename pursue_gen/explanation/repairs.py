@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Callable, Iterable, Iterator, Optional, Sequence, Tuple
+from typing import Callable, Iterable, Iterator, Optional, Sequence, Tuple, TypeVar
 
 from pursue_gen.diagnostics import Span, listed
 from pursue_gen.explanation.ablations import without_conditions
@@ -26,6 +26,7 @@ _FINEST = 1000
 """The largest denominator of a reaction that the command line takes."""
 
 Variant = Tuple[Scenario, Rules]
+_Part = TypeVar("_Part")
 
 
 @dataclass(frozen=True)
@@ -92,14 +93,12 @@ def _rules_knobs(scenario: Scenario, rules: Rules) -> Iterator[Knob]:
 
 
 def _slack_knob(scenario: Scenario, rules: Rules, agent: str, late: int) -> Knob:
-    def make(k: int) -> Variant:
-        return scenario, replace(rules, slack={**rules.slack, agent: k})
-
-    def say(k: int) -> str:
-        return f"{scenario.shown(agent)} late by at most {k} instead of {late}"
-
-    label = f"{scenario.shown(agent)} less late"
-    return _number("slack", agent, label, late, range(late - 1, -1, -1), make, say, None, 5)
+    shown = scenario.shown(agent)
+    return _number(
+        "slack", agent, f"{shown} less late", late, range(late - 1, -1, -1),
+        lambda k: (scenario, replace(rules, slack={**rules.slack, agent: k})),
+        lambda k: f"{shown} late by at most {k} instead of {late}", None, 5,
+    )  # fmt: skip
 
 
 def _objective_knobs(scenario: Scenario, rules: Rules) -> Iterator[Knob]:
@@ -116,27 +115,21 @@ def _limit_knobs(scenario: Scenario, rules: Rules, objective: StatedObjective) -
     before, statement = objective.limit, objective.statement(scenario.objectives)
     if before is None or statement.objectives[0] is not objective:
         return
-
-    def make(k: int) -> Variant:
-        return scenario.with_each(lambda each: each.with_limit(k) if each in statement.objectives else each), rules
-
-    def say(k: int) -> str:
-        return f"{statement.before} {k} instead of {before}{statement.behind}"
-
-    later = whole_above(before, before + max(before, 2 * _all_time(scenario)))
-    _, _, change, about, label, *_ = statement
-    yield _number(change, about, label, before, later, make, say, objective.span, 1)
+    together, _, change, about, label, begins, ends = statement
+    yield _number(
+        change, about, label, before, whole_above(before, before + max(before, 2 * _all_time(scenario))),
+        lambda k: (scenario.with_each(lambda each: each.with_limit(k) if each in together else each), rules),
+        lambda k: f"{begins} {k} instead of {before}{ends}", objective.span, 1,
+    )  # fmt: skip
 
 
 def _after_knob(scenario: Scenario, rules: Rules, reach: Reach) -> Knob:
-    def make(k: int) -> Variant:
-        return scenario.with_each(lambda each: replace(reach, after=k) if each is reach else each), rules
-
-    def say(k: int) -> str:
-        return f"{reach.words.due} after {k} instead of {reach.after}"
-
-    earlier, name = whole_below(reach.after, 0), listed(ref.name for ref in reach.events)
-    return _number("after", name, f"an earlier {reach.words.due}", reach.after, earlier, make, say, reach.span, 1)
+    due, names, before = reach.words.due, listed(ref.name for ref in reach.events), reach.after
+    return _number(
+        "after", names, f"an earlier {due}", before, whole_below(before, 0),
+        lambda k: (scenario.with_each(lambda each: replace(reach, after=k) if each is reach else each), rules),
+        lambda k: f"{due} after {k} instead of {before}", reach.span, 1,
+    )  # fmt: skip
 
 
 def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[Knob]:
@@ -144,17 +137,15 @@ def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[Kno
     if pace is None or not scenario.connections:
         return
 
-    def make(k: int) -> Variant:
-        changed = tuple(replace(a, mobile=k) if a.name == agent.name else a for a in scenario.agents)
-        return replace(scenario, agents=changed), rules
-
-    def say(k: int) -> str:
-        return f"a {word} {agent.shown}, mobile {k} instead of {pace}"
-
     word = "faster" if agent.controllable else "slower"
     values = whole_below(pace, 1) if agent.controllable else whole_above(pace, pace * SLOWER)
+    what, others = f"a {word} {agent.shown}", scenario.agents
     if values:
-        yield _number("agent", agent.name, f"a {word} {agent.shown}", pace, values, make, say, agent.span, 2)
+        yield _number(
+            "agent", agent.name, what, pace, values,
+            lambda k: (replace(scenario, agents=_with(others, agent, replace(agent, mobile=k))), rules),
+            lambda k: f"{what}, mobile {k} instead of {pace}", agent.span, 2,
+        )  # fmt: skip
 
 
 def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[Knob]:
@@ -164,8 +155,7 @@ def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[
         return
 
     def make(k: int) -> Variant:
-        changed = tuple(replace(e, duration=k) if e.name == event.name else e for e in scenario.events)
-        return replace(scenario, events=changed), rules
+        return replace(scenario, events=_with(scenario.events, event, replace(event, duration=k))), rules
 
     def say(k: int) -> str:
         return f"{event.shown} lasting {k} instead of {duration or 'no time'}"
@@ -200,23 +190,16 @@ def _may_be_endless(scenario: Scenario, event: Event) -> bool:
 
 
 def _distance_knobs(scenario: Scenario, rules: Rules, connection: Connection) -> Iterator[Knob]:
-    ends = f"{scenario.shown(connection.a)} and {scenario.shown(connection.b)}"
-
-    def make(k: int) -> Variant:
-        changed = tuple(replace(c, distance=k) if c == connection else c for c in scenario.connections)
-        return replace(scenario, connections=changed), rules
-
-    def say(k: int) -> str:
-        return f"{ends} at distance {k} instead of {connection.distance}"
-
+    ends, ways = f"{scenario.shown(connection.a)} and {scenario.shown(connection.b)}", scenario.connections
     if connection.distance > 1:
-        values = whole_below(connection.distance, 1)
-        label = f"a shorter way between {ends}"
-        yield _number("distance", ends, label, connection.distance, values, make, say, connection.span, 2)
-    if connection.one_way and not any((w.a, w.b) == (connection.b, connection.a) for w in scenario.connections):
-        both = tuple(replace(c, one_way=False) if c == connection else c for c in scenario.connections)
+        yield _number(
+            "distance", ends, f"a shorter way between {ends}", connection.distance, whole_below(connection.distance, 1),
+            lambda k: (replace(scenario, connections=_with(ways, connection, replace(connection, distance=k))), rules),
+            lambda k: f"{ends} at distance {k} instead of {connection.distance}", connection.span, 2,
+        )  # fmt: skip
+    if connection.one_way and not any((w.a, w.b) == (connection.b, connection.a) for w in ways):
+        freer = replace(scenario, connections=_with(ways, connection, replace(connection, one_way=False)))
         label = f"a way between {ends} in both directions"
-        freer = replace(scenario, connections=both)
         yield _switch("direction", ends, label, "one_way", (freer, rules), connection.span)
 
 
@@ -240,9 +223,14 @@ def _order_knobs(scenario: Scenario, rules: Rules) -> Iterator[Knob]:
 def _control_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[Knob]:
     if not agent.controllable and (agent.can_do or agent.mobile is not None):
         ally = replace(agent, human=True, controllable=True)
-        changed = replace(scenario, agents=tuple(ally if a.name == agent.name else a for a in scenario.agents))
+        changed = replace(scenario, agents=_with(scenario.agents, agent, ally))
         label = f"{agent.shown} following instructions (human controllable)"
         yield _switch("control", agent.name, label, "not controllable", (changed, rules), agent.span)
+
+
+def _with(parts: Tuple[_Part, ...], old: _Part, new: _Part) -> Tuple[_Part, ...]:
+    """The parts of a scenario with another one in place of `old`."""
+    return tuple(new if part == old else part for part in parts)
 
 
 def _switch(

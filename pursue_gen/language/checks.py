@@ -16,7 +16,6 @@ from pursue_gen.language.labels import check_labels
 from pursue_gen.language.messages import shown
 from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.numbers import MOST_DIGITS, Number, exact, is_fine
-from pursue_gen.language.objective_checks import check_objectives
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
 from pursue_gen.language.scenario import Agent, Scenario
@@ -30,6 +29,9 @@ MOST_TIMES = 100
 
 MOST_METRES = 100
 """The largest number of a robot's size."""
+
+MOST_OPTIONAL = 6
+"""So many different numbers stand behind `optional` at most: each takes a game of its own."""
 
 _LONGEST = 10_000_000
 """The longest time of a movement in time units: ten times that must fit a solver's 32 bits."""
@@ -62,7 +64,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     findings += check_names(scenario)
     findings += check_references(scenario, reading.lost)
     findings += check_labels(scenario)
-    findings += check_objectives(scenario)
+    findings += _beside(scenario)
     for part in (_numbers, _too_fine, _connections, _travels, _states, _agents, _objectives, _order):
         findings += part(scenario)
     codes = {f.code for f in findings}
@@ -250,6 +252,44 @@ def _twice(agent: Agent) -> Iterator[Diagnostic]:
             if ref.name in seen:
                 yield error("PML156", f"{agent.name} has {ref.name} twice behind {words}", ref.span, "delete one")
             seen.add(ref.name)
+
+
+def _beside(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Objectives that stand there twice or contradict each other, and those that can never be reached as they stand."""
+    yield from _optional(scenario)
+    lines: Dict[str, int] = {}
+    statements = [statement[0] for statement in scenario.statements]
+    for objective in sorted(statements, key=lambda each: (each.span.line, each.span.column)):
+        text = objective.text
+        if text in lines:
+            message = f"the same objective stands in line {lines[text]} already"
+            if len(objective.statement(scenario.objectives).objectives) > 1:
+                message = f"{next(objective.names())[1].name} stands twice in this patrol"
+            yield error("PML220", message, objective.span, "delete one of the two")
+        lines.setdefault(text, objective.span.line)
+    for objective in statements:
+        yield from objective.check(scenario.agents)
+    avoided = {each.breaks.event.name: each for each in scenario.safety if each.breaks.event is not None}
+    for reach in scenario.reach:
+        for ref in reach.events:
+            if ref.name in avoided:
+                message = f"{ref.name} is to be done, and line {avoided[ref.name].span.line} has it avoided"
+                yield error("PML221", message, ref.span, "delete one of the two, or name another event")
+
+
+def _optional(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Something has to be met in any case, and each number behind optional is a game to solve."""
+    if scenario.objectives and all(each.optional for each in scenario.objectives):
+        hint = "delete the optional of what matters most; whoever gives that up as well has nothing left to do"
+        yield error("PML301", "every objective is optional", scenario.objectives[0].span, hint)
+    for span in dict.fromkeys(each.span for each in scenario.patrols if each.optional and each.every is None):
+        message = "an optional patrol without every: the least period is found for what has to be promised"
+        yield error("PML303", message, span, "write how often, as in every 60, or delete optional")
+    for number in scenario.optional[MOST_OPTIONAL:]:
+        first = next(each for each in scenario.objectives if each.optional == number)
+        message = f"more than {MOST_OPTIONAL} different numbers behind optional"
+        hint = "objectives with one number are kept or given up together: use a number for several of them"
+        yield error("PML302", message, first.span, hint)
 
 
 def _objectives(scenario: Scenario) -> Iterator[Diagnostic]:

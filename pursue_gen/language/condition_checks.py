@@ -6,16 +6,7 @@ from typing import Iterator
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
 from pursue_gen.language.clauses import MOST_CLAUSES, Domains, TooMany, clauses_of, holds_at_start
-from pursue_gen.language.conditions import (
-    At,
-    Atom,
-    Condition,
-    Doing,
-    Holds,
-    atoms,
-    condition_text,
-    condition_words,
-)
+from pursue_gen.language.conditions import At, Atom, Condition, Doing, Holds, atoms, condition_text, condition_words
 from pursue_gen.language.scenario import Safety, Scenario
 
 

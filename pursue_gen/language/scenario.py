@@ -7,15 +7,7 @@ from functools import cached_property
 from typing import Any, Callable, Collection, Dict, Iterator, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Span
-from pursue_gen.language.assumptions import (
-    AboutOne,
-    Assumption,
-    AtMost,
-    Leaves,
-    NeverAt,
-    NeverHolds,
-    Waits,
-)
+from pursue_gen.language.assumptions import AboutOne, Assumption, AtMost, Leaves, NeverAt, NeverHolds, Waits
 from pursue_gen.language.conditions import Condition
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.objectives import (

@@ -19,12 +19,7 @@ STATES = 2_000
 
 def told(worst: Fraction, promise: StatedObjective) -> Number:
     """The worst time of a promise in tenths that hold, and no later than its limit."""
-    return min(tenths_above(worst), _limit(promise))
-
-
-def _limit(promise: StatedObjective) -> Number:
-    assert promise.limit is not None, "only what has a limit can be late"
-    return promise.limit
+    return min(tenths_above(worst), promise.known_limit)
 
 
 @dataclass(frozen=True)
@@ -36,12 +31,12 @@ class Answer:
 
     def in_words(self) -> str:
         """A line for people, in tenths that hold."""
-        worst, deadline = decimal_text(told(self.worst, self.promise)), decimal_text(_limit(self.promise))
+        worst, deadline = decimal_text(told(self.worst, self.promise)), decimal_text(self.promise.known_limit)
         return f"{self.promise.text}: {self.promise.words.kept} within {worst} of {deadline}, at worst."
 
     def as_json(self) -> Dict[str, Any]:
         """For programs: numbers of time units."""
-        worst, deadline = float(self.worst), float(_limit(self.promise))
+        worst, deadline = float(self.worst), float(self.promise.known_limit)
         return {"objective": self.promise.text, "worst": worst, "deadline": deadline}
 
 

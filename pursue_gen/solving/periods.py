@@ -119,8 +119,8 @@ def quickly_found(scenario: Scenario) -> List[str]:
     limits = Limits(work=_LITTLE, memory=careful_memory())
     found = least_period(scenario, Rules(), SolveOptions(limits=limits))
     patrols = [each for each in found.patrols if each.least is not None]
-    decided = [each for each in patrols if each.least is not None and each.least >= each.period]
-    return periods_found(found, won=decided[0].least == decided[0].period) if decided else []
+    decided = [each for each in patrols if each.least is not None and each.least >= each.known_limit]
+    return periods_found(found, won=decided[0].least == decided[0].known_limit) if decided else []
 
 
 def longest(scenario: Scenario) -> int:

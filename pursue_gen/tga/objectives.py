@@ -3,22 +3,13 @@
 from __future__ import annotations
 
 from itertools import combinations
-from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Type
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Type
 
 from pursue_gen.diagnostics import error
 from pursue_gen.language import network_names as names
 from pursue_gen.language.network_names import IDLE, LOSE, agent_position
-from pursue_gen.language.scenario import (
-    Always,
-    Avoid,
-    NeverWith,
-    Patrol,
-    Reach,
-    Respond,
-    Safety,
-    Scenario,
-    StatedObjective,
-)
+from pursue_gen.language.objectives.base import Breaks
+from pursue_gen.language.scenario import Patrol, Reach, Respond, Safety, Scenario, StatedObjective
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.agents import Surroundings
@@ -101,52 +92,35 @@ def _done(events: Sequence[int], count: int) -> str:
 
 def safety_automaton(safety: Safety, around: Surroundings, number: int = 0) -> Automaton:
     """The automaton that goes to `lose` when the safety objective of the scenario is broken."""
-    return _AUTOMATA[type(safety)](safety, around, number)
+    if safety.breaks.begins is not None:
+        return _WITH_LIMIT[type(safety)](safety, around, number)
+    name, breaks = names.safety_objective(number), safety.breaks
+    broken = [] if breaks.condition is None else around.conditions.ways_to_hold(breaks.condition)
+    edges = [Edge(IDLE, LOSE, Guard(integers=one), controllable=False) for one in (*broken, *_together(breaks, around))]
+    if breaks.event is not None:
+        happened = names.has_happened(around.event(breaks.event.name))
+        edges.append(Edge(IDLE, LOSE, sync=Sync(happened, sends=False)))
+    return Automaton(name, (Location(IDLE), Location(LOSE)), IDLE, tuple(edges))
 
 
-def _avoid(safety: Avoid, around: Surroundings, number: int) -> Automaton:
-    happened = names.has_happened(around.event(safety.event.name))
-    return _losing((Edge(IDLE, LOSE, sync=Sync(happened, sends=False)),), number)
-
-
-def _always(safety: Always, around: Surroundings, number: int) -> Automaton:
-    broken = around.conditions.ways_to_hold(safety.broken_if)
-    return _losing((Edge(IDLE, LOSE, Guard(integers=guard), controllable=False) for guard in broken), number)
-
-
-def _losing(edges: Iterable[Edge], number: int) -> Automaton:
-    """An automaton that waits for what must not be."""
-    return Automaton(names.safety_objective(number), (Location(IDLE), Location(LOSE)), IDLE, tuple(edges))
-
-
-def _never_with(safety: NeverWith, around: Surroundings, number: int) -> Automaton:
-    """The environment may strike whenever both agents share a POI (idle or at work) or a connection, either way.
+def _together(breaks: Breaks, around: Surroundings) -> Iterator[Tuple[Clause, ...]]:
+    """The environment may strike whenever a pair of agents shares a POI (idle or at work) or a connection, either way.
 
     Where the objective names a place, that POI alone counts.
     """
-    positions = around.positions
-    shared: List[Tuple[int, int]] = [(positions.at(poi), positions.doing(poi)) for poi in positions.pois]
-    shared += [
-        (code, positions.going(b, a))
-        for (a, b), code in positions.ways.items()
-        if positions.pois[a] < positions.pois[b]
+    positions, place = around.positions, breaks.place
+    shared: List[Tuple[int, int]] = [
+        (positions.at(poi), positions.doing(poi)) for poi in positions.pois if place in (None, poi)
     ]
-
-    if safety.place is not None:
-        shared = [(positions.at(safety.place.name), positions.doing(safety.place.name))]
-
-    def among(agent: str, codes: Tuple[int, int]) -> Clause:
-        return tuple(Test(agent_position(agent), code) for code in codes)
-
-    both = ((among(safety.first.name, codes), among(safety.second.name, codes)) for codes in shared)
-    return _losing((Edge(IDLE, LOSE, Guard(integers=each), controllable=False) for each in both), number)
+    if place is None:
+        ways = positions.ways.items()
+        shared += [(code, positions.going(b, a)) for (a, b), code in ways if positions.pois[a] < positions.pois[b]]
+    for codes in shared if breaks.pair else ():
+        yield tuple(tuple(Test(agent_position(agent), code) for code in codes) for agent in breaks.pair)
 
 
-_AUTOMATA: Mapping[Type[Safety], Callable[[Any, Surroundings, int], Automaton]] = {
+_WITH_LIMIT: Mapping[Type[Safety], Callable[[Any, Surroundings, int], Automaton]] = {
     Respond: respond_automaton,
-    Avoid: _avoid,
-    NeverWith: _never_with,
-    Always: _always,
     Patrol: patrol_automaton,
 }
-"""For each kind of objective what makes its automaton."""
+"""What makes the automata in which the time runs that something may take, for each kind of objective."""

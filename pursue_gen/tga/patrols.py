@@ -65,7 +65,7 @@ def patrol_automaton(patrol: Patrol, around: Surroundings, number: int) -> Autom
     """
     scenario, clock, place = around.scenario, names.safety_clock(number), patrol.place.name
     agents = scenario.on_patrol(patrol)
-    due = Location(AT_RISK, (ClockBound(clock, "<=", patrol.period),))
+    due = Location(AT_RISK, (ClockBound(clock, "<=", patrol.known_limit),))
     there = any(agent.location.name == place for agent in agents)
     guard, assign = Guard(), _NOTHING
     if patrol.order:

@@ -104,6 +104,12 @@ class StatedObjective:
         """The time units within which what is due has to come; None: there is no limit."""
         return getattr(self, self.limited_by) if self.limited_by else None
 
+    @property
+    def known_limit(self) -> Number:
+        """The limit of an objective that has one; the period of a patrol is known from solving on."""
+        assert self.limit is not None, "there is no limit, or it has to be found first"
+        return self.limit
+
     def with_limit(self: Stated, limit: int) -> Stated:
         """The same with another limit."""
         return cast(Stated, replace(cast(Any, self), **{self.limited_by: limit}))

@@ -34,12 +34,6 @@ class Patrol(Safety):
     limited_by: ClassVar[str] = "every"
 
     @property
-    def period(self) -> Number:
-        """The time units from one visit to the next; they are known from solving on."""
-        assert self.every is not None, "the period of a patrol has to be found first"
-        return self.every
-
-    @property
     def _patroller(self) -> str:
         """Who is to be at the place: an agent's name, or `any robot`."""
         return "any robot" if self.who.agent is None else self.who.agent.shown

@@ -214,5 +214,5 @@ def _answers(scenario: Scenario, missions: Sequence[Sequence[Duty]]) -> Tuple[An
         calls = sum(duty.calls for duty in own)
         latest = max((duty.latest for duty in own if duty.latest is not None), default=None)
         untried = sum(not duty.calls for duty in own)
-        found.append(Answers(objective.text, float(objective.limit or 0), calls, latest, untried))
+        found.append(Answers(objective.text, float(objective.known_limit), calls, latest, untried))
     return tuple(found)
