@@ -78,9 +78,20 @@ def usage_error(message: str, hint: str) -> PursueError:
     return PursueError([error("CLI004", message, hint=hint)])
 
 
-def counted(number: int, noun: str) -> str:
-    """`1 error`, `2 errors`."""
-    return f"{number} {noun}{'' if number == 1 else 's'}"
+def counted(number: object, noun: str) -> str:
+    """`1 error`, `2 errors`, of a number of them or its text."""
+    return f"{number} {noun}{'' if str(number) == '1' else 's'}"
+
+
+def units(amount: object) -> str:
+    """`1 unit`, `2 units`."""
+    return counted(amount, "unit")
+
+
+def listed(names: Iterable[str]) -> str:
+    """`a`, `a and b`, `a, b and c`."""
+    *others, last = names
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def in_order(diagnostics: Iterable[Diagnostic]) -> Tuple[Diagnostic, ...]:

@@ -10,22 +10,16 @@ from pursue_gen.language.scenario import (
     Agent,
     Assumption,
     AtMost,
-    Avoid,
     Both,
     Choice,
     NeverHolds,
-    NeverWith,
-    Patrol,
-    Reach,
     Ref,
-    Respond,
     RuleBody,
     Scenario,
     Sequence,
     StatedObjective,
     Waits,
 )
-from pursue_gen.language.wording import objective_text
 
 
 @dataclass(frozen=True)
@@ -52,11 +46,7 @@ def without_each(scenario: Scenario, objectives: bool = True) -> Iterator[Tuple[
     found += [Part(f"only_if {text} on {what}", left_out) for what, text, left_out in without_conditions(scenario)]
     if objectives and len(scenario.statements) > 1:
         for first, *_ in scenario.statements:
-            if isinstance(first, Reach):
-                text = f"reach_objective {_reach_text(first)}"
-            else:
-                text = f"objective {objective_text(first)}"
-            found.append(Part(text, _without(first)))
+            found.append(Part(f"{first.word} {first.text}{first.words.behind}", _without(first)))
     for part in found:
         smaller = part.left_out(scenario)
         if smaller is not None:
@@ -126,37 +116,27 @@ def without_conditions(scenario: Scenario) -> Iterator[Tuple[str, str, Callable[
 
 
 def _agent(name: str) -> Callable[[Scenario], Optional[Scenario]]:
-    return lambda scenario: without_agent(scenario, name)
+    return lambda whole: without_agent(whole, name)
 
 
 def _rule(name: str) -> Callable[[Scenario], Scenario]:
-    def left_out(scenario: Scenario) -> Scenario:
-        return replace(scenario, rules=tuple(rule for rule in scenario.rules if rule.name != name))
-
-    return left_out
+    return lambda whole: replace(whole, rules=tuple(rule for rule in whole.rules if rule.name != name))
 
 
 def _battery(name: str) -> Callable[[Scenario], Scenario]:
-    def left_out(scenario: Scenario) -> Scenario:
-        return replace(scenario, batteries=tuple(one for one in scenario.batteries if one.agent.name != name))
-
-    return left_out
+    return lambda whole: replace(whole, batteries=tuple(b for b in whole.batteries if b.agent.name != name))
 
 
 def _limit(name: str) -> Callable[[Scenario], Scenario]:
-    def left_out(scenario: Scenario) -> Scenario:
-        events = (replace(event, at_most=None) if event.name == name else event for event in scenario.events)
-        return replace(scenario, events=tuple(events))
-
-    return left_out
+    return lambda whole: replace(
+        whole, events=tuple(replace(e, at_most=None) if e.name == name else e for e in whole.events)
+    )
 
 
 def _dependency(event: str, state: str) -> Callable[[Scenario], Scenario]:
-    def left_out(scenario: Scenario) -> Scenario:
-        kept = (d for d in scenario.dependencies if (d.event.name, d.state.name) != (event, state))
-        return replace(scenario, dependencies=tuple(kept))
-
-    return left_out
+    return lambda whole: replace(
+        whole, dependencies=tuple(d for d in whole.dependencies if (d.event.name, d.state.name) != (event, state))
+    )
 
 
 def without_objective(scenario: Scenario, objective: StatedObjective) -> Optional[Scenario]:
@@ -165,16 +145,11 @@ def without_objective(scenario: Scenario, objective: StatedObjective) -> Optiona
     kept = [other for statement in scenario.statements if objective not in statement for other in statement]
     if all(other.optional for other in kept):
         return None
-    safety = tuple(other for other in scenario.safety if other in kept)
-    return replace(scenario, safety=safety, reach=tuple(other for other in scenario.reach if other in kept))
+    return scenario.with_each(lambda each: each if each in kept else None)
 
 
 def _without(objective: StatedObjective) -> Callable[[Scenario], Optional[Scenario]]:
     return lambda scenario: without_objective(scenario, objective)
-
-
-def _reach_text(reach: Reach) -> str:
-    return objective_text(reach) if reach.after or reach.within else f"{objective_text(reach)} after 0"
 
 
 def _events(scenario: Scenario, agents: Tuple[Agent, ...]) -> Set[str]:
@@ -188,16 +163,9 @@ def _events(scenario: Scenario, agents: Tuple[Agent, ...]) -> Set[str]:
 def _wanted(scenario: Scenario) -> Set[str]:
     """The events and agents that the objectives and conditions name."""
     names = {ref.name for condition, _ in scenario.conditions() for _, ref in names_in(condition)}
-    names |= {ref.name for reach in scenario.reach for ref in reach.events}
-    for safety in scenario.safety:
-        if isinstance(safety, Respond):
-            names |= {ref.name for ref in safety.events}
-        elif isinstance(safety, Avoid):
-            names.add(safety.event.name)
-        elif isinstance(safety, NeverWith):
-            names |= {safety.first.name, safety.second.name}
-        elif isinstance(safety, Patrol):
-            names |= {agent.name for agent in scenario.on_patrol(safety)}
+    stated = (each.names() for each in scenario.objectives)
+    names |= {ref.name for each in stated for kind, ref in each if kind in ("event", "agent")}
+    names |= {agent.name for patrol in scenario.patrols for agent in scenario.on_patrol(patrol)}
     return names
 
 

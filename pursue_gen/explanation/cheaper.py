@@ -7,14 +7,12 @@ place of any robot, and an event of people that has to be answered and happens o
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Iterator, Sequence, Set, Tuple
+from typing import Iterator, Set, Tuple
 
 from pursue_gen.explanation.decided import decided_within
-from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, OnWay, Who
 from pursue_gen.language.parts import Agent
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.scenario import Always, Patrol, Respond, Safety, Scenario
-from pursue_gen.language.wording import objective_text, patrol_text
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import Rules
 from pursue_gen.synthesis.budget import Budget
 
@@ -58,50 +56,20 @@ def _forms(scenario: Scenario) -> Iterator[Tuple[Form, Scenario]]:
 
 def _named(scenario: Scenario, robot: Agent) -> Iterator[Tuple[Form, Scenario]]:
     """This robot in place of any robot, in one statement: who keeps that, keeps the promise as it stands."""
+    ref = Ref(robot.name, robot.span)
     for span in dict.fromkeys(each.span for each in scenario.safety):
         statement = [each for each in scenario.safety if each.span == span]
-        named = [_by(each, robot) for each in statement]
+        named = [each.kept_by(ref) for each in statement]
         if named != statement:
-            safety = tuple(_by(each, robot) if each.span == span else each for each in scenario.safety)
+            safety = tuple(each.kept_by(ref) if each.span == span else each for each in scenario.safety)
             meaning = "other robots do not count there then, but the promise is kept as it stands, too"
-            yield Form(span.line, _text(named), meaning), replace(scenario, safety=safety)
-
-
-def _by(objective: Safety, robot: Agent) -> Safety:
-    """The objective kept by this robot; the same where any robot is not what keeps it."""
-    if isinstance(objective, Patrol):
-        return replace(objective, who=_who(objective.who, robot))
-    if isinstance(objective, Respond) and not isinstance(objective.response, Ref):
-        return replace(objective, response=_held_by(objective.response, robot))
-    if isinstance(objective, Always) and objective.holds:
-        return replace(objective, condition=_held_by(objective.condition, robot))
-    return objective
-
-
-def _held_by(condition: Condition, robot: Agent) -> Condition:
-    """A condition that holds only while the first one does: where any robot would do, it is this one."""
-    if isinstance(condition, (AllOf, AnyOf)):
-        return replace(condition, parts=tuple(_held_by(part, robot) for part in condition.parts))
-    if isinstance(condition, (At, OnWay, Doing)):
-        return replace(condition, who=_who(condition.who, robot))
-    return condition
-
-
-def _who(who: Who, robot: Agent) -> Who:
-    return Who(Ref(robot.name, robot.span)) if who.agent is None and who.robots else who
-
-
-def _text(statement: Sequence[Safety]) -> str:
-    first = statement[0]
-    if isinstance(first, Patrol):
-        return patrol_text(first, [each.place.name for each in statement if isinstance(each, Patrol)])
-    return objective_text(first)
+            yield Form(span.line, named[0].statement(named).text, meaning), replace(scenario, safety=safety)
 
 
 def _once(scenario: Scenario) -> Iterator[Tuple[Form, Scenario]]:
     """An event that only people do, and that is to be answered, happens once at most."""
-    wanted = {objective.trigger.name for objective in scenario.safety
-              if isinstance(objective, Respond) and isinstance(objective.trigger, Ref)}  # fmt: skip
+    calls = (each.breaks.begins for each in scenario.safety)
+    wanted = {call.name for call in calls if isinstance(call, Ref)}
     for event in scenario.events:
         doers = [agent for agent in scenario.agents if event.name in {ref.name for ref in agent.can_do}]
         if event.name not in wanted or event.at_most is not None or any(agent.controllable for agent in doers):

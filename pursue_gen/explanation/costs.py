@@ -12,6 +12,7 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.ablations import Part, without_each
 from pursue_gen.explanation.cheaper import Form, cheaper
 from pursue_gen.explanation.decided import Decided, decided, texts
@@ -209,7 +210,7 @@ def _cost(without: Tuple[str, ...], game: _Game, rules: Rules, budget: Budget, s
 
 
 def _listed(names: Sequence[str]) -> str:
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]} together"
+    return listed(names) + " together" * (len(names) > 1)
 
 
 def _took(cost: Cost) -> str:

@@ -9,10 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import Span
+from pursue_gen.diagnostics import Span, listed
 from pursue_gen.explanation.part import part_of_scenario, rules_for
-from pursue_gen.language.scenario import Patrol, Scenario, StatedObjective
-from pursue_gen.language.wording import listed, objective_text, patrol_text
+from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules, played
@@ -144,5 +143,4 @@ def each_statement(scenario: Scenario) -> Iterator[Tuple[str, _Statement]]:
     for objective in scenario.objectives:
         found.setdefault(objective.span, []).append(objective)
     for some in found.values():
-        first, places = some[0], [each.place.name for each in some if isinstance(each, Patrol)]
-        yield patrol_text(first, places) if isinstance(first, Patrol) else objective_text(first), tuple(some)
+        yield some[0].statement(some).text, tuple(some)

@@ -13,6 +13,7 @@ from dataclasses import asdict, dataclass, replace
 from fractions import Fraction
 from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.changes import Change, findings
 from pursue_gen.explanation.endless import PAUSE, Endless, endless
 from pursue_gen.explanation.part import part_of_scenario, rules_for, statements_of, with_one_robot
@@ -20,7 +21,7 @@ from pursue_gen.explanation.play import Play, counter_plays
 from pursue_gen.explanation.texts import Attempt, TimedLine, attempt, describe, time_text
 from pursue_gen.explanation.together import Conflict, conflict
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import listed, statement_text
+from pursue_gen.language.wording import statement_text
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.lost_promises import lost_to_one_walk, quoted
 from pursue_gen.solving.one_robot import lost_game

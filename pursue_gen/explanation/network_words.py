@@ -5,22 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Iterator, Mapping, Optional, Tuple
 
+from pursue_gen.diagnostics import listed, units
 from pursue_gen.language import network_names as names
 from pursue_gen.language.numbers import decimal_text
-from pursue_gen.language.scenario import Leaves, Patrol, Reach, Respond, Scenario, StatedObjective, Waits
+from pursue_gen.language.objectives.base import STATUSES
+from pursue_gen.language.scenario import Leaves, Scenario, StatedObjective, Waits
 from pursue_gen.language.symbols import Role, Symbol, role_of
-from pursue_gen.language.wording import answer_words, answered_words, events_words, listed, objective_text, units
 from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Edge, Network
-from pursue_gen.tga.objectives import clock_of, events_done, stated
+from pursue_gen.tga.objectives import clock_of, stated
 from pursue_gen.tga.own_turns import own_turns
 from pursue_gen.tga.status_words import own_words, turn_words
-
-_DUTIES = {Role.IDLE: "kept", Role.AT_RISK: "a deadline is running", Role.LOSE: "broken"}
-_GOALS = {Role.START: "not counting yet", Role.UNLOCKED: "to be reached", Role.WIN: "reached", Role.LATE: "too late"}
-
 
 _PLACES = {Role.WAY: "on the way from {} to {}", Role.WORK: "doing {} at {}"}
 _MOVES = {
@@ -47,11 +44,9 @@ class Words:
     def place(self, automaton: str, location: str) -> str:
         """Where it is, as in "at c", "on the way from c to b", "doing catch at b", "next: load or wait"."""
         objective = self.objectives.get(automaton)
-        if isinstance(objective, Reach):
-            done = [ref.shown for ref in events_done(objective, location)]
-            return f"{listed(done)} done" if done else _GOALS.get(role_of(location), location)
         if objective is not None:
-            return _DUTIES.get(role_of(location), location)
+            done = [ref.shown for ref in objective.done_in(location)]
+            return f"{listed(done)} done" if done else STATUSES.get(role_of(location), location)
         return self.turns.get((automaton, location)) or place_words(self.scenario, location)
 
     def move(self, automaton: str, edge: Edge) -> str:
@@ -60,12 +55,12 @@ class Words:
         if said:
             return said
         objective = self.objectives.get(automaton)
-        if isinstance(objective, Reach) and edge.target == names.LATE:
-            return f"the deadline of {events_words(objective)} has passed"
-        if isinstance(objective, Reach):
+        if objective is not None and edge.target == names.LATE:
+            return f"the deadline of {objective.words.due} has passed"
+        if objective is not None and objective.once:
             return "begins to count"
         if objective is not None and edge.target == names.LOSE:
-            return "the objective is broken" if len(self.objectives) == 1 else f"broken: {objective_text(objective)}"
+            return "the objective is broken" if len(self.objectives) == 1 else f"broken: {objective.text}"
         return f"goes from {edge.source} to {edge.target}"
 
     def deed(self, automaton: str, edge: Edge, words: Mapping[Role, str]) -> str:
@@ -122,12 +117,7 @@ def words_of(scenario: Scenario, network: Network) -> Words:
     """The words for a scenario and its network."""
     clocks: Dict[str, str] = {names.agent_clock(each.name): f"{each.shown}'s last step" for each in scenario.agents}
     objectives = stated(scenario)
-    for name, each in objectives.items():
-        if isinstance(each, Respond):
-            clocks[clock_of(name)] = f"the last {answered_words(each)} or {answer_words(each)}"
-        elif isinstance(each, Patrol):
-            in_turn = " in its turn" if each.order else ""
-            clocks[clock_of(name)] = f"the last visit of {each.place.shown}{in_turn}, or the start"
+    clocks.update((clock_of(name), each.words.since) for name, each in objectives.items())
     for number, assumption in enumerate(scenario.assumptions, start=1):
         if isinstance(assumption, Waits):
             clocks[names.assumption_clock(number)] = f"{assumption.agent.shown}'s last {assumption.event.shown}"

@@ -113,12 +113,11 @@ def count_changes(scenario: Scenario, event: Event, most: int) -> Iterator[Numbe
         changed = replace(event, at_most=k)
         return replace(scenario, events=tuple(changed if e == event else e for e in scenario.events))
 
-    def say(k: int) -> str:
-        return f"{event.shown} at_most {k} times instead of {most}"
-
     doers = [agent for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
     ours = any(agent.controllable for agent in doers)
     values = range(most + 1, min(2 * most + 2, MOST_TIMES) + 1) if ours else range(most - 1, 0, -1)
     if values:
-        label = f"{event.shown} {'more' if ours else 'less'} often"
-        yield NumberChange("times", event.name, label, most, values, make, say, event.span)
+        yield NumberChange(
+            "times", event.name, f"{event.shown} {'more' if ours else 'less'} often", most, values, make,
+            lambda k: f"{event.shown} at_most {k} times instead of {most}", event.span,
+        )  # fmt: skip

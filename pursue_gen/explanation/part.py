@@ -17,9 +17,7 @@ from pursue_gen.tga.objectives import stated
 
 def with_objectives(scenario: Scenario, kept: Collection[StatedObjective]) -> Scenario:
     """The scenario with these of its objectives alone."""
-    safety = tuple(each for each in scenario.safety if any(each is other for other in kept))
-    reach = tuple(each for each in scenario.reach if any(each is other for other in kept))
-    return replace(scenario, safety=safety, reach=reach)
+    return scenario.with_each(lambda each: each if any(each is other for other in kept) else None)
 
 
 def statements_of(scenario: Scenario, automata: Collection[str]) -> Tuple[StatedObjective, ...]:

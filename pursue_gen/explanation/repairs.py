@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Callable, Dict, Iterable, Iterator, Optional, Sequence, Tuple
+from typing import Callable, Iterable, Iterator, Optional, Sequence, Tuple, TypeVar
 
-from pursue_gen.diagnostics import Span
+from pursue_gen.diagnostics import Span, listed
 from pursue_gen.explanation.ablations import without_conditions
 from pursue_gen.explanation.assumption_changes import assumption_changes
 from pursue_gen.explanation.number_changes import (
@@ -18,8 +18,7 @@ from pursue_gen.explanation.number_changes import (
     travel_changes,
 )
 from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole_below
-from pursue_gen.language.scenario import Agent, Connection, Event, Patrol, Reach, Respond, Safety, Scenario
-from pursue_gen.language.wording import answer_text, answer_words, events_words, listed
+from pursue_gen.language.scenario import Agent, Connection, Event, Reach, Scenario, StatedObjective
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
 from pursue_gen.tga.counts import counted
 
@@ -27,6 +26,7 @@ _FINEST = 1000
 """The largest denominator of a reaction that the command line takes."""
 
 Variant = Tuple[Scenario, Rules]
+_Part = TypeVar("_Part")
 
 
 @dataclass(frozen=True)
@@ -93,99 +93,43 @@ def _rules_knobs(scenario: Scenario, rules: Rules) -> Iterator[Knob]:
 
 
 def _slack_knob(scenario: Scenario, rules: Rules, agent: str, late: int) -> Knob:
-    def make(k: int) -> Variant:
-        return scenario, replace(rules, slack={**rules.slack, agent: k})
-
-    def say(k: int) -> str:
-        return f"{scenario.shown(agent)} late by at most {k} instead of {late}"
-
-    label = f"{scenario.shown(agent)} less late"
-    return _number("slack", agent, label, late, range(late - 1, -1, -1), make, say, None, 5)
+    shown = scenario.shown(agent)
+    return _number(
+        "slack", agent, f"{shown} less late", late, range(late - 1, -1, -1),
+        lambda k: (scenario, replace(rules, slack={**rules.slack, agent: k})),
+        lambda k: f"{shown} late by at most {k} instead of {late}", None, 5,
+    )  # fmt: skip
 
 
 def _objective_knobs(scenario: Scenario, rules: Rules) -> Iterator[Knob]:
     for safety in scenario.safety:
-        if isinstance(safety, Respond):
-            yield _deadline_knob(scenario, rules, safety)
-        elif isinstance(safety, Patrol) and safety is _of_one_statement(scenario, safety)[0]:
-            yield _patrol_knob(scenario, rules, safety)
+        yield from _limit_knobs(scenario, rules, safety)
     for reach in scenario.reach:
         if reach.after > 0:
             yield _after_knob(scenario, rules, reach)
-        if reach.within is not None:
-            yield _within_knob(scenario, rules, reach, reach.within)
+        yield from _limit_knobs(scenario, rules, reach)
 
 
-def _deadline_knob(scenario: Scenario, rules: Rules, safety: Respond) -> Knob:
-    deadline, answer = safety.deadline, answer_words(safety)
-
-    def make(k: int) -> Variant:
-        changed = tuple(replace(safety, deadline=k) if each is safety else each for each in scenario.safety)
-        return replace(scenario, safety=changed), rules
-
-    def say(k: int) -> str:
-        return f"a deadline of {k} instead of {deadline} for {answer}"
-
-    furthest = deadline + max(deadline, 2 * _all_time(scenario))
-    later = whole_above(deadline, furthest)
-    return _number("deadline", answer_text(safety), "a later deadline", deadline, later, make, say, safety.span, 1)
-
-
-def _of_one_statement(scenario: Scenario, patrol: Patrol) -> Sequence[Patrol]:
-    """The patrols of all places that the statement names."""
-    return [each for each in scenario.safety if isinstance(each, Patrol) and each.span == patrol.span]
-
-
-def _patrol_knob(scenario: Scenario, rules: Rules, patrol: Patrol) -> Knob:
-    every, together = patrol.period, _of_one_statement(scenario, patrol)
-    in_order = " in order" if patrol.order else ""
-    place = listed(each.place.shown for each in together) + in_order
-    name = listed(each.place.name for each in together) + in_order
-
-    def make(k: int) -> Variant:
-        rarer: Dict[Safety, Safety] = {each: replace(each, every=k) for each in together}
-        changed = tuple(rarer.get(each, each) for each in scenario.safety)
-        return replace(scenario, safety=changed), rules
-
-    def say(k: int) -> str:
-        return f"a patrol of {place} every {k} instead of {every}"
-
-    rarer = whole_above(every, every + max(every, 2 * _all_time(scenario)))
-    return _number("deadline", name, "a rarer patrol", every, rarer, make, say, patrol.span, 1)
-
-
-def _with_reach(scenario: Scenario, old: Reach, new: Reach) -> Scenario:
-    return replace(scenario, reach=tuple(new if each is old else each for each in scenario.reach))
-
-
-def _names(reach: Reach) -> str:
-    return listed(ref.name for ref in reach.events)
+def _limit_knobs(scenario: Scenario, rules: Rules, objective: StatedObjective) -> Iterator[Knob]:
+    """A larger limit for all objectives of the statement that begins with this one."""
+    before, statement = objective.limit, objective.statement(scenario.objectives)
+    if before is None or statement.objectives[0] is not objective:
+        return
+    together, _, change, about, label, begins, ends = statement
+    yield _number(
+        change, about, label, before, whole_above(before, before + max(before, 2 * _all_time(scenario))),
+        lambda k: (scenario.with_each(lambda each: each.with_limit(k) if each in together else each), rules),
+        lambda k: f"{begins} {k} instead of {before}{ends}", objective.span, 1,
+    )  # fmt: skip
 
 
 def _after_knob(scenario: Scenario, rules: Rules, reach: Reach) -> Knob:
-    goal = events_words(reach)
-
-    def make(k: int) -> Variant:
-        return _with_reach(scenario, reach, replace(reach, after=k)), rules
-
-    def say(k: int) -> str:
-        return f"{goal} after {k} instead of {reach.after}"
-
-    earlier = whole_below(reach.after, 0)
-    return _number("after", _names(reach), f"an earlier {goal}", reach.after, earlier, make, say, reach.span, 1)
-
-
-def _within_knob(scenario: Scenario, rules: Rules, reach: Reach, within: Number) -> Knob:
-    goal = events_words(reach)
-
-    def make(k: int) -> Variant:
-        return _with_reach(scenario, reach, replace(reach, within=k)), rules
-
-    def say(k: int) -> str:
-        return f"{goal} within {k} instead of {within}"
-
-    later = whole_above(within, within + max(within, 2 * _all_time(scenario)))
-    return _number("within", _names(reach), f"a later deadline for {goal}", within, later, make, say, reach.span, 1)
+    due, names, before = reach.words.due, listed(ref.name for ref in reach.events), reach.after
+    return _number(
+        "after", names, f"an earlier {due}", before, whole_below(before, 0),
+        lambda k: (scenario.with_each(lambda each: replace(reach, after=k) if each is reach else each), rules),
+        lambda k: f"{due} after {k} instead of {before}", reach.span, 1,
+    )  # fmt: skip
 
 
 def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[Knob]:
@@ -193,17 +137,15 @@ def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[Kno
     if pace is None or not scenario.connections:
         return
 
-    def make(k: int) -> Variant:
-        changed = tuple(replace(a, mobile=k) if a.name == agent.name else a for a in scenario.agents)
-        return replace(scenario, agents=changed), rules
-
-    def say(k: int) -> str:
-        return f"a {word} {agent.shown}, mobile {k} instead of {pace}"
-
     word = "faster" if agent.controllable else "slower"
     values = whole_below(pace, 1) if agent.controllable else whole_above(pace, pace * SLOWER)
+    what, others = f"a {word} {agent.shown}", scenario.agents
     if values:
-        yield _number("agent", agent.name, f"a {word} {agent.shown}", pace, values, make, say, agent.span, 2)
+        yield _number(
+            "agent", agent.name, what, pace, values,
+            lambda k: (replace(scenario, agents=_with(others, agent, replace(agent, mobile=k))), rules),
+            lambda k: f"{what}, mobile {k} instead of {pace}", agent.span, 2,
+        )  # fmt: skip
 
 
 def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[Knob]:
@@ -213,8 +155,7 @@ def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[
         return
 
     def make(k: int) -> Variant:
-        changed = tuple(replace(e, duration=k) if e.name == event.name else e for e in scenario.events)
-        return replace(scenario, events=changed), rules
+        return replace(scenario, events=_with(scenario.events, event, replace(event, duration=k))), rules
 
     def say(k: int) -> str:
         return f"{event.shown} lasting {k} instead of {duration or 'no time'}"
@@ -249,23 +190,16 @@ def _may_be_endless(scenario: Scenario, event: Event) -> bool:
 
 
 def _distance_knobs(scenario: Scenario, rules: Rules, connection: Connection) -> Iterator[Knob]:
-    ends = f"{scenario.shown(connection.a)} and {scenario.shown(connection.b)}"
-
-    def make(k: int) -> Variant:
-        changed = tuple(replace(c, distance=k) if c == connection else c for c in scenario.connections)
-        return replace(scenario, connections=changed), rules
-
-    def say(k: int) -> str:
-        return f"{ends} at distance {k} instead of {connection.distance}"
-
+    ends, ways = f"{scenario.shown(connection.a)} and {scenario.shown(connection.b)}", scenario.connections
     if connection.distance > 1:
-        values = whole_below(connection.distance, 1)
-        label = f"a shorter way between {ends}"
-        yield _number("distance", ends, label, connection.distance, values, make, say, connection.span, 2)
-    if connection.one_way and not any((w.a, w.b) == (connection.b, connection.a) for w in scenario.connections):
-        both = tuple(replace(c, one_way=False) if c == connection else c for c in scenario.connections)
+        yield _number(
+            "distance", ends, f"a shorter way between {ends}", connection.distance, whole_below(connection.distance, 1),
+            lambda k: (replace(scenario, connections=_with(ways, connection, replace(connection, distance=k))), rules),
+            lambda k: f"{ends} at distance {k} instead of {connection.distance}", connection.span, 2,
+        )  # fmt: skip
+    if connection.one_way and not any((w.a, w.b) == (connection.b, connection.a) for w in ways):
+        freer = replace(scenario, connections=_with(ways, connection, replace(connection, one_way=False)))
         label = f"a way between {ends} in both directions"
-        freer = replace(scenario, connections=both)
         yield _switch("direction", ends, label, "one_way", (freer, rules), connection.span)
 
 
@@ -289,9 +223,14 @@ def _order_knobs(scenario: Scenario, rules: Rules) -> Iterator[Knob]:
 def _control_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[Knob]:
     if not agent.controllable and (agent.can_do or agent.mobile is not None):
         ally = replace(agent, human=True, controllable=True)
-        changed = replace(scenario, agents=tuple(ally if a.name == agent.name else a for a in scenario.agents))
+        changed = replace(scenario, agents=_with(scenario.agents, agent, ally))
         label = f"{agent.shown} following instructions (human controllable)"
         yield _switch("control", agent.name, label, "not controllable", (changed, rules), agent.span)
+
+
+def _with(parts: Tuple[_Part, ...], old: _Part, new: _Part) -> Tuple[_Part, ...]:
+    """The parts of a scenario with another one in place of `old`."""
+    return tuple(new if part == old else part for part in parts)
 
 
 def _switch(

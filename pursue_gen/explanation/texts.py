@@ -6,13 +6,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Callable, Dict, Iterator, List, Optional, Tuple
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.network_words import place_words
 from pursue_gen.explanation.play import CounterStep, Play
 from pursue_gen.language import network_names as names
-from pursue_gen.language.conditions import condition_words
-from pursue_gen.language.scenario import Always, Avoid, NeverWith, Patrol, Reach, Respond, Scenario, StatedObjective
-from pursue_gen.language.wording import answer_words, events_words, listed, missed_text, patroller, visited
+from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga.objectives import stated
 
@@ -103,14 +102,13 @@ def _remarks(scenario: Scenario, play: Play, step: CounterStep) -> Iterator[str]
     """What the step means for a deadline."""
     objectives = stated(scenario)
     for k in step.edges:
-        safety = objectives.get(play.game.automata[play.game.edges[k].automaton].name)
-        if isinstance(safety, Respond):
-            if play.game.origins[k].target == names.AT_RISK:
-                yield f" ({answer_words(safety)} is due by {time_text(step.at + safety.deadline)})"
-            elif play.game.origins[k].target == names.IDLE:
-                yield " (in time)"
-        if isinstance(safety, Patrol) and play.game.origins[k].target == names.AT_RISK:
-            yield f" ({patroller(safety)} has to be back by {time_text(step.at + safety.period)})"
+        objective = objectives.get(play.game.automata[play.game.edges[k].automaton].name)
+        if objective is None or objective.limit is None:
+            continue
+        if play.game.origins[k].target == names.AT_RISK:
+            yield f" ({objective.words.must} by {time_text(step.at + objective.limit)})"
+        elif play.game.origins[k].target == names.IDLE and objective.words.in_time:
+            yield f" ({objective.words.in_time})"
 
 
 def _ending(scenario: Scenario, play: Play) -> Tuple[TimedLine, ...]:
@@ -173,20 +171,10 @@ def _bad(scenario: Scenario, play: Play) -> str:
 
 
 def _broken(scenario: Scenario, objective: Optional[StatedObjective], play: Play) -> str:
-    if isinstance(objective, Avoid):
-        return f"{objective.event.shown} has happened, which was to be avoided"
-    if isinstance(objective, Always):
-        return f"{condition_words(objective.broken_if)}, which must never be"
-    if isinstance(objective, NeverWith):
-        here = _place(scenario, play, objective.first.name)
-        return f"{objective.first.shown} and {objective.second.shown} are together: both {here}"
-    if isinstance(objective, Respond):
-        return f"too late: {missed_text(objective)}"
-    if isinstance(objective, Patrol):
-        return f"too late: not {patroller(objective)} at {visited(objective)} for {objective.every}"
-    if isinstance(objective, Reach):
-        return f"too late: {events_words(objective)} not done within {objective.within} of the start"
-    return "the objective is broken"
+    if objective is None:
+        return "the objective is broken"
+    late = "too late: " if objective.limit is not None else ""
+    return late + objective.broken(lambda agent: f": both {_place(scenario, play, agent)}")
 
 
 def _overdue(scenario: Scenario, play: Play) -> str:

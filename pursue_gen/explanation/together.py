@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import List, Optional, Tuple
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.part import with_objectives
 from pursue_gen.language.scenario import Scenario, StatedObjective
-from pursue_gen.language.wording import listed, statement_text
+from pursue_gen.language.wording import statement_text
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of

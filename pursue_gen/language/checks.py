@@ -16,12 +16,10 @@ from pursue_gen.language.labels import check_labels
 from pursue_gen.language.messages import shown
 from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.numbers import MOST_DIGITS, Number, exact, is_fine
-from pursue_gen.language.objective_checks import check_objectives
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
-from pursue_gen.language.scenario import Agent, NeverWith, Patrol, Respond, Safety, Scenario
+from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
-from pursue_gen.language.wording import answer_text, answered_text
 
 _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
 """Codes of findings that need a scenario that was read as a whole."""
@@ -31,6 +29,9 @@ MOST_TIMES = 100
 
 MOST_METRES = 100
 """The largest number of a robot's size."""
+
+MOST_OPTIONAL = 6
+"""So many different numbers stand behind `optional` at most: each takes a game of its own."""
 
 _LONGEST = 10_000_000
 """The longest time of a movement in time units: ten times that must fit a solver's 32 bits."""
@@ -67,7 +68,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     findings += check_names(scenario)
     findings += check_references(scenario, reading.lost)
     findings += check_labels(scenario)
-    findings += check_objectives(scenario)
+    findings += _beside(scenario)
     for part in (_numbers, _too_fine, _connections, _travels, _states, _agents, _objectives, _order):
         findings += part(scenario)
     codes = {f.code for f in findings}
@@ -145,13 +146,6 @@ def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
         elif longest * agent.mobile > _LONGEST:
             message = f"{agent.name} takes more than {_LONGEST} time units for the longest way"
             yield error("PML144", message, agent.span, "choose a larger unit of time or of distance")
-    for safety in scenario.safety:
-        if isinstance(safety, Respond) and safety.deadline <= 0:
-            message = "within 0 leaves no time to answer: expected more than 0"
-            yield error("PML143", message, safety.span, "write the time units that the answer may take")
-        if isinstance(safety, Patrol) and safety.every is not None and safety.every < 2:
-            message = f"every {safety.every} leaves no time to go away and come back: expected 2 or more"
-            yield error("PML143", message, safety.span, "write the time units between two visits")
 
 
 def _size(agent: Agent) -> Iterator[Diagnostic]:
@@ -264,32 +258,48 @@ def _twice(agent: Agent) -> Iterator[Diagnostic]:
             seen.add(ref.name)
 
 
+def _beside(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Objectives that stand there twice or contradict each other, and those that can never be reached as they stand."""
+    yield from _optional(scenario)
+    lines: Dict[str, int] = {}
+    statements = [statement[0] for statement in scenario.statements]
+    for objective in sorted(statements, key=lambda each: (each.span.line, each.span.column)):
+        text = objective.text
+        if text in lines:
+            message = f"the same objective stands in line {lines[text]} already"
+            if len(objective.statement(scenario.objectives).objectives) > 1:
+                message = f"{next(objective.names())[1].name} stands twice in this patrol"
+            yield error("PML220", message, objective.span, "delete one of the two")
+        lines.setdefault(text, objective.span.line)
+    for objective in statements:
+        yield from objective.check(scenario.agents)
+    avoided = {each.breaks.event.name: each for each in scenario.safety if each.breaks.event is not None}
+    for reach in scenario.reach:
+        for ref in reach.events:
+            if ref.name in avoided:
+                message = f"{ref.name} is to be done, and line {avoided[ref.name].span.line} has it avoided"
+                yield error("PML221", message, ref.span, "delete one of the two, or name another event")
+
+
+def _optional(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Something has to be met in any case, and each number behind optional is a game to solve."""
+    if scenario.objectives and all(each.optional for each in scenario.objectives):
+        hint = "delete the optional of what matters most; whoever gives that up as well has nothing left to do"
+        yield error("PML301", "every objective is optional", scenario.objectives[0].span, hint)
+    for span in dict.fromkeys(each.span for each in scenario.patrols if each.optional and each.every is None):
+        message = "an optional patrol without every: the least period is found for what has to be promised"
+        yield error("PML303", message, span, "write how often, as in every 60, or delete optional")
+    for number in scenario.optional[MOST_OPTIONAL:]:
+        first = next(each for each in scenario.objectives if each.optional == number)
+        message = f"more than {MOST_OPTIONAL} different numbers behind optional"
+        hint = "objectives with one number are kept or given up together: use a number for several of them"
+        yield error("PML302", message, first.span, hint)
+
+
 def _objectives(scenario: Scenario) -> Iterator[Diagnostic]:
     if not scenario.objectives:
         hint = "add one: reach_objective: do e after 0, or objective: if e1 then e2 within 20"
         yield error("PML171", "the scenario has no objective", _end(scenario), hint)
-    for safety in scenario.safety:
-        yield from _safety(scenario, safety)
-
-
-def _safety(scenario: Scenario, safety: Safety) -> Iterator[Diagnostic]:
-    if isinstance(safety, Respond) and answered_text(safety) == answer_text(safety):
-        name, place = answer_text(safety), safety.span if safety.conditions else safety.events[1].span
-        kind = "condition" if safety.conditions else "event"
-        yield error("PML172", f"{name} cannot be its own answer", place, f"name the {kind} that has to follow")
-    if isinstance(safety, NeverWith):
-        start = {agent.name: agent.location.name for agent in scenario.agents}
-        first, second = safety.first.name, safety.second.name
-        if first == second:
-            yield error("PML173", f"{first} is always with itself", safety.span, "name two different agents")
-        elif first in start and start[first] == start.get(second) and _counts(safety, start[first]):
-            message = f"{first} and {second} both start in {start[first]}: the objective is lost before anything moves"
-            yield error("PML174", message, safety.span, "let one of them start somewhere else")
-
-
-def _counts(safety: NeverWith, place: str) -> bool:
-    """True if the objective forbids that both are there."""
-    return safety.place is None or safety.place.name == place
 
 
 def _order(scenario: Scenario) -> Iterator[Diagnostic]:

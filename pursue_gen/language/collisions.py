@@ -7,7 +7,7 @@ from typing import Dict, Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language import network_names as names
-from pursue_gen.language.scenario import Patrol, Scenario
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, Symbol
 
 _Stated = Tuple[Span, Sequence[Symbol]]
@@ -56,7 +56,7 @@ def _numbered(scenario: Scenario) -> Iterator[_Stated]:
     """What is made for objectives and assumptions, which have numbers and no names."""
     for number, safety in enumerate(scenario.safety):
         automaton = names.safety_objective(number)
-        turn = [Role.SAFETY_TURN(automaton)] if isinstance(safety, Patrol) and safety.order else []
+        turn = [Role.SAFETY_TURN(automaton)] if safety.order else []
         yield safety.span, [automaton, names.safety_clock(number), *turn]
     for number, reach in enumerate(scenario.reach):
         yield reach.span, [names.reach_objective(number), names.reach_clock(number), names.unlocking(number)]

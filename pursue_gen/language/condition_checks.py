@@ -6,18 +6,8 @@ from typing import Iterator
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
 from pursue_gen.language.clauses import MOST_CLAUSES, Domains, TooMany, clauses_of, holds_at_start
-from pursue_gen.language.conditions import (
-    At,
-    Atom,
-    Condition,
-    Doing,
-    Holds,
-    Who,
-    atoms,
-    condition_text,
-    condition_words,
-)
-from pursue_gen.language.scenario import Always, NeverWith, Patrol, Respond, Scenario
+from pursue_gen.language.conditions import At, Atom, Condition, Doing, Holds, atoms, condition_text, condition_words
+from pursue_gen.language.scenario import Safety, Scenario
 
 
 def check_conditions(scenario: Scenario) -> Iterator[Diagnostic]:
@@ -28,22 +18,19 @@ def check_conditions(scenario: Scenario) -> Iterator[Diagnostic]:
         senseless = [] if impossible else list(_without_sense(condition, span, domains))
         yield from impossible or senseless
         for safety in scenario.safety:
-            if isinstance(safety, Always) and safety.condition is condition and not (impossible or senseless):
+            if any(each is condition for each in safety.conditions) and not (impossible or senseless):
                 yield from _lost_at_start(scenario, safety, domains)
     for safety in scenario.safety:
-        if isinstance(safety, Respond):
-            yield from _answered(scenario, safety, domains)
-        if isinstance(safety, Patrol):
-            yield from _impossible(scenario, domains, At(safety.who, safety.place), safety.span)
-        if isinstance(safety, NeverWith) and safety.place is not None:
-            for who in (safety.first, safety.second):
-                yield from _impossible(scenario, domains, At(Who(who), safety.place), safety.span)
+        if safety.breaks.condition is None:
+            yield from _heard(scenario, safety, domains)
+        for stands in safety.breaks.stands:
+            yield from _impossible(scenario, domains, stands, safety.span)
 
 
-def _answered(scenario: Scenario, respond: Respond, domains: Domains) -> Iterator[Diagnostic]:
+def _heard(scenario: Scenario, safety: Safety, domains: Domains) -> Iterator[Diagnostic]:
     """Conditions of which no automaton could see when they come to hold, and those that are too large together."""
     events = {event.name: event for event in scenario.events}
-    for atom in (atom for condition in respond.conditions for atom in atoms(condition)):
+    for atom in (atom for condition in safety.conditions for atom in atoms(condition)):
         if not isinstance(atom, Doing):
             continue
         event, name = events[atom.event.name], atom.event.name
@@ -53,19 +40,20 @@ def _answered(scenario: Scenario, respond: Respond, domains: Domains) -> Iterato
             hint = f"name the event itself (if {name} then …), a state that it sets, or give it to one agent only"
             yield error("PML262", message, atom.event.span, hint)
     try:
-        size = sum(len(clauses_of(c, domains, value)) for c in respond.conditions for value in (True, False))
+        size = sum(len(clauses_of(c, domains, value)) for c in safety.conditions for value in (True, False))
     except TooMany:
         return  # reported with the condition
     if size > MOST_CLAUSES:
         hint = "put what belongs together into states that events set, or split it into several statements"
         message = f"these conditions, written as clauses that all have to hold, have more than {MOST_CLAUSES} of them"
-        yield error("PML233", message, respond.span, hint)
+        yield error("PML233", message, safety.span, hint)
 
 
-def _lost_at_start(scenario: Scenario, safety: Always, domains: Domains) -> Iterator[Diagnostic]:
+def _lost_at_start(scenario: Scenario, safety: Safety, domains: Domains) -> Iterator[Diagnostic]:
     """An objective that is broken before anything has happened."""
-    if holds_at_start(safety.broken_if, scenario, domains):
-        message = f"the objective is lost before anything moves: {condition_words(safety.broken_if)}"
+    broken = safety.breaks.condition
+    if broken is not None and holds_at_start(broken, scenario, domains):
+        message = f"the objective is lost before anything moves: {condition_words(broken)}"
         hint = "let agents start somewhere else, start the states with other values, or correct the condition"
         yield error("PML234", message, safety.span, hint)
 

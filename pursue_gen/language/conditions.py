@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Callable, Iterator, Optional, Tuple, Union
 
 from pursue_gen.language.refs import Ref
@@ -70,6 +70,7 @@ class AnyOf:
 
 Atom = Union[At, OnWay, Doing, Holds]
 Condition = Union[At, OnWay, Doing, Holds, Not, AllOf, AnyOf]
+EventOrCondition = Union[Ref, Condition]
 
 
 def atoms(condition: Condition) -> Iterator[Atom]:
@@ -95,6 +96,20 @@ def names_in(condition: Condition) -> Iterator[Tuple[str, Ref]]:
             yield "POI", atom.place
         elif isinstance(atom, Doing):
             yield "event", atom.event
+
+
+def held_by(condition: Condition, robot: Ref) -> Condition:
+    """A condition that holds only while the first one does: where any robot would do, it is this one."""
+    if isinstance(condition, (AllOf, AnyOf)):
+        return replace(condition, parts=tuple(held_by(part, robot) for part in condition.parts))
+    if isinstance(condition, (At, OnWay, Doing)):
+        return replace(condition, who=by_robot(condition.who, robot))
+    return condition
+
+
+def by_robot(who: Who, robot: Ref) -> Who:
+    """This robot where any robot would do; else the same."""
+    return Who(robot) if who.agent is None and who.robots else who
 
 
 def condition_text(condition: Condition) -> str:

@@ -9,7 +9,7 @@ from pursue_gen.language.collisions import check_collisions
 from pursue_gen.language.conditions import names_in
 from pursue_gen.language.labels import LABELLED, why_no_label
 from pursue_gen.language.messages import RESERVED, shown
-from pursue_gen.language.scenario import Patrol, Ref, RuleBody, Scenario
+from pursue_gen.language.scenario import Ref, RuleBody, Scenario
 from pursue_gen.language.similar import Similar, closest
 from pursue_gen.language.usable import LONGEST, fitting, proposal, reserved, well_formed
 
@@ -168,12 +168,7 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
         yield from all_of("event", [getattr(assumption, "event", None)])
         yield from all_of("POI", [getattr(assumption, "place", None)])
     for objective in scenario.objectives:
-        yield from all_of("event", [getattr(objective, "event", None)])
-        yield from all_of("event", getattr(objective, "events", ()))
-        for field in ("first", "second"):
-            yield from all_of("agent", [getattr(objective, field, None)])
-        yield from all_of("POI", [getattr(objective, "place", None)])
-        yield from all_of("agent", [objective.who.agent] if isinstance(objective, Patrol) else [])
+        yield from ((kind, ref.name, ref.span) for kind, ref in objective.names())
 
 
 def _file_name(scenario: Scenario) -> Iterator[Diagnostic]:

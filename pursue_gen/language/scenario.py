@@ -4,18 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Collection, Dict, Iterator, Tuple, Union
+from typing import Any, Callable, Collection, Dict, Iterator, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Span
-from pursue_gen.language.assumptions import (
-    AboutOne,
-    Assumption,
-    AtMost,
-    Leaves,
-    NeverAt,
-    NeverHolds,
-    Waits,
-)
+from pursue_gen.language.assumptions import AboutOne, Assumption, AtMost, Leaves, NeverAt, NeverHolds, Waits
 from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, Holds, Not, OnWay, Who
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.objectives import (
@@ -29,6 +21,7 @@ from pursue_gen.language.objectives import (
     Safety,
     StatedObjective,
     WhyGivenUp,
+    patrols_in,
 )
 from pursue_gen.language.parts import (
     Agent,
@@ -99,12 +92,15 @@ class Scenario:
     def giving_up(self, numbers: Collection[int], why: WhyGivenUp = WhyGivenUp.IMPOSSIBLE) -> Scenario:
         """The scenario with these of its optional objectives given up."""
         given_up = (GivenUp(each, why) for each in self.objectives if each.optional in numbers)
-        return replace(
-            self,
-            safety=tuple(each for each in self.safety if each.optional not in numbers),
-            reach=tuple(each for each in self.reach if each.optional not in numbers),
-            given_up=tuple(sorted((*self.given_up, *given_up), key=lambda each: each.objective.optional)),
-        )
+        in_order = tuple(sorted((*self.given_up, *given_up), key=lambda each: each.objective.optional))
+        kept = self.with_each(lambda each: None if each.optional in numbers else each)
+        return replace(kept, given_up=in_order)
+
+    def with_each(self, changed: Callable[[Any], Optional[StatedObjective]]) -> Scenario:
+        """The scenario with what `changed` makes of each objective; without it where that is None."""
+        safety: Tuple[Any, ...] = tuple(new for new in map(changed, self.safety) if new is not None)
+        reach: Tuple[Any, ...] = tuple(new for new in map(changed, self.reach) if new is not None)
+        return replace(self, safety=safety, reach=reach)
 
     @property
     def objectives(self) -> Tuple[StatedObjective, ...]:
@@ -135,12 +131,17 @@ class Scenario:
         able = (agent for agent in self.agents if any(ref.name in named for ref in agent.can_do))
         return tuple(agent for agent in able if agent.is_robot or rule.each == "agent")
 
+    @cached_property
+    def patrols(self) -> Tuple[Patrol, ...]:
+        """The patrols among its objectives, one for each place."""
+        return patrols_in(self.safety)
+
     @property
     def statements(self) -> Tuple[Tuple[StatedObjective, ...], ...]:
         """All objectives, those in one part that have a meaning together only: the places of a patrol in order."""
         found: Dict[object, Tuple[StatedObjective, ...]] = {}
         for number, each in enumerate(self.objectives):
-            key = each.span if isinstance(each, Patrol) and each.order else number
+            key = each.span if each.order else number
             found[key] = (*found.get(key, ()), each)
         return tuple(found.values())
 
@@ -151,11 +152,7 @@ class Scenario:
             if part.only_if is not None:
                 yield part.only_if, part.span
         for safety in self.safety:
-            condition = getattr(safety, "condition", None)
-            if condition is not None:
-                yield condition, safety.span
-            for condition in getattr(safety, "conditions", ()):
-                yield condition, safety.span
+            yield from ((condition, safety.span) for condition in safety.conditions)
         for assumption in self.assumptions:
             condition = getattr(assumption, "condition", None)
             if condition is not None:

@@ -2,33 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Dict, Iterable, Iterator, List
+from typing import Dict, List
 
-from pursue_gen.language.conditions import condition_text, condition_words
+from pursue_gen.diagnostics import units
+from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import (
     Agent,
-    Always,
     Assumption,
     AtMost,
-    Avoid,
     Battery,
     Leaves,
     NeverHolds,
-    NeverWith,
-    Patrol,
-    Reach,
-    Ref,
-    Respond,
     Scenario,
     StatedObjective,
     Waits,
 )
-
-
-def units(amount: str) -> str:
-    """`1 unit`, `2 units`."""
-    return f"{amount} unit{'' if amount == '1' else 's'}"
 
 
 def objective_words(scenario: Scenario) -> List[str]:
@@ -38,7 +27,7 @@ def objective_words(scenario: Scenario) -> List[str]:
 
 def objective_sentence(scenario: Scenario, objective: StatedObjective) -> str:
     """What one objective wants, as a sentence, with its number where it is optional."""
-    text = _sentence(scenario, objective)
+    text = objective.sentence(scenario.shown)
     return f"Optional {objective.optional}: {text}" if objective.optional else text
 
 
@@ -49,156 +38,24 @@ def promise_words(scenario: Scenario) -> List[str]:
     """
     said: Dict[int, str] = {}
     for number in scenario.optional:
-        texts = (objective_text(each) for each in scenario.objectives if each.optional == number)
+        texts = (each.text for each in scenario.objectives if each.optional == number)
         said[number] = f"optional {number} is promised: {'; '.join(texts)}"
     for one in scenario.given_up:
         number = one.objective.optional
-        texts = (objective_text(each.objective) for each in scenario.given_up if each.objective.optional == number)
+        texts = (each.objective.text for each in scenario.given_up if each.objective.optional == number)
         said[number] = f"optional {number} is given up, it {one.why.value}: {'; '.join(texts)}"
     return [said[number] for number in sorted(said)]
 
 
-def _sentence(scenario: Scenario, objective: StatedObjective) -> str:
-    if isinstance(objective, Respond):
-        trigger, response, deadline = objective.trigger, objective.response, units(str(objective.deadline))
-        if isinstance(trigger, Ref):
-            begins = f"Whenever {trigger.shown} happens"
-        else:
-            begins = f"Whenever it becomes true that {condition_words(trigger)}"
-        answer = f"{response.shown} happens" if isinstance(response, Ref) else condition_words(response)
-        return f"{begins}, {answer} within {deadline}."
-    if isinstance(objective, Avoid):
-        return f"{objective.event.shown} never happens."
-    if isinstance(objective, NeverWith):
-        where = "at one place or on one connection" if objective.place is None else f"both at {objective.place.shown}"
-        return f"{objective.first.shown} and {objective.second.shown} are never {where}."
-    if isinstance(objective, Patrol):
-        every = _every(objective)
-        if objective.order:
-            places = listed(map(scenario.shown, objective.order))
-            return f"{patroller(objective)} visits {places} in this order, each {every}."
-        return f"{patroller(objective)} is at {objective.place.shown} {every}."
-    if isinstance(objective, Always):
-        return f"It {'always' if objective.holds else 'never'} holds that {condition_words(objective.condition)}."
-    after = f" later than {units(str(objective.after))} after the start" if objective.after else ""
-    within = "" if objective.within is None else f" within {units(str(objective.within))} after the start"
-    verb = "happens" if len(objective.events) == 1 else "happen, in any order,"
-    when = f"{after} and{within}" if after and within else after or within
-    return f"{listed(ref.shown for ref in objective.events)} {verb}{when}".rstrip(",") + "."
-
-
-def _every(patrol: Patrol) -> str:
-    """How often a place is visited."""
-    if patrol.every is None:
-        return "as often as can be promised"
-    every = f"at least every {units(str(patrol.every))}"
-    if patrol.least is None:
-        return every
-    if patrol.least >= patrol.every:
-        return f"{every}, the least that can be promised"
-    return f"{every}; nothing below {patrol.least} can be promised"
-
-
 def periods_found(scenario: Scenario, won: bool = True) -> List[str]:
     """A sentence for each patrol whose period was found by solving, as far as the verdict says something about it."""
-    found = (each for each in scenario.safety if isinstance(each, Patrol))
-    return list(dict.fromkeys(sentence for each in found for sentence in _period(each, won)))
-
-
-def _period(patrol: Patrol, won: bool) -> Iterator[str]:
-    who, every, least = f"the patrol by {patroller(patrol)}", patrol.every, patrol.least
-    if every is None or least is None:
-        return
-    if won and least == every:
-        yield f"The least period that can be promised for {who} is {units(str(every))}."
-    elif won:
-        yield f"The least period for {who} is at most {units(str(every))}; nothing below {least} can be promised."
-    elif least > every:
-        yield f"No period up to {units(str(every))} can be promised for {who}."
-
-
-def patroller(patrol: Patrol) -> str:
-    """Who is to be at the place: an agent's name, or `any robot`."""
-    return "any robot" if patrol.who.agent is None else patrol.who.agent.shown
-
-
-def answered_text(respond: Respond) -> str:
-    """What has to be answered: the name of an event, or a condition as it is written."""
-    return respond.trigger.name if isinstance(respond.trigger, Ref) else condition_text(respond.trigger)
-
-
-def answer_text(respond: Respond) -> str:
-    """The answer: the name of an event, or a condition as it is written."""
-    return respond.response.name if isinstance(respond.response, Ref) else condition_text(respond.response)
-
-
-def answered_words(respond: Respond) -> str:
-    """What has to be answered, with what people read: an event's label, or a condition as it is written."""
-    return respond.trigger.shown if isinstance(respond.trigger, Ref) else condition_text(respond.trigger)
-
-
-def answer_words(respond: Respond) -> str:
-    """The answer, with what people read: an event's label, or a condition as it is written."""
-    return respond.response.shown if isinstance(respond.response, Ref) else condition_text(respond.response)
-
-
-def missed_text(respond: Respond) -> str:
-    """What is wrong where the answer does not come, as in `no wave within 5 of fall`."""
-    no = "no" if isinstance(respond.response, Ref) else "not once"
-    return f"{no} {answer_words(respond)} within {respond.deadline} of {answered_words(respond)}"
-
-
-def visited(patrol: Patrol) -> str:
-    """Where a visit is due: a place, in its turn where the places have an order."""
-    return f"{patrol.place.shown}, in its turn," if patrol.order else patrol.place.shown
-
-
-def listed(names: Iterable[str]) -> str:
-    """`a`, `a and b`, `a, b and c`."""
-    *others, last = names
-    return f"{', '.join(others)} and {last}" if others else last
-
-
-def events_words(reach: Reach) -> str:
-    """The events that are to be achieved, as in `load and unload`."""
-    return listed(ref.shown for ref in reach.events)
-
-
-def _by(patrol: Patrol) -> str:
-    return "any robot" if patrol.who.agent is None else patrol.who.agent.name
-
-
-def objective_text(objective: StatedObjective) -> str:
-    """An objective as its author may write it, without the word that begins the statement; of a patrol in order the
-    whole statement."""
-    if isinstance(objective, Respond):
-        return f"if {answered_text(objective)} then {answer_text(objective)} within {objective.deadline}"
-    if isinstance(objective, Avoid):
-        return f"avoid {objective.event.name}"
-    if isinstance(objective, NeverWith):
-        place = "" if objective.place is None else f" at {objective.place.name}"
-        return f"{objective.first.name} never_with {objective.second.name}{place}"
-    if isinstance(objective, Patrol):
-        return patrol_text(objective, (objective.place.name,))
-    if isinstance(objective, Always):
-        return f"{'always' if objective.holds else 'avoid'} {condition_text(objective.condition)}"
-    after = f" after {objective.after}" if objective.after else ""
-    within = "" if objective.within is None else f" within {objective.within}"
-    return f"do {' and '.join(ref.name for ref in objective.events)}{after}{within}"
-
-
-def patrol_text(patrol: Patrol, places: Iterable[str]) -> str:
-    """A patrol of these places, or of those that have an order with its place."""
-    some = f"{', '.join(patrol.order)} in order" if patrol.order else ", ".join(places)
-    every = "" if patrol.every is None else f" every {patrol.every}"
-    return f"patrol {some}{every} by {_by(patrol)}"
+    return list(dict.fromkeys(sentence for each in scenario.patrols for sentence in each.period_found(won)))
 
 
 def statement_text(objective: StatedObjective) -> str:
     """The whole statement, as in `objective: avoid e`."""
-    word = "reach_objective" if isinstance(objective, Reach) else "objective"
     optional = f"optional {objective.optional} " if objective.optional else ""
-    return f"{optional}{word}: {objective_text(objective)}"
+    return f"{optional}{objective.word}: {objective.text}"
 
 
 def assumption_words(assumption: Assumption) -> str:
@@ -214,9 +71,9 @@ def assumption_words(assumption: Assumption) -> str:
             else (f"{name} never does {assumption.event.shown}")
         )
     if isinstance(assumption, Waits):
-        return f"{name} waits {units(str(assumption.time))} between one {assumption.event.shown} and the next"
+        return f"{name} waits {units(assumption.time)} between one {assumption.event.shown} and the next"
     if isinstance(assumption, Leaves):
-        return f"{name} leaves {assumption.place.shown} within {units(str(assumption.time))}"
+        return f"{name} leaves {assumption.place.shown} within {units(assumption.time)}"
     return f"{name} is never at {assumption.place.shown}"
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Sequence, Set, Tuple
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.language.clauses import Domains
 from pursue_gen.language.conditions import Holds, atoms
-from pursue_gen.language.scenario import Agent, Patrol, Scenario
-from pursue_gen.language.wording import listed
+from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.synthesis.strategy import Strategy
 
 
@@ -47,7 +47,7 @@ def _present(scenario: Scenario) -> Set[str]:
         for atom in atoms(condition):
             if not isinstance(atom, Holds):
                 found.update(domains.among(atom.who))
-    for patrol in (each for each in scenario.safety if isinstance(each, Patrol)):
+    for patrol in scenario.patrols:
         places = patrol.order or (patrol.place.name,)
         found.update(agent.name for agent in scenario.on_patrol(patrol) if agent.location.name in places)
     return found

@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import AbstractSet, Callable, Dict, Iterator, Optional, Set, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, warning
+from pursue_gen.diagnostics import Diagnostic, listed, warning
 from pursue_gen.language.scenario import Assumption, AtMost, Scenario
-from pursue_gen.language.wording import assumption_words, listed
+from pursue_gen.language.wording import assumption_words
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import NO_CHANNEL, Game, initial_state, joint_moves
 from pursue_gen.tga import translate

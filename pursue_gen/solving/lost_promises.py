@@ -12,8 +12,8 @@ from fractions import Fraction
 from itertools import combinations, islice
 from typing import Iterable, List, Optional, Sequence, Tuple
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.language.scenario import Scenario, StatedObjective
-from pursue_gen.language.wording import listed, objective_text
 from pursue_gen.outcomes import LimitHit, Lost
 from pursue_gen.solving.freer import standing, with_one_walk, without_turns
 from pursue_gen.solving.options import SolveOptions
@@ -159,4 +159,4 @@ def in_words(problem: Lost, scenario: Scenario) -> Lost:
 
 def quoted(objective: StatedObjective) -> str:
     """An objective as it is written, with its line."""
-    return f'"{objective_text(objective)}" (line {objective.span.line})'
+    return f'"{objective.text}" (line {objective.span.line})'

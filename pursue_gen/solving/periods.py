@@ -46,7 +46,7 @@ _WALKS = 2
 
 def without_period(scenario: Scenario) -> Tuple[Patrol, ...]:
     """The patrols whose period is to be found."""
-    return tuple(each for each in scenario.safety if isinstance(each, Patrol) and each.every is None)
+    return tuple(each for each in scenario.patrols if each.every is None)
 
 
 def with_period(scenario: Scenario, every: int, least: Optional[int] = None) -> Scenario:
@@ -54,12 +54,10 @@ def with_period(scenario: Scenario, every: int, least: Optional[int] = None) -> 
 
     `least`: nothing below it can be promised, where that is known.
     """
-    safety = tuple(
-        replace(each, every=every, least=least) if isinstance(each, Patrol) and each.every is None else each
-        for each in scenario.safety
-    )
+    changed = {id(each): replace(each, every=every, least=least) for each in without_period(scenario)}
     edits = [_every(scenario.text, span, every) for span in {each.span for each in without_period(scenario)}]
-    return replace(scenario, safety=safety, text=edited(scenario.text, edits))
+    text = edited(scenario.text, edits)
+    return replace(scenario.with_each(lambda each: changed.get(id(each), each)), text=text)
 
 
 def _every(text: str, span: Span, every: int) -> Edit:
@@ -119,9 +117,9 @@ def quickly_found(scenario: Scenario) -> List[str]:
     """What little work finds out about the least period in the default game, in sentences; nothing if that is open."""
     limits = Limits(work=_LITTLE, memory=careful_memory())
     found = least_period(scenario, Rules(), SolveOptions(limits=limits))
-    patrols = [each for each in found.safety if isinstance(each, Patrol) and each.least is not None]
-    decided = [each for each in patrols if each.least is not None and each.least >= each.period]
-    return periods_found(found, won=decided[0].least == decided[0].period) if decided else []
+    patrols = [each for each in found.patrols if each.least is not None]
+    decided = [each for each in patrols if each.least is not None and each.least >= each.known_limit]
+    return periods_found(found, won=decided[0].least == decided[0].known_limit) if decided else []
 
 
 def longest(scenario: Scenario) -> int:

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import Collection, Iterator, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, warning
-from pursue_gen.language.scenario import Assumption, Patrol, Safety, Scenario
-from pursue_gen.language.wording import assumption_words, objective_text
+from pursue_gen.language.scenario import Assumption, Safety, Scenario
+from pursue_gen.language.wording import assumption_words
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.budget import Budget
@@ -27,7 +27,7 @@ def check_assumed_alone(scenario: Scenario) -> Iterator[Diagnostic]:
     budget = Budget(Limits(work=_WORK, memory=careful_memory()))
     try:
         for objective in scenario.safety:
-            if isinstance(objective, Patrol):  # places are visited by robots alone
+            if objective.breaks.by_robots:
                 continue
             everything = scenario.assumptions
             if not _holds(scenario, objective, everything, budget) or _holds(scenario, objective, (), budget):
@@ -35,7 +35,7 @@ def check_assumed_alone(scenario: Scenario) -> Iterator[Diagnostic]:
             singles = ((each,) for each in everything)
             enough = next((one for one in singles if _holds(scenario, objective, one, budget)), everything)
             why = " and ".join(assumption_words(each) for each in enough)
-            message = f"{objective_text(objective)}: this holds without anything that robots do, as long as {why}"
+            message = f"{objective.text}: this holds without anything that robots do, as long as {why}"
             hint = "assume less where the robots are to see to it; else delete the objective"
             yield warning("PML265", message, objective.span, hint)
     except LimitHit:

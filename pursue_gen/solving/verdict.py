@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Optional, Tuple, Union
 from pursue_gen.diagnostics import PursueError, as_json, counted
 from pursue_gen.language.numbers import decimal_text
 from pursue_gen.language.objectives import WhyGivenUp
-from pursue_gen.language.scenario import Patrol, Scenario
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT
 from pursue_gen.proof.margin import USUAL, Margin, decides_ends, describe, game_margin, strategy_margin
@@ -89,8 +89,7 @@ def periods_json(scenario: Scenario) -> Dict[str, Any]:
 
     It is `every` time units; nothing below `least` can be promised.
     """
-    patrols = (each for each in scenario.safety if isinstance(each, Patrol) and each.least is not None)
-    found = [{"every": patrol.every, "least": patrol.least} for patrol in patrols]
+    found = [{"every": each.every, "least": each.least} for each in scenario.patrols if each.least is not None]
     return {"period": found[0]} if found else {}
 
 

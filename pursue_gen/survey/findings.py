@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import AbstractSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, warning
+from pursue_gen.diagnostics import Diagnostic, listed, warning
 from pursue_gen.drawing.clearance import Clearance
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.rewriting import Movement
@@ -113,5 +113,4 @@ def other_unit(
 def _listed(names: Iterable[str]) -> str:
     """`a, b and c`, cut where there are many."""
     known: List[str] = list(names)
-    shown = known[:_SOME] + (["…"] if len(known) > _SOME else [])
-    return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"
+    return listed(known[:_SOME] + (["…"] if len(known) > _SOME else []))

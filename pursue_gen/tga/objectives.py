@@ -3,29 +3,18 @@
 from __future__ import annotations
 
 from itertools import combinations
-from typing import Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Type
 
 from pursue_gen.diagnostics import error
 from pursue_gen.language import network_names as names
 from pursue_gen.language.network_names import IDLE, LOSE, agent_position
-from pursue_gen.language.scenario import (
-    Always,
-    Avoid,
-    NeverWith,
-    Patrol,
-    Reach,
-    Ref,
-    Respond,
-    Safety,
-    Scenario,
-    StatedObjective,
-)
+from pursue_gen.language.objectives.base import Breaks
+from pursue_gen.language.scenario import Patrol, Reach, Respond, Safety, Scenario, StatedObjective
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.outcomes import Invalid
-from pursue_gen.tga.conditions import Conditions
+from pursue_gen.tga.agents import Surroundings
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Objective, Sync, Test
 from pursue_gen.tga.patrols import patrol_automaton
-from pursue_gen.tga.positions import Positions
 from pursue_gen.tga.responses import respond_automaton
 
 Happened = Mapping[str, str]
@@ -101,56 +90,37 @@ def _done(events: Sequence[int], count: int) -> str:
     return names.did(*(k + 1 for k in sorted(events))) if events else names.UNLOCKED
 
 
-def events_done(reach: Reach, location: str) -> Tuple[Ref, ...]:
-    """The events that have happened in a location of a reach objective's automaton, some and not all."""
-    done = Symbol.of(location)
-    return tuple(reach.events[int(k) - 1] for k in done.parts) if done.role is Role.DID else ()
-
-
-def safety_automaton(
-    safety: Safety, scenario: Scenario, positions: Positions, conditions: Conditions, number: int = 0
-) -> Automaton:
+def safety_automaton(safety: Safety, around: Surroundings, number: int = 0) -> Automaton:
     """The automaton that goes to `lose` when the safety objective of the scenario is broken."""
-    happened = {event.name: names.has_happened(event) for event in scenario.events}
-    name, locations = names.safety_objective(number), (Location(IDLE), Location(LOSE))
-    if isinstance(safety, Respond):
-        return respond_automaton(safety, scenario, conditions, number)
-    if isinstance(safety, Avoid):
-        lose = Edge(IDLE, LOSE, sync=Sync(happened[safety.event.name], sends=False))
-        return Automaton(name, locations, IDLE, (lose,))
-    if isinstance(safety, Patrol):
-        return patrol_automaton(safety, scenario, positions, number)
-    if isinstance(safety, Always):
-        broken = conditions.ways_to_hold(safety.broken_if)
-        edges = tuple(Edge(IDLE, LOSE, Guard(integers=guard), controllable=False) for guard in broken)
-        return Automaton(name, locations, IDLE, edges)
-    return Automaton(name, locations, IDLE, _never_with(safety, positions))
+    if safety.breaks.begins is not None:
+        return _WITH_LIMIT[type(safety)](safety, around, number)
+    name, breaks = names.safety_objective(number), safety.breaks
+    broken = [] if breaks.condition is None else around.conditions.ways_to_hold(breaks.condition)
+    edges = [Edge(IDLE, LOSE, Guard(integers=one), controllable=False) for one in (*broken, *_together(breaks, around))]
+    if breaks.event is not None:
+        happened = names.has_happened(around.event(breaks.event.name))
+        edges.append(Edge(IDLE, LOSE, sync=Sync(happened, sends=False)))
+    return Automaton(name, (Location(IDLE), Location(LOSE)), IDLE, tuple(edges))
 
 
-def _never_with(safety: NeverWith, positions: Positions) -> Tuple[Edge, ...]:
-    """The environment may strike whenever both agents share a POI (idle or at work) or a connection, either way.
+def _together(breaks: Breaks, around: Surroundings) -> Iterator[Tuple[Clause, ...]]:
+    """The environment may strike whenever a pair of agents shares a POI (idle or at work) or a connection, either way.
 
     Where the objective names a place, that POI alone counts.
     """
-    shared: List[Tuple[int, int]] = [(positions.at(poi), positions.doing(poi)) for poi in positions.pois]
-    shared += [
-        (code, positions.going(b, a))
-        for (a, b), code in positions.ways.items()
-        if positions.pois[a] < positions.pois[b]
+    positions, place = around.positions, breaks.place
+    shared: List[Tuple[int, int]] = [
+        (positions.at(poi), positions.doing(poi)) for poi in positions.pois if place in (None, poi)
     ]
+    if place is None:
+        ways = positions.ways.items()
+        shared += [(code, positions.going(b, a)) for (a, b), code in ways if positions.pois[a] < positions.pois[b]]
+    for codes in shared if breaks.pair else ():
+        yield tuple(tuple(Test(agent_position(agent), code) for code in codes) for agent in breaks.pair)
 
-    if safety.place is not None:
-        shared = [(positions.at(safety.place.name), positions.doing(safety.place.name))]
 
-    def among(agent: str, codes: Tuple[int, int]) -> Clause:
-        return tuple(Test(agent_position(agent), code) for code in codes)
-
-    return tuple(
-        Edge(
-            IDLE,
-            LOSE,
-            Guard(integers=(among(safety.first.name, codes), among(safety.second.name, codes))),
-            controllable=False,
-        )
-        for codes in shared
-    )
+_WITH_LIMIT: Mapping[Type[Safety], Callable[[Any, Surroundings, int], Automaton]] = {
+    Respond: respond_automaton,
+    Patrol: patrol_automaton,
+}
+"""What makes the automata in which the time runs that something may take, for each kind of objective."""

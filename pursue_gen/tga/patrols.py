@@ -7,8 +7,9 @@ from typing import Dict, FrozenSet, Iterator, List, Sequence, Tuple
 from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Domains
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
-from pursue_gen.language.scenario import Agent, Patrol, Respond, Scenario
+from pursue_gen.language.scenario import Agent, Patrol, Scenario
 from pursue_gen.language.symbols import Role
+from pursue_gen.tga.agents import Surroundings
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.positions import Positions
 from pursue_gen.tga.responses import awaited_by
@@ -18,12 +19,11 @@ _NOTHING: Tuple[Tuple[str, int], ...] = ()
 
 def awaited(scenario: Scenario) -> FrozenSet[Tuple[str, str]]:
     """The agents with the POIs to whose arrival there an objective listens: these edges have a channel."""
-    patrols = (each for each in scenario.safety if isinstance(each, Patrol))
-    found = {(agent.name, each.place.name) for each in patrols for agent in scenario.on_patrol(each)}
-    duties = [each for each in scenario.safety if isinstance(each, Respond) and each.conditions]
-    if duties:
+    found = {(agent.name, each.place.name) for each in scenario.patrols for agent in scenario.on_patrol(each)}
+    heard = [condition for each in scenario.safety if each.breaks.condition is None for condition in each.conditions]
+    if heard:
         domains = Domains(scenario)
-        found.update(pair for each in duties for pair in awaited_by(each, scenario, domains))
+        found.update(pair for condition in heard for pair in awaited_by(condition, scenario, domains))
     return frozenset(found)
 
 
@@ -40,7 +40,7 @@ def turns(scenario: Scenario) -> Tuple[Tuple[str, int], ...]:
     """For each patrol in order the variable that says which of its places is next, the first being 0, and its value at
     the start."""
     found: Dict[str, int] = {}
-    for patrol in (each for each in scenario.safety if isinstance(each, Patrol) and each.order):
+    for patrol in (each for each in scenario.patrols if each.order):
         found.setdefault(_turn(patrol, scenario), _begun(patrol, scenario) % len(patrol.order))
     return tuple(found.items())
 
@@ -57,14 +57,15 @@ def _begun(patrol: Patrol, scenario: Scenario) -> int:
     return next((k for k, place in enumerate(patrol.order) if place not in occupied), len(patrol.order))
 
 
-def patrol_automaton(patrol: Patrol, scenario: Scenario, positions: Positions, number: int) -> Automaton:
+def patrol_automaton(patrol: Patrol, around: Surroundings, number: int) -> Automaton:
     """`patrol p every T by A`: idle while A, or one of the robots, is there; else a deadline is running.
 
     It runs from the moment at which the last one leaves, or from the start. In order, an arrival counts only when it is
     the place's turn, and makes it that of the next one.
     """
-    clock, place, agents = names.safety_clock(number), patrol.place.name, scenario.on_patrol(patrol)
-    due = Location(AT_RISK, (ClockBound(clock, "<=", patrol.period),))
+    scenario, clock, place = around.scenario, names.safety_clock(number), patrol.place.name
+    agents = scenario.on_patrol(patrol)
+    due = Location(AT_RISK, (ClockBound(clock, "<=", patrol.known_limit),))
     there = any(agent.location.name == place for agent in agents)
     guard, assign = Guard(), _NOTHING
     if patrol.order:
@@ -72,7 +73,7 @@ def patrol_automaton(patrol: Patrol, scenario: Scenario, positions: Positions, n
         guard, assign = Guard(integers=((Test(turn, k),),)), ((turn, (k + 1) % len(patrol.order)),)
         there = k < _begun(patrol, scenario)
     edges: List[Edge] = []
-    elsewhere = {agent.name: _elsewhere(agent, place, positions) for agent in agents}
+    elsewhere = {agent.name: _elsewhere(agent, place, around.positions) for agent in agents}
     for agent in agents:
         others = [clause for name, clause in elsewhere.items() if name != agent.name]
         for a, b in scenario.movements(agent):

@@ -14,25 +14,25 @@ from pursue_gen.language.clauses import Clauses, Domains, clauses_of, holds_at_s
 from pursue_gen.language.conditions import At, Condition, Holds, OnWay, atoms
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.language.scenario import Ref, Respond, Scenario
+from pursue_gen.tga.agents import Surroundings
 from pursue_gen.tga.changes import Change, arriving, happening, setting_off
-from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Sync
 
 _Moves = Dict[str, Change]
 
 
-def awaited_by(respond: Respond, scenario: Scenario, domains: Domains) -> Iterator[Tuple[str, str]]:
-    """The agents with the POIs at which their arrival changes one of its conditions."""
-    for condition in respond.conditions:
-        for atom in atoms(condition):
-            if isinstance(atom, (At, OnWay)):
-                places = [atom.place.name] if isinstance(atom, At) else [poi.name for poi in scenario.pois]
-                yield from ((agent, place) for agent in domains.among(atom.who) for place in places)
+def awaited_by(condition: Condition, scenario: Scenario, domains: Domains) -> Iterator[Tuple[str, str]]:
+    """The agents with the POIs at which their arrival changes the condition."""
+    for atom in atoms(condition):
+        if isinstance(atom, (At, OnWay)):
+            places = [atom.place.name] if isinstance(atom, At) else [poi.name for poi in scenario.pois]
+            yield from ((agent, place) for agent in domains.among(atom.who) for place in places)
 
 
-def respond_automaton(respond: Respond, scenario: Scenario, conditions: Conditions, number: int) -> Automaton:
+def respond_automaton(respond: Respond, around: Surroundings, number: int) -> Automaton:
     """The automaton of a duty to answer within a deadline: it is at risk from what is to be answered to the answer."""
-    clock, domains = names.safety_clock(number), conditions.domains
+    scenario, conditions, clock = around.scenario, around.conditions, names.safety_clock(number)
+    domains = conditions.domains
     trigger, response = respond.trigger, respond.response
     due, answered = _moves(trigger, scenario, domains), _moves(response, scenario, domains)
     edges: List[Edge] = []

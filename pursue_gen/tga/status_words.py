@@ -7,12 +7,12 @@ from typing import Dict, Iterator, List, Mapping, Tuple
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.batteries import levels
-from pursue_gen.language.scenario import AtMost, Patrol, Reach, Respond, Scenario, StatedObjective
+from pursue_gen.language.scenario import AtMost, Scenario
 from pursue_gen.language.symbols import Role, Symbol, role_of
-from pursue_gen.language.wording import answer_words, assumption_words, events_words, listed, objective_text
+from pursue_gen.language.wording import assumption_words
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Automaton, Network
-from pursue_gen.tga.objectives import events_done, stated
+from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.own_turns import own_turns
 
 
@@ -50,13 +50,11 @@ def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
     found += [Status(name, _shown_of(scenario, name), texts) for name, texts in own_words(network).items()]
     found += _assumptions(scenario)
     for name, objective in stated(scenario).items():
-        if isinstance(objective, Patrol) and objective.order and names.rule_turn(name) in variables:
+        if objective.order and names.rule_turn(name) in variables:
             following = {str(k): f"next: {scenario.shown(place)}" for k, place in enumerate(objective.order)}
-            found.append(Status(names.rule_turn(name), objective_text(objective), following))
-        places = [place.name for place in network.automaton(name).locations]
-        in_turn = f": {objective.place.shown}" if isinstance(objective, Patrol) and objective.order else ""
-        texts = {place: _duty(objective, place) for place in places}
-        found.append(Status(name, objective_text(objective) + in_turn, texts))
+            found.append(Status(names.rule_turn(name), objective.text, following))
+        texts = {place.name: objective.status(place.name) for place in network.automaton(name).locations}
+        found.append(Status(name, objective.text + objective.words.which, texts))
     return tuple(found)
 
 
@@ -115,18 +113,3 @@ def _assumptions(scenario: Scenario) -> Iterator[Status]:
             label = f"{assumption.event.shown} by {assumption.agent.shown}"
             done = {str(times): f"{times} of {assumption.times} times" for times in range(assumption.times + 1)}
             yield Status(names.assumption_count(number), label, done)
-
-
-def _duty(objective: StatedObjective, location: str) -> str:
-    """What an objective is at in a location of its automaton."""
-    texts = {Role.IDLE: "kept", Role.AT_RISK: "a deadline is running", Role.LOSE: "broken"}
-    if isinstance(objective, Reach):
-        done = [ref.shown for ref in events_done(objective, location)]
-        texts = {Role.START: "not counting yet", Role.UNLOCKED: f"{events_words(objective)} to be done"}
-        texts.update({Role.WIN: "reached", Role.LATE: "too late", Role.DID: f"{listed(done)} done" if done else ""})
-    elif isinstance(objective, Respond):
-        texts.update({Role.IDLE: "nothing is due", Role.AT_RISK: f"{answer_words(objective)} is due"})
-    elif isinstance(objective, Patrol):
-        who = "a robot" if objective.who.agent is None else objective.who.agent.shown
-        texts.update({Role.IDLE: f"{who} is there", Role.AT_RISK: "a visit is due"})
-    return texts.get(role_of(location), location)

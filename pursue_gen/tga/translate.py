@@ -42,7 +42,7 @@ def translate(scenario: Scenario) -> Network:
     automata = [states] if states else []
     agents = [powered(agent_automaton(agent, around), scenario) for agent in scenario.agents]
     automata += [assumed(bound(agent, own), scenario, conditions) for agent in agents]
-    automata += [safety_automaton(each, scenario, codes, conditions, k) for k, each in enumerate(scenario.safety)]
+    automata += [safety_automaton(each, around, k) for k, each in enumerate(scenario.safety)]
     steps = unlocking(scenario)
     automata += [reach_automaton(each, happened, k, steps[k]) for k, each in enumerate(scenario.reach)]
     automata += [automaton for automaton, _ in rules]

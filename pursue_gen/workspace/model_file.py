@@ -8,7 +8,7 @@ from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, role_of
-from pursue_gen.language.wording import assumption_words, objective_text
+from pursue_gen.language.wording import assumption_words
 from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Objective
@@ -63,13 +63,13 @@ def _has_several(objective: Objective) -> bool:
 
 def _says(scenario: Scenario, objective: Objective) -> Dict[str, Any]:
     """What each automaton watches, in the words of the scenario, where there are several."""
-    said = {name: objective_text(each) for name, each in stated(scenario).items()}
+    said = {name: each.text for name, each in stated(scenario).items()}
     return {"says": said} if _has_several(objective) else {}
 
 
 def _given_up(scenario: Scenario) -> Dict[str, Any]:
     """The optional objectives that the mission does not promise, in the words of the scenario, where there are any."""
-    texts = [objective_text(one.objective) for one in scenario.given_up]
+    texts = [one.objective.text for one in scenario.given_up]
     return {"given_up": texts} if texts else {}
 
 

@@ -12,7 +12,6 @@ from typing import Callable, DefaultDict, Dict, Iterable, Iterator, List, Mappin
 from pursue_gen.diagnostics import Diagnostic, counted, warning
 from pursue_gen.drawing.layout import poses
 from pursue_gen.language.behaviour import robots_at
-from pursue_gen.language.objectives import NeverWith
 from pursue_gen.language.scenario import Poi, Pose, Scenario
 
 SPOT_DISTANCE = 0.8
@@ -124,11 +123,8 @@ def _groups(scenario: Scenario, poi: Poi, present: Sequence[str]) -> List[List[s
     """The robots without a pose of their own at the place, those together that may have one: no two of them are ever
     there at one time. Only objectives that have to be met (`never_with`) are relied on: a new plan keeps them too.
     """
-    apart = {
-        frozenset((one.first.name, one.second.name))
-        for one in scenario.safety
-        if isinstance(one, NeverWith) and not one.optional and (one.place is None or one.place.name == poi.name)
-    }
+    kept = (one.breaks for one in scenario.safety if not one.optional)
+    apart = {frozenset(one.pair) for one in kept if one.place in (None, poi.name)}
     groups: List[List[str]] = []
     for robot in _without_own(poi, present):
         for group in groups:

@@ -8,7 +8,7 @@ from math import ceil
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from pursue_gen.drawing.floor import Floor
-from pursue_gen.language.scenario import Connection, Patrol, Respond, Scenario
+from pursue_gen.language.scenario import Connection, Scenario
 from pursue_gen.language.wording import objective_sentence, objective_words
 from pursue_gen.partition import SubStrategy
 from pursue_gen.partition.strategy_data import number, strategy_data
@@ -103,7 +103,7 @@ def _objectives(scenario: Scenario, answers: Mapping[str, Fraction]) -> List[Dic
         automata = [name for name, objective in watched.items() if any(objective is each for each in statement)]
         found.append({"says": sentence, "of": automata})
         due = [(answers[name], watched[name]) for name in automata if name in answers]
-        times = [told(worst, each) for worst, each in due if isinstance(each, (Respond, Patrol))]
+        times = [told(worst, each) for worst, each in due]
         if times and len(times) == len(automata):
             found[-1]["worst"] = number(Fraction(max(times)))
     found += [{"says": objective_sentence(scenario, one.objective), "of": []} for one in scenario.given_up]

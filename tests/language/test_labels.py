@@ -16,7 +16,7 @@ from pursue_gen.language.draft import Draft
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.labels import LONGEST_LABEL, markdown, why_no_label
 from pursue_gen.language.navigation import rename
-from pursue_gen.language.wording import objective_text, objective_words
+from pursue_gen.language.wording import objective_words
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import write_network
 from pursue_gen.tools.lsp.fixes import fixes
@@ -55,7 +55,7 @@ def test_people_read_labels_and_the_network_has_names() -> None:
         "It never holds that a guest is at a shelf, 'high' and Porter 1 is not at a shelf, 'high'.",
         "Porter 1 visits a shelf, 'high' and front desk in this order, each at least every 40 units.",
     ]
-    assert [objective_text(each) for each in scenario.objectives] == [objective_text(e) for e in bare.objectives]
+    assert [each.text for each in scenario.objectives] == [e.text for e in bare.objectives]
     assert translate(scenario) == translate(bare)
     assert write_network(translate(scenario), scenario_objective(scenario)) == write_network(
         translate(bare), scenario_objective(bare)

@@ -42,7 +42,7 @@ def rooms(*objectives: str) -> Scenario:
 
 
 def period(scenario: Scenario) -> int:
-    (found,) = {each.period for each in scenario.safety if isinstance(each, Patrol) and each.least is not None}
+    (found,) = {each.known_limit for each in scenario.safety if isinstance(each, Patrol) and each.least is not None}
     return found
 
 
@@ -106,7 +106,7 @@ def test_a_search_that_stops_early_says_what_is_known() -> None:
     least = period(least_period(asked, DEFAULT))
     for found in stopped:
         (known, *_) = [each for each in found.safety if isinstance(each, Patrol)]
-        assert known.least is not None and known.least <= least <= known.period
+        assert known.least is not None and known.least <= least <= known.known_limit
     tours = period(stopped[0])
     assert f"is at most {tours} units; nothing below 2 can be promised." in periods_found(stopped[0])[0]
     assert is_won(stopped[0].text) and tours < longest(asked)

@@ -13,7 +13,7 @@ from pursue_gen.proof.moves import Arena, State
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.uppaal import read_network, write_network
-from pursue_gen.tools.simulation.meaning import broken_of, holds
+from pursue_gen.tools.simulation.meaning import holds
 from tests.conditions import CONDITIONS, SCENARIO, with_only_if
 
 OBJECTIVE = scenario_objective(parse(SCENARIO, "x.pur"))
@@ -62,13 +62,13 @@ def test_an_event_or_a_way_is_open_exactly_while_its_condition_holds(condition: 
 def test_an_objective_can_be_lost_exactly_where_its_condition_is_broken(condition: Condition, always: bool) -> None:
     text = SCENARIO + f"objective: {'always' if always else 'avoid'} {condition_text(condition)}\n"
     scenario = parse(text, "x.pur")
-    network, broken = translate(scenario), broken_of(scenario)
+    network, broken = translate(scenario), scenario.safety[0].breaks.condition
     assert broken is not None
     names, variables = [a.name for a in network.automata], [name for name, _ in network.variables]
     for (places, values), sent in states_of(network).items():
         locations = dict(zip(names, places))
         if locations["obj"] == "idle":
-            told = broken(locations, dict(zip(variables, values)))
+            told = holds(broken, scenario, locations, dict(zip(variables, values)))
             assert ("" in sent) >= told
             moves = Arena(network, 1, idle_moves=True).situation((places, values)).moves
             assert any(move.moves[0].edge.target == "lose" and not move.controllable for move in moves) is told

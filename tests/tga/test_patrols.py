@@ -14,7 +14,6 @@ from pursue_gen.explanation.ablations import without_objective
 from pursue_gen.language import parse
 from pursue_gen.language.checks import check
 from pursue_gen.language.scenario import Patrol, Scenario
-from pursue_gen.language.wording import objective_text
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.tga import scenario_objective, translate
@@ -148,7 +147,7 @@ def test_lesser_scenarios_keep_or_lose_a_patrol_in_order_as_a_whole() -> None:
     story = scenario("patrol gate, hall in order every 40 by bot1\nobjective: avoid rest")
     assert [len(statement) for statement in story.statements] == [2, 1]
     fewer = without_objective(story, story.safety[1])
-    assert fewer is not None and [objective_text(each) for each in fewer.safety] == ["avoid rest"]
+    assert fewer is not None and [each.text for each in fewer.safety] == ["avoid rest"]
     assert without_objective(scenario("patrol gate, hall in order every 40 by bot1"), story.safety[0]) is None
 
 

@@ -9,7 +9,6 @@ from pursue_gen.language.checks import MOST_TIMES
 from pursue_gen.language.document import Edit, behind, written
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.numbers import exact, read_number
-from pursue_gen.language.scenario import Avoid
 from pursue_gen.language.syntax import Statement, bare, start_of
 from pursue_gen.tools.lsp.fixes_syntax import Proposals
 
@@ -95,9 +94,9 @@ def done_or_avoided(document: Draft, finding: Diagnostic, part: Statement, at: i
     yield from to_be_done_once(document, finding, part, at)
     for safety in document.scenario.safety:
         other = document.statement_at(document.lines.of_span(safety.span)[0])
-        named = isinstance(safety, Avoid) and safety.event.name
-        if other is not None and named == str(document.token_at(at)):
-            yield f"Delete the objective to avoid {named}", (document.deleted(other),)
+        event = safety.breaks.event
+        if other is not None and event is not None and event.name == str(document.token_at(at)):
+            yield f"Delete the objective to avoid {event.name}", (document.deleted(other),)
 
 
 def later_deadline(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:

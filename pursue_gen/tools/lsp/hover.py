@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, Dict, List, Optional, Tuple
+from typing import Callable, Dict, Iterator, List, Optional, Tuple
 
+from pursue_gen.diagnostics import units
 from pursue_gen.language.batteries import MOST_CAPACITY, levels
 from pursue_gen.language.behaviour import predecessors
 from pursue_gen.language.conditions import condition_words, names_in
@@ -17,26 +18,23 @@ from pursue_gen.language.numbers import Number, exact, read_number
 from pursue_gen.language.parser import MOST
 from pursue_gen.language.scenario import (
     Agent,
-    Always,
     Assumption,
-    Avoid,
     Both,
     Choice,
     Event,
     NeverHolds,
-    NeverWith,
     Poi,
     Ref,
-    Respond,
     Rule,
     RuleBody,
+    Safety,
     Scenario,
     Sequence,
     State,
     Window,
 )
 from pursue_gen.language.syntax import Statement, start_of
-from pursue_gen.language.wording import answer_text, answered_text, assumption_words, battery_words, size_words
+from pursue_gen.language.wording import assumption_words, battery_words, size_words
 
 _MOST_LINES = 12
 
@@ -71,11 +69,6 @@ def hover(document: Draft, offset: int) -> Optional[Hover]:
         text = _number(document.scenario, part, start, number)
         return Hover(text, start, start + len(token)) if text else None
     return None
-
-
-def units(number: Number) -> str:
-    """`1 unit`, `2 units`."""
-    return f"{number} unit{'' if number == 1 else 's'}"
 
 
 def lasts(window: Window) -> str:
@@ -153,24 +146,7 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
         for value, refs in (("true", state.true_if), ("false", state.false_if)):
             if _in(event.name, refs):
                 lines.append(f"- makes {state.name} {value}")
-    return lines + _wanted(scenario, event)
-
-
-def _wanted(scenario: Scenario, event: Event) -> List[str]:
-    lines = []
-    for safety in scenario.safety:
-        if isinstance(safety, Respond) and answered_text(safety) == event.name:
-            lines.append(f"- must be answered by {answer_text(safety)} within {units(safety.deadline)} of time")
-        if isinstance(safety, Respond) and answer_text(safety) == event.name:
-            lines.append(f"- is the answer to {answered_text(safety)}, within {units(safety.deadline)} of time")
-        if isinstance(safety, Avoid) and safety.event.name == event.name:
-            lines.append("- must never happen")
-    for reach in scenario.reach:
-        if _in(event.name, reach.events):
-            after = f", later than {units(reach.after)} of time after the start" if reach.after else ""
-            within = "" if reach.within is None else f", {units(reach.within)} of time after the start at most"
-            lines.append(f"- is to be achieved once{after}{within}")
-    return lines
+    return lines + [f"- {line}" for each in scenario.objectives for line in each.about("event", event.name)]
 
 
 def _rule(scenario: Scenario, rule: Rule) -> List[str]:
@@ -215,10 +191,14 @@ def _state(scenario: Scenario, state: State) -> List[str]:
     for event in scenario.events:
         if event.only_if is not None and any(ref.name == state.name for _, ref in names_in(event.only_if)):
             lines.append(f"- {event.name} only while {in_markdown(scenario, condition_words(event.only_if))}")
-    for safety in scenario.safety:
-        if isinstance(safety, Always) and any(ref.name == state.name for _, ref in names_in(safety.condition)):
-            lines.append(f"- must never be: {in_markdown(scenario, condition_words(safety.broken_if))}")
-    return lines
+    return lines + [line for safety in scenario.safety for line in _never(scenario, safety, state.name)]
+
+
+def _never(scenario: Scenario, safety: Safety, name: str) -> Iterator[str]:
+    """The condition with which the objective is broken, if it has this name in it."""
+    broken = safety.breaks.condition
+    if broken is not None and any(ref.name == name for _, ref in names_in(broken)):
+        yield f"- must never be: {in_markdown(scenario, condition_words(broken))}"
 
 
 def _agent(scenario: Scenario, agent: Agent) -> List[str]:
@@ -241,12 +221,8 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
     assumed = (assumption_words(each) for each in scenario.assumptions if _is_about(each, agent.name))
     lines += [f"- assumed: {in_markdown(scenario, words)}" for words in assumed]
     for safety in scenario.safety:
-        if isinstance(safety, NeverWith) and agent.name in (safety.first.name, safety.second.name):
-            other = safety.second.name if safety.first.name == agent.name else safety.first.name
-            where = "be where" if safety.place is None else f"be at {safety.place.name} while"
-            lines.append(f"- must never {where} {other} is" + ("" if safety.place is None else " there"))
-        if isinstance(safety, Always) and any(ref.name == agent.name for _, ref in names_in(safety.condition)):
-            lines.append(f"- must never be: {in_markdown(scenario, condition_words(safety.broken_if))}")
+        lines += [f"- {line}" for line in safety.about("agent", agent.name)]
+        lines += _never(scenario, safety, agent.name)
     return lines
 
 

@@ -5,18 +5,18 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Dict, Iterator, List, Mapping, Optional, Sequence
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.network_words import Words
 from pursue_gen.explanation.policy import Window
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import condition_words
-from pursue_gen.language.scenario import Always, Avoid, Connection, NeverWith, Patrol, Reach, Respond
+from pursue_gen.language.scenario import Connection
 from pursue_gen.language.symbols import Role, Symbol, role_of
-from pursue_gen.language.wording import answer_words, events_words, listed, missed_text, patroller, visited
 from pursue_gen.synthesis.game import Game, JointMove
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Edge
-from pursue_gen.tga.objectives import clock_of, events_done, stated
+from pursue_gen.tga.objectives import clock_of, stated
 from pursue_gen.tga.own_turns import own_turns
 from pursue_gen.tools.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
 
@@ -93,18 +93,18 @@ def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Itera
     for automaton, objective in stated(setup.scenario).items():
         number = where[automaton]
         place = setup.game.automata[number].locations[play.position.state.locations[number]]
-        if isinstance(objective, Respond) and place == names.AT_RISK:
-            due = play.now - clocks[clock_of(automaton)] + objective.deadline
-            yield f"deadline: {answer_words(objective)} by {time_text(due)} at the latest"
-        if isinstance(objective, Patrol) and place == names.AT_RISK:
-            due = play.now - clocks[clock_of(automaton)] + objective.period
-            yield f"deadline: {patroller(objective)} at {visited(objective)} by {time_text(due)} at the latest"
-        if isinstance(objective, Reach) and objective.after and play.now <= objective.after:
-            yield f"{events_words(objective)} counts after {objective.after}"
-        if isinstance(objective, Reach) and objective.within is not None and place != names.WIN:
-            done = {ref.name for ref in events_done(objective, place)}
-            left = listed(ref.shown for ref in objective.events if ref.name not in done)
-            yield f"deadline: {left} by {time_text(Fraction(objective.within))} at the latest"
+        if place == names.AT_RISK and objective.limit is not None:
+            due = play.now - clocks[clock_of(automaton)] + objective.limit
+            yield f"deadline: {objective.words.due_by or objective.words.due} by {time_text(due)} at the latest"
+    for k, reach in enumerate(setup.scenario.reach):
+        number = where[names.reach_objective(k)]
+        place = setup.game.automata[number].locations[play.position.state.locations[number]]
+        if reach.after and play.now <= reach.after:
+            yield f"{reach.words.due} counts after {reach.after}"
+        if reach.within is not None and place != names.WIN:
+            done = {ref.name for ref in reach.done_in(place)}
+            left = listed(ref.shown for ref in reach.events if ref.name not in done)
+            yield f"deadline: {left} by {time_text(Fraction(reach.within))} at the latest"
 
 
 def deed_text(setup: Setup, words: Words, deed: PlayedMove) -> str:
@@ -149,26 +149,19 @@ def _lost(setup: Setup, words: Words, play: PlayState) -> str:
     late, objectives = overdue(setup, play), stated(setup.scenario)
     game, places = setup.game, play.position.state.locations
     broken = [game.automata[k].name for k, place in game.bad if places[k] == place]
+
+    def beside(agent: str) -> str:
+        return f", both {_place(setup, words, play, agent)}"
+
     for name in (*late, *broken):
         passed = objectives.get(name)
-        if isinstance(passed, Respond):
-            return missed_text(passed)
-        if isinstance(passed, Patrol):
-            return f"not {patroller(passed)} at {visited(passed)} for {passed.every}"
-        if isinstance(passed, Reach):
-            return f"{events_words(passed)} not done within {passed.within} of the start"
+        if passed is not None and passed.limit is not None:
+            return passed.broken(beside)
     if late:
         doing = ", ".join(f"{setup.scenario.shown(name)} ({_place(setup, words, play, name)})" for name in late)
         return f"{doing} ought to be done by now and cannot be, so nothing goes on"
     safety = objectives.get(next(iter(broken), ""))
-    if isinstance(safety, Avoid):
-        return f"{safety.event.shown} has happened, which was to be avoided"
-    if isinstance(safety, Always):
-        return f"{condition_words(safety.broken_if)}, which must never be"
-    if isinstance(safety, NeverWith):
-        place = _place(setup, words, play, safety.first.name)
-        return f"{safety.first.shown} and {safety.second.shown} are together, both {place}"
-    return "the objective is broken"
+    return "the objective is broken" if safety is None else safety.broken(beside)
 
 
 def _place(setup: Setup, words: Words, play: PlayState, name: str) -> str:

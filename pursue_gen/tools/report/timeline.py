@@ -8,9 +8,8 @@ from typing import Dict, Iterator, List, Mapping, Sequence, Tuple
 from pursue_gen.drawing.look import AgentLook, agent_looks, mark, patterns, safe, svg, tag, text
 from pursue_gen.explanation.network_words import Words, words_of
 from pursue_gen.language import network_names as names
-from pursue_gen.language.scenario import Patrol, Reach, Respond, Scenario
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import UNDER_WAY, Role, Symbol, role_of
-from pursue_gen.language.wording import answer_words, events_words, visited
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import stated
@@ -27,6 +26,9 @@ _SIDE, _RIGHT = 24.0, 30.0
 _LETTER, _BOLD = 7.0, 8.0  # px, a generous guess at how wide a small letter is, and a bold one
 _TICK = 70.0  # px between two marks of the time axis, at least
 _LABELLED = 0.8  # this part of the bars gets room for its whole label, if the picture is not too wide then
+
+_OVER = (Role.IDLE, Role.LOSE, Role.WIN, Role.LATE)
+"""Where no limit of an objective is running."""
 
 _ID = "timeline"
 
@@ -243,30 +245,20 @@ def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:
     objectives = stated(recording.scenario)
     for automaton, name in _due(recording.scenario).items():
         found, objective = stays(recording, automaton), objectives[automaton]
-        if isinstance(objective, Respond):
-            risks = [(stay, stay.start + objective.deadline) for stay in found if stay.what == names.AT_RISK]
-            yield Lane(name, _deadline(recording, scale, risks, answer_words(objective)))
-        elif isinstance(objective, Patrol):
-            risks = [(stay, stay.start + objective.period) for stay in found if stay.what == names.AT_RISK]
-            there = tuple(_line(scale, stay, "there") for stay in found if stay.what == names.IDLE)
-            yield Lane(name, there + _deadline(recording, scale, risks, f"a visit of {visited(objective)}".rstrip(",")))
-        elif isinstance(objective, Reach) and objective.within is not None:
-            before = [stay for stay in found if stay.what not in (names.WIN, names.LATE)]
-            whole = [replace(before[0], end=before[-1].end, over=before[-1].over)] if before else []
-            risks = [(stay, float(objective.within)) for stay in whole]
-            yield Lane(name, _deadline(recording, scale, risks, events_words(objective)))
+        words, limit = objective.words, float(objective.limit or 0)
+        there = [stay for stay in found if stay.what == names.IDLE]
+        risks = [stay for stay in found if role_of(stay.what) not in _OVER]
+        if objective.once:
+            risks = [replace(risks[0], end=risks[-1].end, over=risks[-1].over)] if risks else []
+        due = [(stay, limit if objective.once else stay.start + limit) for stay in risks]
+        lines = tuple(_line(scale, stay, words.there) for stay in there if words.there)
+        yield Lane(name, lines + _deadline(recording, scale, due, words.due))
 
 
 def _due(scenario: Scenario) -> Dict[str, str]:
     """The automata of objectives with deadlines, and the names of their lanes; what is due, where there are several."""
-    found: Dict[str, str] = {}
-    for automaton, objective in stated(scenario).items():
-        if isinstance(objective, Respond):
-            found[automaton] = f"deadline: {answer_words(objective)}"
-        elif isinstance(objective, Patrol):
-            found[automaton] = f"visits: {objective.place.shown}"
-        elif isinstance(objective, Reach) and objective.within is not None:
-            found[automaton] = f"deadline: {events_words(objective)}"
+    words = {name: each.words for name, each in stated(scenario).items() if each.limit is not None}
+    found = {name: each.lane or f"deadline: {each.due}" for name, each in words.items()}
     return found if len(found) > 1 else dict.fromkeys(found, "deadline")
 
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import FrozenSet, Mapping, Optional
+from typing import Mapping
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Holds, Not, OnWay
-from pursue_gen.language.scenario import Always, Scenario
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, role_of
-from pursue_gen.tga.objectives import stated
 
 
 def holds(condition: Condition, scenario: Scenario, locations: Mapping[str, str], values: Mapping[str, int]) -> bool:
@@ -39,25 +37,3 @@ def holds(condition: Condition, scenario: Scenario, locations: Mapping[str, str]
     else:
         here = {names.doing(condition.event.name, poi.name) for poi in scenario.pois}
     return any(place in here for place in places)
-
-
-@dataclass(frozen=True)
-class Broken:
-    """Whether objectives on conditions are broken: called with the locations of automata and the values of variables.
-
-    `automata` are those that watch these objectives.
-    """
-
-    scenario: Scenario
-    automata: FrozenSet[str]
-
-    def __call__(self, locations: Mapping[str, str], values: Mapping[str, int]) -> bool:
-        """True if one of them is broken there."""
-        some = (safety for safety in self.scenario.safety if isinstance(safety, Always))
-        return any(holds(safety.broken_if, self.scenario, locations, values) for safety in some)
-
-
-def broken_of(scenario: Scenario) -> Optional[Broken]:
-    """What says whether the scenario's objectives on conditions are broken; None where it has no such objective."""
-    automata = frozenset(name for name, objective in stated(scenario).items() if isinstance(objective, Always))
-    return Broken(scenario, automata) if automata else None

@@ -6,15 +6,16 @@ lost only where an objective is broken. The batteries of robots are never empty 
 
 from __future__ import annotations
 
-from typing import Dict, FrozenSet, List, NamedTuple, Optional, Set, Tuple, Union
+from typing import Dict, FrozenSet, List, NamedTuple, Optional, Set, Tuple
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language import network_names as names
-from pursue_gen.language.conditions import At, Condition
+from pursue_gen.language.conditions import EventOrCondition
 from pursue_gen.language.network_names import going, has_happened
-from pursue_gen.language.scenario import Always, Avoid, NeverHolds, NeverWith, Patrol, Ref, Respond, Safety, Scenario
-from pursue_gen.language.wording import assumption_words, objective_text
-from pursue_gen.tools.simulation.meaning import broken_of, holds
+from pursue_gen.language.objectives.base import Breaks
+from pursue_gen.language.scenario import NeverHolds, Ref, Safety, Scenario
+from pursue_gen.language.wording import assumption_words
+from pursue_gen.tools.simulation.meaning import holds
 from pursue_gen.tools.simulation.recorder import EPSILON
 from pursue_runtime.locations import is_action, is_under_way, place_of
 from pursue_runtime.state import LOST, WON, SystemState
@@ -28,9 +29,9 @@ class Duty(NamedTuple):
     latest: Optional[float] = None
 
 
-def duties_of(scenario: Scenario) -> Tuple[Tuple[int, Union[Respond, Patrol]], ...]:
+def duties_of(scenario: Scenario) -> Tuple[Tuple[int, Safety], ...]:
     """The objectives that are called upon, each time with a limit for the answer, with their numbers."""
-    return tuple((k, each) for k, each in enumerate(scenario.safety) if isinstance(each, (Respond, Patrol)))
+    return tuple((k, each) for k, each in enumerate(scenario.safety) if each.limit is not None)
 
 
 class Promises:
@@ -47,6 +48,11 @@ class Promises:
         self._done: List[Set[str]] = [set() for _ in scenario.reach]
         self._since: Dict[int, float] = {}
         self._held: Set[int] = set()  # whose conditions that are to be answered have held in the state before
+        self._how = [safety.breaks for safety in scenario.safety]
+        named = ((names.safety_objective(k), how.condition) for k, how in enumerate(self._how))
+        self._conditions = {name: condition for name, condition in named if condition is not None}
+        firsts = (each for each in scenario.patrols if each.order[:1] == (each.place.name,))
+        self._ordered = [(scenario.safety.index(patrol), patrol) for patrol in firsts]
         self._turns: Dict[Span, int] = {}
         self._where: Dict[str, str] = {}
         self._broken: Dict[str, float] = {}
@@ -55,7 +61,7 @@ class Promises:
         self._begun: Optional[float] = None
         self._seq = 0
         self._called: Dict[int, float] = {}
-        self._condition, self._was_broken = broken_of(scenario), False
+        self._was_broken = False
         self._duties = {number: Duty() for number, _ in duties_of(scenario)}
 
     @property
@@ -78,7 +84,7 @@ class Promises:
         visited = self._visited(state)
         for number, safety in enumerate(self._scenario.safety):
             if self._breaks(number, safety, event, latest, state):
-                self._broken.setdefault(objective_text(safety), at)
+                self._broken.setdefault(safety.text, at)
             if number in visited:
                 self._since.pop(number, None)
         self._count(at)
@@ -87,7 +93,7 @@ class Promises:
             if event in {ref.name for ref in reach.events} and at > reach.after - EPSILON and in_time:
                 done.add(event)
             if not in_time and len(done) < len(reach.events):
-                self._broken.setdefault(objective_text(reach), at)
+                self._broken.setdefault(reach.text, at)
         if self._exact:
             self._check(state)
             self._check_batteries(state, at)
@@ -121,39 +127,33 @@ class Promises:
 
     def _breaks(self, number: int, safety: Safety, event: str, latest: float, state: SystemState) -> bool:
         """True if the objective is broken now."""
-        if isinstance(safety, Avoid):
-            return event == safety.event.name
-        if isinstance(safety, Always):
-            return state.status != WON and holds(safety.broken_if, self._scenario, state.locations, state.values)
-        if isinstance(safety, NeverWith):
-            spots = [self._spot(state.locations.get(agent.name, "")) for agent in (safety.first, safety.second)]
-            here = safety.place is None or spots[0] == {safety.place.name}
-            return state.status != WON and here and spots[0] == spots[1]
-        since = self._since.get(number)
-        if isinstance(safety, Patrol):
-            there = holds(At(safety.who, safety.place), self._scenario, state.locations, state.values)
-            if there and not safety.order:
-                self._since.pop(number, None)
-            elif not there:
-                self._since.setdefault(number, latest)
-            return since is not None and latest - since > safety.period
-        missed = since is not None and latest - since > safety.deadline
-        begun, before = self._is(safety.trigger, event, state), number in self._held
+        breaks = self._how[number]
+        if safety.limit is None:
+            over = state.status == WON
+            return self._is(breaks.event, event, state) or (not over and self._is_lost(breaks, state))
+        since, before = self._since.get(number), number in self._held
+        begun = self._is(breaks.begins, event, state)
         self._held.discard(number)
-        if begun and not isinstance(safety.trigger, Ref):
+        if begun and not isinstance(breaks.begins, Ref):
             self._held.add(number)
-        if self._is(safety.response, event, state):
+        if self._is(breaks.ends, event, state):
             self._since.pop(number, None)
         elif begun and not before:
             self._since.setdefault(number, latest)
-        return missed
+        return since is not None and latest - since > safety.limit
+
+    def _is_lost(self, breaks: Breaks, state: SystemState) -> bool:
+        """True if its condition holds, or its two agents are together."""
+        if breaks.condition is not None:
+            return holds(breaks.condition, self._scenario, state.locations, state.values)
+        spots = {self._spot(state.locations.get(agent, "")) for agent in breaks.pair}
+        return len(spots) == 1 and (breaks.place is None or spots == {frozenset((breaks.place,))})
 
     def _check_conditions(self, state: SystemState) -> None:
         """A mission is lost if and only if a condition of an objective says so, in the next state at the latest."""
-        if self._condition is None:
-            return
-        broken = self._condition(state.locations, state.values)
-        lost = any(state.locations.get(name) == names.LOSE for name in self._condition.automata)
+        conditions = self._conditions.values()
+        broken = any(holds(one, self._scenario, state.locations, state.values) for one in conditions)
+        lost = any(state.locations.get(name) == names.LOSE for name in self._conditions)
         if lost and not broken:
             self.problems.append(f"state {state.seq} counts as lost, but no condition of an objective is broken there")
         elif self._was_broken and not lost:
@@ -168,20 +168,18 @@ class Promises:
             if holds(assumption.condition, self._scenario, state.locations, state.values):
                 self.problems.append(f"state {state.seq}: not so that {assumption_words(assumption)}, but not broken")
 
-    def _is(self, what: Union[Ref, Condition], event: str, state: SystemState) -> bool:
+    def _is(self, what: Optional[EventOrCondition], event: str, state: SystemState) -> bool:
         """True if the event happens now, or the condition holds."""
         if isinstance(what, Ref):
             return event == what.name
-        return holds(what, self._scenario, state.locations, state.values)
+        return what is not None and holds(what, self._scenario, state.locations, state.values)
 
     def _visited(self, state: SystemState) -> Set[int]:
         """The numbers of the places of patrols in order at which one of them arrives now, in its turn."""
         first, before = not self._where, self._where
         self._where = {name: place_of(location, self._places) for name, location in state.locations.items()}
         found: Set[int] = set()
-        for number, patrol in enumerate(self._scenario.safety):
-            if not isinstance(patrol, Patrol) or patrol.place.name != "".join(patrol.order[:1]):
-                continue
+        for number, patrol in self._ordered:
             names = [agent.name for agent in self._scenario.on_patrol(patrol)]
             come = {self._where.get(name, "") for name in names if self._where.get(name) != before.get(name)}
             turn, count = self._turns.get(patrol.span, 0), len(patrol.order)
@@ -198,7 +196,7 @@ class Promises:
         if state.status == WON:
             for reach, done in zip(self._scenario.reach, self._done):
                 if len(done) < len(reach.events):
-                    self.problems.append(f"the mission is won, but not '{objective_text(reach)}'")
+                    self.problems.append(f"the mission is won, but not '{reach.text}'")
             for text in self._broken:
                 self.problems.append(f"the mission is won, but '{text}' was broken")
         elif state.status == LOST and not self._broken:

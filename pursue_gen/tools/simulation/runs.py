@@ -12,8 +12,7 @@ from statistics import median
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import error
-from pursue_gen.language.scenario import Patrol, Scenario
-from pursue_gen.language.wording import objective_text
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import Unfinished
 from pursue_gen.proof.margin import USUAL, strategy_margin
 from pursue_gen.solving.solution import Solution
@@ -215,7 +214,6 @@ def _answers(scenario: Scenario, missions: Sequence[Sequence[Duty]]) -> Tuple[An
         own = [duties[place] for duties in missions]
         calls = sum(duty.calls for duty in own)
         latest = max((duty.latest for duty in own if duty.latest is not None), default=None)
-        limit = float(objective.period if isinstance(objective, Patrol) else objective.deadline)
         untried = sum(not duty.calls for duty in own)
-        found.append(Answers(objective_text(objective), limit, calls, latest, untried))
+        found.append(Answers(objective.text, float(objective.known_limit), calls, latest, untried))
     return tuple(found)

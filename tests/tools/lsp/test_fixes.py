@@ -161,7 +161,7 @@ def test_every_mistake_that_has_a_fix_is_tried() -> None:
 
 
 def test_every_code_with_a_fix_exists() -> None:
-    used = "".join(p.read_text(encoding="utf-8") for p in (ROOT / "pursue_gen" / "language").glob("*.py"))
+    used = "".join(p.read_text(encoding="utf-8") for p in (ROOT / "pursue_gen" / "language").rglob("*.py"))
     assert all(f'"{code}"' in used for code in _PROPOSERS)
 
 

@@ -1,0 +1,37 @@
+"""What a scenario is to achieve: what always holds, and what is reached once. A module for each kind of objective."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+from pursue_gen.language.objectives.avoid import Always, Avoid
+from pursue_gen.language.objectives.base import Safety, StatedObjective
+from pursue_gen.language.objectives.never_with import NeverWith
+from pursue_gen.language.objectives.patrol import Patrol, patrols_in
+from pursue_gen.language.objectives.reach import Reach
+from pursue_gen.language.objectives.respond import Respond
+
+__all__ = [
+    "Always", "Avoid", "GivenUp", "NeverWith", "Patrol", "Reach", "Respond", "Safety", "StatedObjective",
+    "WhyGivenUp", "patrols_in",
+]  # fmt: skip
+
+
+class WhyGivenUp(enum.Enum):
+    """Why an optional objective is not promised, in words that follow it."""
+
+    IMPOSSIBLE = "cannot be promised together with the rest"
+    TOO_MUCH_WORK = "was too much work to decide"
+    REFUSED = (
+        "is not decided: the independent checker refuses the strategy that was found for it (please report that, with "
+        "the scenario)"
+    )
+
+
+@dataclass(frozen=True)
+class GivenUp:
+    """An optional objective that is not promised, and why."""
+
+    objective: StatedObjective
+    why: WhyGivenUp = WhyGivenUp.IMPOSSIBLE

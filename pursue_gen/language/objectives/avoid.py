@@ -1,0 +1,77 @@
+"""`avoid event`, `avoid condition` and `always condition`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Callable, Iterator, Tuple
+
+from pursue_gen.diagnostics import NOWHERE, Span
+from pursue_gen.language.conditions import Condition, Not, condition_text, condition_words, held_by
+from pursue_gen.language.objectives.base import Breaks, Safety
+from pursue_gen.language.refs import Ref
+
+
+@dataclass(frozen=True)
+class Avoid(Safety):
+    """`avoid event`: it never happens."""
+
+    event: Ref
+    span: Span = NOWHERE
+    optional: int = 0
+
+    @property
+    def text(self) -> str:
+        return f"avoid {self.event.name}"
+
+    def sentence(self, shown: Callable[[str], str]) -> str:
+        return f"{self.event.shown} never happens."
+
+    def broken(self, beside: Callable[[str], str]) -> str:
+        return f"{self.event.shown} has happened, which was to be avoided"
+
+    def names(self) -> Iterator[Tuple[str, Ref]]:
+        yield "event", self.event
+
+    @property
+    def breaks(self) -> Breaks:
+        return Breaks(event=self.event)
+
+    def about(self, kind: str, name: str) -> Iterator[str]:
+        if (kind, name) == ("event", self.event.name):
+            yield "must never happen"
+
+
+@dataclass(frozen=True)
+class Always(Safety):
+    """`always condition`, or with `holds` False `avoid condition`: it holds at every moment, or at none."""
+
+    condition: Condition
+    holds: bool = True
+    span: Span = NOWHERE
+    optional: int = 0
+
+    @property
+    def text(self) -> str:
+        return f"{'always' if self.holds else 'avoid'} {condition_text(self.condition)}"
+
+    def sentence(self, shown: Callable[[str], str]) -> str:
+        return f"It {'always' if self.holds else 'never'} holds that {condition_words(self.condition)}."
+
+    def broken(self, beside: Callable[[str], str]) -> str:
+        return f"{condition_words(self.broken_if)}, which must never be"
+
+    @property
+    def conditions(self) -> Tuple[Condition, ...]:
+        return (self.condition,)
+
+    @property
+    def breaks(self) -> Breaks:
+        return Breaks(condition=self.broken_if)
+
+    @property
+    def broken_if(self) -> Condition:
+        """The condition with which it is lost."""
+        return Not(self.condition) if self.holds else self.condition
+
+    def kept_by(self, robot: Ref) -> Always:
+        return replace(self, condition=held_by(self.condition, robot)) if self.holds else self

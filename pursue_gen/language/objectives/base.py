@@ -1,0 +1,161 @@
+"""What every kind of objective has: a kind is a class in a module of its own, which says what is different with it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, Callable, ClassVar, Iterator, Mapping, NamedTuple, Optional, Sequence, Tuple, TypeVar, cast
+
+from pursue_gen.diagnostics import Diagnostic, Span, listed
+from pursue_gen.language.conditions import At, Condition, EventOrCondition
+from pursue_gen.language.numbers import Number
+from pursue_gen.language.parts import Agent
+from pursue_gen.language.refs import Ref
+from pursue_gen.language.symbols import Role, role_of
+
+Stated = TypeVar("Stated", bound="StatedObjective")
+
+
+STATUSES = {
+    Role.IDLE: "kept", Role.AT_RISK: "a deadline is running", Role.LOSE: "broken",
+    Role.START: "not counting yet", Role.UNLOCKED: "to be reached", Role.WIN: "reached", Role.LATE: "too late",
+}  # fmt: skip
+"""What an objective is at in the locations of its automaton, by their roles."""
+
+
+class Words(NamedTuple):
+    """What an objective is called while a mission goes on; "": nothing is said of that."""
+
+    due: str = ""  # what has to come within its limit
+    due_by: str = ""  # the same, with who it is to come from
+    lane: str = ""  # the line in a picture of when it was due
+    since: str = "the start"  # the moment since which the clock of its automaton counts
+    statuses: Mapping[Role, str] = STATUSES  # the same as there, where it says more
+    must: str = ""  # what has to be by the end of its limit
+    in_time: str = ""  # said where that comes
+    there: str = ""  # what is so as long as nothing is due
+    kept: str = ""  # what happens within its limit, as in `answered within 5`
+    behind: str = ""  # what may be left out behind its text
+    which: str = ""  # which of the objectives of its statement it is
+
+
+class Whole(NamedTuple):
+    """A statement as a whole: the objectives that it lists, its text, and what a larger limit is: the kind of change,
+    what it is about, its label, and what stands around `5 instead of 4`."""
+
+    objectives: Sequence[StatedObjective]
+    text: str
+    change: str = ""
+    about: str = ""
+    label: str = ""
+    before: str = ""
+    behind: str = ""
+
+
+class StatedObjective:
+    """An objective: a frozen dataclass. `optional`: 0 for one that has to be met; else the number behind `optional`, 1
+    for what is to be kept longest."""
+
+    span: Span
+    optional: int
+    word: ClassVar[str] = "objective"
+    """The word that begins its statement."""
+    limited_by: ClassVar[str] = ""
+    """Its field with its limit; "": it has none."""
+    once: ClassVar[bool] = False
+    """It is reached once, and its limit counts from the start; else each time that something becomes due."""
+
+    @property
+    def text(self) -> str:
+        """As its author may write it, without the word that begins the statement; of a patrol in order all places."""
+        raise NotImplementedError
+
+    def sentence(self, shown: Callable[[str], str]) -> str:
+        """What it wants. `shown`: what people read for a name."""
+        raise NotImplementedError
+
+    def broken(self, beside: Callable[[str], str]) -> str:
+        """What has happened where it is broken. `beside`: a clause about where an agent is, by its name."""
+        raise NotImplementedError
+
+    def names(self) -> Iterator[Tuple[str, Ref]]:
+        """Each name outside its conditions, behind the kind of thing that it stands for."""
+        return iter(())
+
+    def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
+        """What is wrong with it, whatever else stands in the scenario of these agents."""
+        return iter(())
+
+    @property
+    def conditions(self) -> Tuple[Condition, ...]:
+        """The conditions that it names."""
+        return ()
+
+    @property
+    def order(self) -> Tuple[str, ...]:
+        """The places of its statement, where each counts in its turn only; () where there are no turns."""
+        return ()
+
+    def statement(self, objectives: Sequence[StatedObjective]) -> Whole:
+        """The statement that lists it, found among these objectives."""
+        return Whole((self,), self.text)
+
+    @property
+    def limit(self) -> Optional[Number]:
+        """The time units within which what is due has to come; None: there is no limit."""
+        return getattr(self, self.limited_by) if self.limited_by else None
+
+    @property
+    def known_limit(self) -> Number:
+        """The limit of an objective that has one; the period of a patrol is known from solving on."""
+        assert self.limit is not None, "there is no limit, or it has to be found first"
+        return self.limit
+
+    def with_limit(self: Stated, limit: int) -> Stated:
+        """The same with another limit."""
+        return cast(Stated, replace(cast(Any, self), **{self.limited_by: limit}))
+
+    @property
+    def words(self) -> Words:
+        """What it is called while a mission goes on."""
+        return Words()
+
+    def done_in(self, location: str) -> Tuple[Ref, ...]:
+        """Those of several events that have happened in a location of its automaton: some and not all."""
+        return ()
+
+    def status(self, location: str) -> str:
+        """What it is at in a location of its automaton."""
+        role, done = role_of(location), self.done_in(location)
+        said = f"{listed(ref.shown for ref in done)} done" if done else self.words.statuses.get(role)
+        return said or STATUSES.get(role, location)
+
+    def about(self, kind: str, name: str) -> Iterator[str]:
+        """What it means for an event or an agent, as in `must never happen`."""
+        return iter(())
+
+
+class Breaks(NamedTuple):
+    """How a safety objective is broken: by an event; by a condition; by a pair of agents at one place; or since what is
+    due has not come within its limit."""
+
+    event: Optional[Ref] = None
+    condition: Optional[Condition] = None
+    pair: Tuple[str, ...] = ()  # the names of two agents who must not be together …
+    place: Optional[str] = None  # … at this place; None: nowhere, nor on a connection
+    begins: Optional[EventOrCondition] = None  # with what something becomes due …
+    ends: Optional[EventOrCondition] = None  # … and with what it has come; None: that depends on turns
+    by_robots: bool = False  # nothing but what robots do can keep it
+    stands: Tuple[At, ...] = ()  # who is at which place when it is kept, or broken: this has to be possible
+
+
+class Safety(StatedObjective):
+    """An objective that holds until all that is to be reached is reached; for ever where nothing is."""
+
+    @property
+    def breaks(self) -> Breaks:
+        """How it is broken."""
+        raise NotImplementedError
+
+    def kept_by(self, robot: Ref) -> Safety:
+        """The objective kept by this robot; the same where any robot is not what keeps it."""
+        return self

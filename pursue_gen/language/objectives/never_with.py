@@ -1,0 +1,63 @@
+"""`first never_with second`: two agents that are never together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, Iterator, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
+from pursue_gen.language.conditions import At, Who
+from pursue_gen.language.objectives.base import Breaks, Safety
+from pursue_gen.language.parts import Agent
+from pursue_gen.language.refs import Ref
+
+
+@dataclass(frozen=True)
+class NeverWith(Safety):
+    """`first never_with second`: two agents that never share a POI nor a connection; with `place` not this POI."""
+
+    first: Ref
+    second: Ref
+    span: Span = NOWHERE
+    place: Optional[Ref] = None
+    optional: int = 0
+
+    @property
+    def text(self) -> str:
+        place = "" if self.place is None else f" at {self.place.name}"
+        return f"{self.first.name} never_with {self.second.name}{place}"
+
+    def sentence(self, shown: Callable[[str], str]) -> str:
+        where = "at one place or on one connection" if self.place is None else f"both at {self.place.shown}"
+        return f"{self.first.shown} and {self.second.shown} are never {where}."
+
+    def broken(self, beside: Callable[[str], str]) -> str:
+        return f"{self.first.shown} and {self.second.shown} are together{beside(self.first.name)}"
+
+    def names(self) -> Iterator[Tuple[str, Ref]]:
+        yield from (("agent", self.first), ("agent", self.second))
+        if self.place is not None:
+            yield "POI", self.place
+
+    def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
+        start = {agent.name: agent.location.name for agent in agents}
+        first, second = self.first.name, self.second.name
+        if first == second:
+            yield error("PML173", f"{first} is always with itself", self.span, "name two different agents")
+        elif first in start and start[first] == start.get(second) and self.breaks.place in (None, start[first]):
+            message = f"{first} and {second} both start in {start[first]}: the objective is lost before anything moves"
+            yield error("PML174", message, self.span, "let one of them start somewhere else")
+
+    @property
+    def breaks(self) -> Breaks:
+        pair = (self.first.name, self.second.name)
+        if self.place is None:
+            return Breaks(pair=pair)
+        stands = (At(Who(self.first), self.place), At(Who(self.second), self.place))
+        return Breaks(pair=pair, place=self.place.name, stands=stands)
+
+    def about(self, kind: str, name: str) -> Iterator[str]:
+        if kind == "agent" and name in (self.first.name, self.second.name):
+            other = self.second.name if self.first.name == name else self.first.name
+            where = "be where" if self.place is None else f"be at {self.place.name} while"
+            yield f"must never {where} {other} is" + ("" if self.place is None else " there")

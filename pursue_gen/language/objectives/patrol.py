@@ -1,0 +1,132 @@
+"""`patrol place every T by who`: places at which somebody is again and again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Callable, ClassVar, Iterator, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
+from pursue_gen.language.conditions import At, Not, Who, by_robot
+from pursue_gen.language.numbers import Number
+from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective, Whole, Words
+from pursue_gen.language.parts import Agent
+from pursue_gen.language.refs import Ref
+from pursue_gen.language.symbols import Role
+
+
+@dataclass(frozen=True)
+class Patrol(Safety):
+    """`patrol place every T by who`: it is at the place again so many time units after it left, or after the start.
+
+    `who`: an agent, or any robot: then one of them. A statement with several places is several of these.
+    `every`: in time units; None: the least that can be promised is to be found by solving (`solving.periods`). Then
+    `least` says that nothing below it can be promised.
+    `order`: the places of the statement, where each counts in its turn only (`in order`); () where all count always.
+    """
+
+    place: Ref
+    every: Optional[Number]
+    who: Who
+    span: Span = NOWHERE
+    order: Tuple[str, ...] = ()
+    least: Optional[int] = None
+    optional: int = 0
+    limited_by: ClassVar[str] = "every"
+
+    @property
+    def _patroller(self) -> str:
+        """Who is to be at the place: an agent's name, or `any robot`."""
+        return "any robot" if self.who.agent is None else self.who.agent.shown
+
+    @property
+    def text(self) -> str:
+        return self.statement((self,)).text
+
+    def statement(self, objectives: Sequence[StatedObjective]) -> Whole:
+        listing = tuple(each for each in patrols_in(objectives) if each.span == self.span)
+        places = ", ".join(self.order or (each.place.name for each in listing)) + " in order" * bool(self.order)
+        every = "" if self.every is None else f" every {self.every}"
+        text = f"patrol {places}{every} by {'any robot' if self.who.agent is None else self.who.agent.name}"
+        about, shown = (
+            listed(names) + " in order" * bool(self.order)
+            for names in zip(*((each.place.name, each.place.shown) for each in listing))
+        )
+        return Whole(listing, text, "deadline", about, "a rarer patrol", f"a patrol of {shown} every")
+
+    def sentence(self, shown: Callable[[str], str]) -> str:
+        if self.order:
+            places = listed(map(shown, self.order))
+            return f"{self._patroller} visits {places} in this order, each {self._every()}."
+        return f"{self._patroller} is at {self.place.shown} {self._every()}."
+
+    def _every(self) -> str:
+        """How often a place is visited."""
+        if self.every is None:
+            return "as often as can be promised"
+        every = f"at least every {units(self.every)}"
+        if self.least is None:
+            return every
+        if self.least >= self.every:
+            return f"{every}, the least that can be promised"
+        return f"{every}; nothing below {self.least} can be promised"
+
+    def period_found(self, won: bool) -> Iterator[str]:
+        """A sentence where its period was found by solving, as far as the verdict says something about it."""
+        who, every, least = f"the patrol by {self._patroller}", self.every, self.least
+        if every is None or least is None:
+            return
+        if won and least == every:
+            yield f"The least period that can be promised for {who} is {units(every)}."
+        elif won:
+            yield f"The least period for {who} is at most {units(every)}; nothing below {least} can be promised."
+        elif least > every:
+            yield f"No period up to {units(every)} can be promised for {who}."
+
+    def broken(self, beside: Callable[[str], str]) -> str:
+        return f"not {self.words.due_by} for {self.every}"
+
+    def names(self) -> Iterator[Tuple[str, Ref]]:
+        yield "POI", self.place
+        if self.who.agent is not None:
+            yield "agent", self.who.agent
+
+    def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
+        again = next((name for k, name in enumerate(self.order) if name in self.order[:k]), "")
+        if again:
+            message = f"{again} stands twice in this patrol in order: expected each place once in a round"
+            yield error("PML261", message, self.span, "delete one of the two")
+        elif len(self.order) == 1:
+            message = "in order says nothing about one place: expected two or more"
+            yield error("PML260", message, self.span, "name the other places, or delete in order")
+        if self.every is not None and self.every < 2:
+            message = f"every {self.every} leaves no time to go away and come back: expected 2 or more"
+            yield error("PML143", message, self.span, "write the time units between two visits")
+
+    @property
+    def words(self) -> Words:
+        place, turn = self.place.shown, ", in its turn" if self.order else ""
+        who = "a robot" if self.who.agent is None else self._patroller
+        return Words(
+            due=f"a visit of {place}{turn}",
+            due_by=f"{self._patroller} at {place}{turn and turn + ','}",
+            lane=f"visits: {place}",
+            since=f"the last visit of {place}{turn.replace(',', '')}, or the start",
+            statuses={Role.IDLE: f"{who} is there", Role.AT_RISK: "a visit is due"},
+            must=f"{self._patroller} has to be back",
+            there="there",
+            kept="visited again",
+            which=turn and f": {place}",
+        )
+
+    @property
+    def breaks(self) -> Breaks:
+        there = At(self.who, self.place)
+        return Breaks(begins=Not(there), ends=None if self.order else there, by_robots=True, stands=(there,))
+
+    def kept_by(self, robot: Ref) -> Patrol:
+        return replace(self, who=by_robot(self.who, robot))
+
+
+def patrols_in(objectives: Sequence[StatedObjective]) -> Tuple[Patrol, ...]:
+    """The patrols among objectives."""
+    return tuple(each for each in objectives if isinstance(each, Patrol))

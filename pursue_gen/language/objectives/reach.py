@@ -1,0 +1,84 @@
+"""`do e1 and e2 after T within D`: what is reached once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, ClassVar, Iterator, Optional, Sequence, Set, Tuple
+
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
+from pursue_gen.language.numbers import Number, exact
+from pursue_gen.language.objectives.base import StatedObjective, Whole, Words
+from pursue_gen.language.parts import Agent
+from pursue_gen.language.refs import Ref
+from pursue_gen.language.symbols import Role, Symbol
+
+MOST_EVENTS = 5
+"""So many events stand behind one `do` at most: the order in which they happen is free, and each order counts."""
+
+
+@dataclass(frozen=True)
+class Reach(StatedObjective):
+    """`do e1 and e2 after T within D`: each event happens, in any order, later than `after` and at most `within` time
+    units from the start (None: without a deadline)."""
+
+    events: Tuple[Ref, ...]
+    after: Number = 0
+    span: Span = NOWHERE
+    within: Optional[Number] = None
+    optional: int = 0
+    word: ClassVar[str] = "reach_objective"
+    limited_by: ClassVar[str] = "within"
+    once: ClassVar[bool] = True
+
+    @property
+    def text(self) -> str:
+        after = f" after {self.after}" if self.after else ""
+        within = "" if self.within is None else f" within {self.within}"
+        return f"do {' and '.join(ref.name for ref in self.events)}{after}{within}"
+
+    def sentence(self, shown: Callable[[str], str]) -> str:
+        after = f" later than {units(self.after)} after the start" if self.after else ""
+        within = "" if self.within is None else f" within {units(self.within)} after the start"
+        verb = "happens" if len(self.events) == 1 else "happen, in any order,"
+        when = f"{after} and{within}" if after and within else after or within
+        return f"{self.words.due} {verb}{when}".rstrip(",") + "."
+
+    def broken(self, beside: Callable[[str], str]) -> str:
+        return f"{self.words.due} not done within {self.within} of the start"
+
+    def names(self) -> Iterator[Tuple[str, Ref]]:
+        return (("event", ref) for ref in self.events)
+
+    def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
+        seen: Set[str] = set()
+        for ref in self.events:
+            if ref.name in seen:
+                yield error("PML222", f"{ref.name} stands twice behind do", ref.span, "delete one: it happens once")
+            seen.add(ref.name)
+        if len(self.events) > MOST_EVENTS:
+            message = f"more than {MOST_EVENTS} events behind one do"
+            yield error("PML224", message, self.span, "write several lines: all reach_objectives have to be reached")
+        if self.within is not None and self.within <= self.after:
+            message = f"within {self.within} ends before it counts, which is later than {self.after}"
+            hint = f"both count from the start of the mission: write within {exact(self.after + 1)} or more"
+            yield error("PML223", message, self.span, hint)
+
+    def statement(self, objectives: Sequence[StatedObjective]) -> Whole:
+        names, due = listed(ref.name for ref in self.events), self.words.due
+        return Whole((self,), self.text, "within", names, f"a later deadline for {due}", f"{due} within")
+
+    @property
+    def words(self) -> Words:
+        due = listed(ref.shown for ref in self.events)
+        behind = "" if self.after or self.within else " after 0"
+        return Words(due, statuses={Role.UNLOCKED: f"{due} to be done"}, behind=behind)
+
+    def done_in(self, location: str) -> Tuple[Ref, ...]:
+        done = Symbol.of(location)
+        return tuple(self.events[int(k) - 1] for k in done.parts) if done.role is Role.DID else ()
+
+    def about(self, kind: str, name: str) -> Iterator[str]:
+        if kind == "event" and any(ref.name == name for ref in self.events):
+            after = f", later than {units(self.after)} of time after the start" if self.after else ""
+            within = "" if self.within is None else f", {units(self.within)} of time after the start at most"
+            yield f"is to be achieved once{after}{within}"

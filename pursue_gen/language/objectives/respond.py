@@ -1,0 +1,96 @@
+"""`if trigger then response within deadline`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Callable, ClassVar, Iterator, Sequence, Tuple
+
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
+from pursue_gen.language.conditions import Condition, EventOrCondition, condition_text, condition_words, held_by
+from pursue_gen.language.numbers import Number
+from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective, Whole, Words
+from pursue_gen.language.parts import Agent
+from pursue_gen.language.refs import Ref
+from pursue_gen.language.symbols import Role
+
+
+def _text(what: EventOrCondition) -> str:
+    """The name of an event, or a condition as it is written."""
+    return what.name if isinstance(what, Ref) else condition_text(what)
+
+
+def _shown(what: EventOrCondition) -> str:
+    """What people read: an event's label, or a condition as it is written."""
+    return what.shown if isinstance(what, Ref) else condition_text(what)
+
+
+@dataclass(frozen=True)
+class Respond(Safety):
+    """`if trigger then response within deadline` (time units): events, or conditions.
+
+    A condition has to be answered when it comes to hold, and at the start where it holds; it answers as soon as it
+    holds.
+    """
+
+    trigger: EventOrCondition
+    response: EventOrCondition
+    deadline: Number
+    span: Span = NOWHERE
+    optional: int = 0
+    limited_by: ClassVar[str] = "deadline"
+
+    @property
+    def text(self) -> str:
+        return f"if {_text(self.trigger)} then {_text(self.response)} within {self.deadline}"
+
+    def sentence(self, shown: Callable[[str], str]) -> str:
+        trigger, response = self.trigger, self.response
+        if isinstance(trigger, Ref):
+            begins = f"Whenever {trigger.shown} happens"
+        else:
+            begins = f"Whenever it becomes true that {condition_words(trigger)}"
+        answer = f"{response.shown} happens" if isinstance(response, Ref) else condition_words(response)
+        return f"{begins}, {answer} within {units(self.deadline)}."
+
+    def broken(self, beside: Callable[[str], str]) -> str:
+        no = "no" if isinstance(self.response, Ref) else "not once"
+        return f"{no} {_shown(self.response)} within {self.deadline} of {_shown(self.trigger)}"
+
+    def names(self) -> Iterator[Tuple[str, Ref]]:
+        return (("event", what) for what in (self.trigger, self.response) if isinstance(what, Ref))
+
+    def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
+        if self.deadline <= 0:
+            message = "within 0 leaves no time to answer: expected more than 0"
+            yield error("PML143", message, self.span, "write the time units that the answer may take")
+        name = _text(self.response)
+        if name == _text(self.trigger):
+            kind, place = ("event", self.response.span) if isinstance(self.response, Ref) else ("condition", self.span)
+            yield error("PML172", f"{name} cannot be its own answer", place, f"name the {kind} that has to follow")
+
+    @property
+    def conditions(self) -> Tuple[Condition, ...]:
+        return tuple(what for what in (self.trigger, self.response) if not isinstance(what, Ref))
+
+    def statement(self, objectives: Sequence[StatedObjective]) -> Whole:
+        about, due = _text(self.response), _shown(self.response)
+        return Whole((self,), self.text, "deadline", about, "a later deadline", "a deadline of", f" for {due}")
+
+    @property
+    def words(self) -> Words:
+        due, since = _shown(self.response), f"the last {_shown(self.trigger)} or {_shown(self.response)}"
+        must, statuses = f"{due} is due", {Role.IDLE: "nothing is due", Role.AT_RISK: f"{due} is due"}
+        return Words(due, since=since, statuses=statuses, must=must, in_time="in time", kept="answered")
+
+    @property
+    def breaks(self) -> Breaks:
+        return Breaks(begins=self.trigger, ends=self.response)
+
+    def kept_by(self, robot: Ref) -> Respond:
+        return self if isinstance(self.response, Ref) else replace(self, response=held_by(self.response, robot))
+
+    def about(self, kind: str, name: str) -> Iterator[str]:
+        if kind == "event" and name == _text(self.trigger):
+            yield f"must be answered by {_text(self.response)} within {units(self.deadline)} of time"
+        if kind == "event" and name == _text(self.response):
+            yield f"is the answer to {_text(self.trigger)}, within {units(self.deadline)} of time"
