@@ -63,7 +63,7 @@ def least(scenario: Scenario, until: float) -> float:
         wanted: Dict[str, Dict[str, float]] = {}
         for patrol, robot in zip(patrols, robots):
             periods, place = wanted.setdefault(robot.name, {}), patrol.place.name
-            periods[place] = min(float(patrol.period), periods.get(place, math.inf))
+            periods[place] = min(float(patrol.known_limit), periods.get(place, math.inf))
         parts = [(name, tuple(sorted(periods.items()))) for name, periods in wanted.items()]
         for part in parts:
             if part not in known:

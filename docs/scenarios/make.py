@@ -24,13 +24,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, Dict, List, Mapping, Optional, Tuple
 
-from pursue_gen.diagnostics import PursueError
+from pursue_gen.diagnostics import PursueError, listed
 from pursue_gen.drawing import map_svg
 from pursue_gen.drawing.layout import poses
 from pursue_gen.files import write_texts
 from pursue_gen.language import load, parse
 from pursue_gen.language.scenario import Scenario, StatedObjective
-from pursue_gen.language.wording import listed, objective_text, periods_found, promise_words
+from pursue_gen.language.wording import periods_found, promise_words
 from pursue_gen.outcomes import Lost
 from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.least_time import Guarantee
@@ -268,7 +268,7 @@ def _wanted(scenario: Scenario, settled: Scenario) -> List[str]:
 
 
 def _numbered(objective: StatedObjective) -> str:
-    text = objective_text(objective)
+    text = objective.text
     return f"optional {objective.optional}: {text}" if objective.optional else text
 
 

@@ -1,8 +1,9 @@
 """What makes a scenario too large to be decided, and what is decided of it.
 
-Of several objectives each is solved alone, then several together (see `decided`), then all in cheaper forms (see
-`cheaper`). Then parts are left out, each alone, and where there is one objective, several together. Each smaller
-scenario is solved with a share of a fixed budget of work, the one that seems smallest first.
+All is solved with more time (see `longer`). Of several objectives each is solved alone, then several together (see
+`decided`), then all in cheaper forms (see `cheaper`). Then parts are left out, each alone, and where there is one
+objective, several together. Each smaller scenario is solved with a share of a fixed budget of work, the one that seems
+smallest first.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.ablations import Part, without_each
 from pursue_gen.explanation.cheaper import Form, cheaper
 from pursue_gen.explanation.decided import Decided, decided, texts
+from pursue_gen.explanation.longer import Longer, longer
 from pursue_gen.explanation.part import rules_for
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit
@@ -31,8 +33,8 @@ from pursue_gen.thresholds import narrowed
 WORK, STATES = 100_000_000, 100_000
 """The work of all games together, and the discrete states of each: ten seconds or so, the same on every machine."""
 
-SECONDS = 8.0
-"""Of processor time for all of them: somebody has waited for long already."""
+SECONDS, _LONGER = 8.0, 0.55
+"""Of processor time for all of them: somebody has waited for long already; the part for the scenario with more time."""
 
 ROOM = 64
 """MiB beside what is in use before."""
@@ -65,13 +67,14 @@ class Costs:
     """What is decided, the least work first; the parts without which, each alone, the scenario is not decided.
 
     `objectives`: what is decided of several objectives; None where there is one. `cheaper`: forms of statements with
-    which all is won.
+    which all is won. `longer`: the limits with which all is won, where there are any.
     """
 
     decided: Tuple[Cost, ...]
     undecided: Tuple[str, ...]
     objectives: Optional[Decided] = None
     cheaper: Tuple[Form, ...] = ()
+    longer: Tuple[Longer, ...] = ()
 
 
 def costs(
@@ -96,11 +99,13 @@ def costs(
     undecided: List[Part] = []
     objectives: Optional[Decided] = None
     forms: List[Form] = []
+    more: Tuple[Longer, ...] = ()
     with suppress(LimitHit), enforced(few, EXPLAINING):
         if option:
             cost = _cost((option,), _game(scenario, rules), rules, budget, _OPTION)
             if cost is not None:
                 return Costs((cost,), ())
+        more = longer(scenario, rules, Limits(_LONGER * seconds, memory), progress)
         objectives = decided(scenario, rules, budget.split(_OBJECTIVES))
         if objectives is not None and objectives.next_line:
             for form in cheaper(scenario, rules, budget.split(_FORMS), objectives.next_line):
@@ -108,12 +113,13 @@ def costs(
         found, undecided = _alone(scenario, rules, budget.split(_ALONE), objectives is None)
         if not found and objectives is None:
             found = _together(scenario, undecided, rules, budget)
-    return Costs(tuple(found), tuple(part.name for part in undecided), objectives, tuple(forms))
+    return Costs(tuple(found), tuple(part.name for part in undecided), objectives, tuple(forms), more)
 
 
 def in_words(found: Costs) -> str:
     """The costs in sentences, a line for each that is decided; empty where nothing is known."""
-    lines = [] if found.objectives is None else texts(found.objectives)
+    lines = ["All is won with more time:", *(each.in_words() for each in found.longer)] if found.longer else []
+    lines += [] if found.objectives is None else texts(found.objectives)
     lines += [form.in_words() for form in found.cheaper]
     return "\n".join([*lines, *filter(None, [_left_out(found)])])
 
@@ -138,8 +144,9 @@ def as_json(found: Costs) -> Dict[str, Any]:
     """The costs as a JSON object."""
     objectives = {} if found.objectives is None else {"objectives": asdict(found.objectives)}
     forms = {"cheaper": [asdict(form) for form in found.cheaper]} if found.cheaper else {}
+    more = {"longer": [{**asdict(each), "asked": float(each.asked)} for each in found.longer]} if found.longer else {}
     decided_ones = [asdict(cost) for cost in found.decided]
-    return {"decided": decided_ones, "undecided": list(found.undecided), **objectives, **forms}
+    return {"decided": decided_ones, "undecided": list(found.undecided), **objectives, **forms, **more}
 
 
 def _alone(

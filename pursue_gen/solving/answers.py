@@ -40,8 +40,8 @@ class Answer:
         return {"objective": self.promise.text, "worst": worst, "deadline": deadline}
 
 
-def answers(scenario: Scenario, won: Solution, limits: Limits = NO_LIMITS) -> List[Answer]:
+def answers(scenario: Scenario, won: Solution, limits: Limits = NO_LIMITS, states: int = STATES) -> List[Answer]:
     """Those of the promises with a deadline whose time a fixed amount of work tells, in the order of the scenario."""
-    took = answer_times(won.network, won.objective, won.strategy, won.reaction, STATES, limits)
+    took = answer_times(won.network, won.objective, won.strategy, won.reaction, states, limits)
     named = ((names.safety_objective(k), each) for k, each in enumerate(scenario.safety))
     return [Answer(each, took[name]) for name, each in named if name in took and each.limit is not None]

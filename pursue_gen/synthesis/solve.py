@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from typing import AbstractSet, Callable, Mapping, Optional, Tuple
@@ -19,7 +19,7 @@ from pursue_gen.synthesis.overtaking import ended_earlier, without_overtaking
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.synthesis.strategy_from import to_ranks, to_strategy
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tga.pauses import pauses, without_clocks
+from pursue_gen.tga.pauses import may_only_pause, pauses, without_clocks
 
 
 @dataclass(frozen=True)
@@ -79,18 +79,25 @@ def solve(
     What cannot matter is left out of the game first, and not named in the strategy (`cone`), unless `whole` is set.
     `soonest`: for a quick strategy, with more work (see `Engine.solve`). `without_pauses`: against an environment that
     takes none (see `tga.pauses`): what is won so is won, and the strategy names the clocks that it leaves out; what is
-    lost so may be won. `first`: the least work for the game as it is, before searches take turns (see `Engine`); None:
-    all that the limits give it, as searches in turn would use up more than half of that in vain.
+    lost so may be won. The other way round, a call that only begins a pause makes commands stale, but not those of a
+    strategy that leaves its clock out: nothing is lost that is won without pauses. `first`: the least work for the game
+    as it is, before searches take turns (see `Engine`); None: all that the limits give it, as searches in turn would
+    use up more than half of that in vain.
 
     `reaction` is the delay of a command in time units; `progress` is called a few times a second. Raises PursueError
     for networks that the game does not support, LimitHit at a limit and where the engine does not hold the game,
     Unavailable where it was not built.
     """
     game, gone = _compiled(network, objective, reaction, engine, whole, without_pauses)
+    start = limits.now()
     outcome = engine.giving_first(limits.work if first is None else first).solve(game, limits, progress, soonest)
     stats = _stats(engine, outcome)
     if not outcome.won:
-        return Verdict(False, None, stats, None)
+        if without_pauses or not reaction or not may_only_pause(network):
+            return Verdict(False, None, stats, None)
+        left = replace(limits.since(start), work=limits.work and max(1, limits.work - stats.work))
+        free = solve(network, objective, reaction, engine, left, progress, whole, soonest, True, first)
+        return replace(free, stats=replace(free.stats if free.won else stats, work=stats.work + free.stats.work))
     blocks, ranks = outcome.blocks, outcome.ranks
     cautious: Callable[[], Optional[Strategy]] = _none
     if game.delta and game.goal:

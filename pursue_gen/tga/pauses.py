@@ -27,6 +27,17 @@ def pauses(network: Network) -> Tuple[str, ...]:
     return tuple(clock for clock in network.clocks if clock in tested and clock not in others)
 
 
+def may_only_pause(network: Network) -> bool:
+    """True if there may be a move of the environment that does nothing but begin a pause."""
+    clocks = frozenset(pauses(network))
+    return any(
+        edge.source == edge.target and bound.clock in clocks
+        for automaton in network.automata
+        for edge in automaton.edges
+        for bound in edge.guard.clocks
+    )
+
+
 def without_clocks(network: Network, clocks: Collection[str]) -> Network:
     """The network without these clocks: no edge tests or resets them. No invariant may name them."""
     gone = frozenset(clocks)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
+from pursue_gen.proof.checker import verify
 from pursue_gen.solving.options import DEFAULT
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import lost_to_few_calls, verdict_of
@@ -35,6 +36,30 @@ def test_both_verdicts_take_little_work(text: str, won: bool) -> None:
         solve(game, objective, rules.reaction, limits=Limits(work=4_000_000))
     assert verdict_of(Budget(Limits(work=16_000_000)), game, objective, rules.reaction).won is won
     assert lost_to_few_calls(game, objective, rules.reaction, DEFAULT) is not won
+
+
+NARROW = """poi "hall"
+poi "east"
+poi "west"
+connect hall and east distance 3
+connect hall and west distance 3
+event "ring"
+event "look" location east duration 2
+agent "otto" controllable mobile 1 location west can_do look
+agent "guest" location hall can_do ring
+objective: if ring then look within {deadline}
+objective: patrol west every 24 by otto
+"""
+
+
+@pytest.mark.parametrize(("deadline", "won"), [("24.5", False), ("24.7", True), ("25", True)])
+def test_calls_that_only_begin_a_pause_lose_no_game_that_is_won_without_them(deadline: str, won: bool) -> None:
+    scenario = parse(NARROW.format(deadline=deadline), "narrow.pur", "narrow")
+    game, objective, rules = played(translate(scenario), Rules()), scenario_objective(scenario), Rules()
+    verdict = solve(game, objective, rules.reaction)
+    assert verdict.won is won is verdict_of(Budget(Limits(work=16_000_000)), game, objective, rules.reaction).won
+    if verdict.strategy is not None:
+        assert verify(game, objective, verdict.strategy, rules.reaction).ok
 
 
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))

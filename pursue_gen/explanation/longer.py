@@ -1,0 +1,84 @@
+"""What can be promised with more time, of a scenario that is not decided as it stands.
+
+All limits are made longer until a strategy is found; where it is known how late a promise is kept by that one at worst,
+that is enough, and the promise stays as it is where its own limit is.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import partial
+from math import ceil
+from typing import Dict, Iterator, Mapping, Optional, Tuple
+
+from pursue_gen.language.numbers import Number, decimal_text
+from pursue_gen.language.scenario import Scenario, StatedObjective
+from pursue_gen.outcomes import LimitHit, Lost, NotProven
+from pursue_gen.solving.answers import answers
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import solution
+from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
+from pursue_gen.tga import scenario_objective, translate
+
+_FACTORS = (2, 4)
+"""So many times as long all limits are; the first with which a strategy is found counts."""
+
+_STATES = 20_000
+"""Symbolic states of the checker that the time of a promise may take."""
+
+
+@dataclass(frozen=True)
+class Longer:
+    """A statement with the limit that a proven strategy keeps, together with all others; `asked`: the one it has."""
+
+    line: int
+    text: str
+    asked: Number
+
+    def in_words(self) -> str:
+        """The statement in a line, with what was asked for."""
+        return f"  line {self.line}, {self.text} ({decimal_text(self.asked)} is asked for)"
+
+
+def longer(
+    scenario: Scenario, rules: Rules, limits: Limits, progress: Optional[Listener] = None
+) -> Tuple[Longer, ...]:
+    """The statements that need another limit for all to be won together; () where none are found within the limits."""
+    if not any(each.limit for each in scenario.objectives):
+        return ()
+    start = limits.now()
+    listener = progress and (lambda reached: progress(replace(reached, phase=EXPLAINING)))
+    for factor in _FACTORS:
+        more = scenario.with_each(partial(_times, factor))
+        try:
+            options = SolveOptions(limits.since(start), progress=listener)
+            won = solution(translate(more), scenario_objective(more), rules, options)
+        except LimitHit:
+            return ()
+        except (Lost, NotProven):
+            continue
+        late: Dict[int, Number] = {}
+        with suppress(LimitHit):
+            late.update((id(each.promise), each.worst) for each in answers(more, won, limits.since(start), _STATES))
+        enough: Dict[int, Number] = {}
+        for asked, given in zip(scenario.objectives, more.objectives):
+            if given.limit is not None:
+                enough[id(asked)] = max(asked.known_limit, min(ceil(late.get(id(given), given.limit)), given.limit))
+        return tuple(_statements(scenario, enough))
+    return ()
+
+
+def _times(factor: int, each: StatedObjective) -> StatedObjective:
+    return each.with_limit(ceil(factor * each.limit)) if each.limit else each
+
+
+def _statements(scenario: Scenario, enough: Mapping[int, Number]) -> Iterator[Longer]:
+    """The statements of promises that need more than they have; all promises of one have the same limit."""
+    for span in dict.fromkeys(each.span for each in scenario.objectives):
+        statement = [each for each in scenario.objectives if each.span == span and each.limit]
+        needed = max((enough[id(each)] for each in statement), default=0)
+        if statement and needed > statement[0].known_limit:
+            changed = [each.with_limit(ceil(needed)) for each in statement]
+            yield Longer(span.line, changed[0].statement(changed).text, statement[0].known_limit)
