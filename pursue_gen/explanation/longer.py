@@ -1,7 +1,7 @@
 """What can be promised with more time, of a scenario that is not decided as it stands.
 
-All limits are made longer until a strategy is found; where it is known how late a promise is kept by that one at worst,
-that is enough, and the promise stays as it is where its own limit is.
+All limits are made longer until a strategy is found. Where it is known how late a promise is kept by that one at worst,
+that is enough, and the promise stays as it is where its own limit is, if a strategy is found with these limits, too.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pursue_gen.outcomes import LimitHit, Lost, NotProven
 from pursue_gen.solving.answers import answers
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules
-from pursue_gen.solving.solution import solution
+from pursue_gen.solving.solution import Solution, solution
 from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 from pursue_gen.tga import scenario_objective, translate
 
@@ -42,36 +42,53 @@ class Longer:
         return f"  line {self.line}, {self.text} ({decimal_text(self.asked)} is asked for)"
 
 
-def longer(
-    scenario: Scenario, rules: Rules, limits: Limits, progress: Optional[Listener] = None
-) -> Tuple[Longer, ...]:
+def longer(scenario: Scenario, rules: Rules, limits: Limits, progress: Optional[Listener] = None) -> Tuple[Longer, ...]:
     """The statements that need another limit for all to be won together; () where none are found within the limits."""
     if not any(each.limit for each in scenario.objectives):
         return ()
     start = limits.now()
     listener = progress and (lambda reached: progress(replace(reached, phase=EXPLAINING)))
+
+    def won(some: Scenario) -> Solution:
+        options = SolveOptions(limits.since(start), progress=listener)
+        return solution(translate(some), scenario_objective(some), rules, options)
+
     for factor in _FACTORS:
         more = scenario.with_each(partial(_times, factor))
         try:
-            options = SolveOptions(limits.since(start), progress=listener)
-            won = solution(translate(more), scenario_objective(more), rules, options)
+            found = won(more)
         except LimitHit:
             return ()
         except (Lost, NotProven):
             continue
         late: Dict[int, Number] = {}
         with suppress(LimitHit):
-            late.update((id(each.promise), each.worst) for each in answers(more, won, limits.since(start), _STATES))
-        enough: Dict[int, Number] = {}
-        for asked, given in zip(scenario.objectives, more.objectives):
-            if given.limit is not None:
-                enough[id(asked)] = max(asked.known_limit, min(ceil(late.get(id(given), given.limit)), given.limit))
-        return tuple(_statements(scenario, enough))
+            late.update((id(each.promise), each.worst) for each in answers(more, found, limits.since(start), _STATES))
+        enough = _enough(scenario, more, late)
+        # Who writes these limits is to find what is told, and where they are tight it may be too much work.
+        with suppress(LimitHit, Lost, NotProven):
+            won(scenario.with_each(partial(_within, enough)))
+            return tuple(_statements(scenario, enough))
+        return tuple(_statements(scenario, {id(each): factor * (each.limit or 0) for each in scenario.objectives}))
     return ()
 
 
 def _times(factor: int, each: StatedObjective) -> StatedObjective:
     return each.with_limit(ceil(factor * each.limit)) if each.limit else each
+
+
+def _enough(scenario: Scenario, more: Scenario, late: Mapping[int, Number]) -> Dict[int, Number]:
+    """The limit that is enough for each promise, by its identity: how late it is kept at worst, else that of `more`."""
+    pairs = ((asked, given, given.limit) for asked, given in zip(scenario.objectives, more.objectives))
+    return {
+        id(asked): max(asked.known_limit, min(ceil(late.get(id(given), limit)), limit))
+        for asked, given, limit in pairs
+        if limit is not None
+    }
+
+
+def _within(enough: Mapping[int, Number], each: StatedObjective) -> StatedObjective:
+    return each if enough.get(id(each)) == each.limit else each.with_limit(ceil(enough[id(each)]))
 
 
 def _statements(scenario: Scenario, enough: Mapping[int, Number]) -> Iterator[Longer]:

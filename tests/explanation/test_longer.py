@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import json
+from typing import List
 
 import pytest
 
+from pursue_gen.diagnostics import error
 from pursue_gen.explanation import costs as costs_module
+from pursue_gen.explanation import longer as longer_module
 from pursue_gen.explanation.costs import Costs, as_json, costs, in_words
 from pursue_gen.explanation.longer import Longer, longer
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.outcomes import Lost
+from pursue_gen.outcomes import LimitHit, Lost
+from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules
-from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.solving.solution import Solution, solution, solve_scenario
 from pursue_gen.synthesis.limits import Limits
+from pursue_gen.tga.network import Network, Objective
 
 RULES = Rules()
 
@@ -64,6 +69,20 @@ def test_one_statement_with_several_promises_is_one_line() -> None:
     (only,) = longer(promises(house(40, 20)), RULES, Limits(60.0))
     assert only.text.startswith("patrol west, hall every ") and (only.line, only.asked) == (11, 20)
     assert only.in_words() == f"  line 11, {only.text} (20 is asked for)"
+
+
+def test_limits_that_are_too_much_work_to_win_with_are_not_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: List[Objective] = []
+
+    def little_work(network: Network, objective: Objective, rules: Rules, options: SolveOptions) -> Solution:
+        tried.append(objective)
+        if len(tried) > 1:
+            raise LimitHit([error("SYN010", "no verdict")])
+        return solution(network, objective, rules, options)
+
+    monkeypatch.setattr(longer_module, "solution", little_work)
+    found = longer(promises(house()), RULES, Limits(60.0))
+    assert [each.text for each in found] == ["if ring then look within 28", "patrol west, hall every 120 by otto"]
 
 
 def test_where_nothing_has_a_limit_or_there_is_no_time_nothing_is_found() -> None:
