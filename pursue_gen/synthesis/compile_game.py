@@ -161,6 +161,7 @@ class _Tables:
             resets=tuple(self._index(self._clocks, "clock", name) for name in edge.resets),
             controllable=edge.controllable,
             duration=max((-constant(bound) for i, _, bound in bounds if i == 0), default=0),
+            heard=edge.sync is not None and edge.sync.heard,
         )
 
     def _clauses(self, guard: Guard) -> Tuple[Clause, ...]:

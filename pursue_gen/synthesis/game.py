@@ -40,7 +40,8 @@ class GameEdge:
 
     `bounds` are the clock guard, `clauses` the integer guard (all of them hold), `channel` is NO_CHANNEL for a step of
     its own (then `sends` is true as well: the edge moves by itself), `assignments` are (variable, value), `resets` are
-    clocks. `duration` is the largest lower bound of the guard: how long the edge makes one wait.
+    clocks. `duration` is the largest lower bound of the guard: how long the edge makes one wait. `heard`: no move where
+    it changes nothing but where its automaton is, and its clocks (see `Sync`).
     """
 
     automaton: int
@@ -54,6 +55,7 @@ class GameEdge:
     resets: Tuple[int, ...]
     controllable: bool
     duration: int
+    heard: bool = False
 
 
 @dataclass(frozen=True)
@@ -193,7 +195,9 @@ def joint_moves(game: Game, state: State) -> Iterator[JointMove]:
             edge = game.edges[k]
             if _enabled(edge, state):
                 for receivers in product(*_receivers(game, state, here, edge)):
-                    yield _joint_move(game, state, number, (k, *receivers))
+                    move = _joint_move(game, state, number, (k, *receivers))
+                    if not edge.heard or _is_heard(move, edge, state):
+                        yield move
 
 
 def _receivers(game: Game, state: State, here: Sequence[Leaving], sender: GameEdge) -> List[List[int]]:
@@ -205,6 +209,13 @@ def _receivers(game: Game, state: State, here: Sequence[Leaving], sender: GameEd
         if number != sender.automaton
     )
     return [edges for edges in choices if edges]
+
+
+def _is_heard(move: JointMove, sender: GameEdge, state: State) -> bool:
+    """True if the move changes more than where its sender is, and its clocks."""
+    moved = {k for k, (old, new) in enumerate(zip(state.locations, move.target.locations)) if old != new}
+    more = move.target.values != state.values or not {*move.resets} <= {*sender.resets}
+    return more or not moved <= {sender.automaton}
 
 
 def _enabled(edge: GameEdge, state: State) -> bool:

@@ -19,7 +19,7 @@ from pursue_gen.synthesis.overtaking import ended_earlier, without_overtaking
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.synthesis.strategy_from import to_ranks, to_strategy
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tga.pauses import may_only_pause, pauses, without_clocks
+from pursue_gen.tga.pauses import pauses, with_calls_that_are_heard, without_clocks
 
 
 @dataclass(frozen=True)
@@ -80,24 +80,33 @@ def solve(
     `soonest`: for a quick strategy, with more work (see `Engine.solve`). `without_pauses`: against an environment that
     takes none (see `tga.pauses`): what is won so is won, and the strategy names the clocks that it leaves out; what is
     lost so may be won. The other way round, a call that only begins a pause makes commands stale, but not those of a
-    strategy that leaves its clock out: nothing is lost that is won without pauses. `first`: the least work for the game
-    as it is, before searches take turns (see `Engine`); None: all that the limits give it, as searches in turn would
-    use up more than half of that in vain.
+    strategy that leaves its clock out: lost is what is lost where such calls are no moves, and between the two nothing
+    is known. `first`: the least work for the game as it is, before searches take turns (see `Engine`); None: all that
+    the limits give it, as searches in turn would use up more than half of that in vain.
 
     `reaction` is the delay of a command in time units; `progress` is called a few times a second. Raises PursueError
-    for networks that the game does not support, LimitHit at a limit and where the engine does not hold the game,
-    Unavailable where it was not built.
+    for networks that the game does not support, LimitHit at a limit, where the engine does not hold the game, and where
+    nothing is known, Unavailable where it was not built.
     """
     game, gone = _compiled(network, objective, reaction, engine, whole, without_pauses)
     start = limits.now()
     outcome = engine.giving_first(limits.work if first is None else first).solve(game, limits, progress, soonest)
     stats = _stats(engine, outcome)
     if not outcome.won:
-        if without_pauses or not reaction or not may_only_pause(network):
-            return Verdict(False, None, stats, None)
-        left = replace(limits.since(start), work=limits.work and max(1, limits.work - stats.work))
-        free = solve(network, objective, reaction, engine, left, progress, whole, soonest, True, first)
-        return replace(free, stats=replace(free.stats if free.won else stats, work=stats.work + free.stats.work))
+        part = cone_of_influence(network, objective)
+        heard = part if without_pauses or not reaction else with_calls_that_are_heard(part)
+        if heard is part:
+            return Verdict(False, None, stats)
+        work = stats.work
+        for each, free in ((heard, False), (network, True)):
+            left = replace(limits.since(start), work=limits.work and max(1, limits.work - work))
+            other = solve(each, objective, reaction, engine, left, progress, whole, soonest, free, first)
+            work += other.stats.work
+            if other.won is free:
+                return replace(other, stats=replace(other.stats, work=work))
+        message = "no verdict: it is lost to calls that change nothing, but make the robots' commands late"
+        hint = "give the limits of time a reaction delay more for each command that is needed"
+        raise LimitHit([error("SYN010", message, hint=hint)])
     blocks, ranks = outcome.blocks, outcome.ranks
     cautious: Callable[[], Optional[Strategy]] = _none
     if game.delta and game.goal:

@@ -64,10 +64,14 @@ class Guard:
 
 @dataclass(frozen=True)
 class Sync:
-    """`channel!` (sends) or `channel?`."""
+    """`channel!` (sends) or `channel?`.
+
+    `heard`: a sender's move that changes nothing but where the sender is, and its clocks, is no move at all.
+    """
 
     channel: str
     sends: bool
+    heard: bool = False
 
 
 @dataclass(frozen=True)

@@ -27,15 +27,26 @@ def pauses(network: Network) -> Tuple[str, ...]:
     return tuple(clock for clock in network.clocks if clock in tested and clock not in others)
 
 
-def may_only_pause(network: Network) -> bool:
-    """True if there may be a move of the environment that does nothing but begin a pause."""
+def with_calls_that_are_heard(network: Network) -> Network:
+    """The network in which a call that does nothing but begin a pause is no move; itself where there is none.
+
+    Such a move makes commands stale, but not those of a strategy that leaves the clock of the pause out.
+    """
     clocks = frozenset(pauses(network))
-    return any(
-        edge.source == edge.target and bound.clock in clocks
-        for automaton in network.automata
-        for edge in automaton.edges
-        for bound in edge.guard.clocks
+    automata = tuple(
+        replace(a, edges=tuple(heard for edge in a.edges for heard in _heard(edge, clocks))) if clocks & a.clocks else a
+        for a in network.automata
     )
+    return network if automata == network.automata else replace(network, automata=automata)
+
+
+def _heard(edge: Edge, clocks: AbstractSet[str]) -> Tuple[Edge, ...]:
+    """The edge, if it may be a move; a loop that resets pauses alone is one where somebody hears it."""
+    if edge.source != edge.target or edge.controllable or edge.assign or not clocks >= {*edge.resets}:
+        return (edge,)
+    if edge.sync is None:
+        return ()
+    return (replace(edge, sync=replace(edge.sync, heard=True)) if edge.sync.sends else edge,)
 
 
 def without_clocks(network: Network, clocks: Collection[str]) -> Network:
@@ -73,13 +84,15 @@ def _without(edge: Edge, clocks: AbstractSet[str]) -> Edge:
 
 def acting_at_most(network: Network, objective: Objective, times: int) -> Network:
     """The network in which each agent that rests (see `pauses`) does so little: at most so many of the moves for which
-    it has to rest. The environment has fewer moves, none of which it is ever obliged to make.
+    it has to rest, of which those that nobody hears are none. The environment has fewer moves, none of which it is ever
+    obliged to make.
 
     Locations get copies, so automata that the objective names stay as they are.
     """
     clocks = frozenset(pauses(network))
     named = {name for name, _ in (*objective.goal, *objective.bad)}
-    automata = (a if a.name in named else _counting(a, clocks, times) for a in network.automata)
+    heard = with_calls_that_are_heard(network).automata
+    automata = (a if a.name in named else _counting(a, clocks, times) for a in heard)
     return replace(network, automata=tuple(automata))
 
 

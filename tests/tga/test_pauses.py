@@ -21,7 +21,7 @@ from pursue_gen.tga.network import (
     Objective,
     Sync,
 )
-from pursue_gen.tga.pauses import acting_at_most, pauses, without_clocks
+from pursue_gen.tga.pauses import acting_at_most, pauses, with_calls_that_are_heard, without_clocks
 
 STORY = """
 poi "desk"
@@ -36,6 +36,7 @@ objective: if call then serve within 20
 """
 
 CALL = Edge("here", "here", Guard((ClockBound("y", ">", 1),)), Sync("call", sends=True), (), ("y",), False)
+HEARD = Sync("call", sends=True, heard=True)
 NOTHING = Objective(Kind.SAFETY)
 PLACES = (Location("here"), Location("there", (ClockBound("x", "<=", 2),)))
 
@@ -104,6 +105,22 @@ def test_a_network_without_clocks_to_leave_out_is_itself() -> None:
     assert without_clocks(same, ()) is same
 
 
+def test_a_call_that_only_begins_a_pause_is_a_move_where_somebody_hears_it() -> None:
+    going = Edge("here", "there", Guard((ClockBound("y", ">", 1),)), controllable=False)
+    silent = replace(CALL, sync=None)
+    less = with_calls_that_are_heard(network(going, silent))
+    assert less.automata[0].edges == (replace(CALL, sync=HEARD), going)
+    assert with_calls_that_are_heard(less) is less
+
+
+@pytest.mark.parametrize(
+    "edge", [replace(CALL, resets=("x", "y")), replace(CALL, assign=(("v", 1),)), replace(CALL, target="there")]
+)
+def test_a_call_that_does_more_is_a_move(edge: Edge) -> None:
+    more = Network(("x", "y"), (("v", 0),), ("call",), (Automaton("guest", PLACES, "here", (edge,)),), ())
+    assert pauses(more) == ("y",) and with_calls_that_are_heard(more) is more
+
+
 def test_with_few_calls_every_location_knows_how_many_there_were() -> None:
     going = Edge("here", "there", resets=("x",), controllable=False)
     less = acting_at_most(network(going), NOTHING, 1).automata[0]
@@ -111,7 +128,7 @@ def test_with_few_calls_every_location_knows_how_many_there_were() -> None:
         ("here", ()), ("there", PLACES[1].invariant), ("here 1", ()), ("there 1", PLACES[1].invariant)
     ]  # fmt: skip
     assert [(edge.source, edge.target, edge.sync) for edge in less.edges] == [
-        ("here", "here 1", CALL.sync), ("here", "there", None), ("here 1", "there 1", None)
+        ("here", "here 1", HEARD), ("here", "there", None), ("here 1", "there 1", None)
     ]  # fmt: skip
 
 
@@ -122,4 +139,4 @@ def test_who_needs_no_rest_acts_as_before() -> None:
 
 def test_places_that_the_objective_names_stay_what_they_are() -> None:
     met = Objective(Kind.REACH, goal=(("guest", "there"),))
-    assert acting_at_most(network(), met, 1) == network()
+    assert acting_at_most(network(), met, 1) == with_calls_that_are_heard(network())

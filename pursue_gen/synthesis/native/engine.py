@@ -144,6 +144,7 @@ def _tables(game: Game) -> Dict[str, Any]:
             "clauses": e.clauses,
             "channel": e.channel,
             "sends": e.sends,
+            "heard": e.heard,
             "assign": e.assignments,
             "resets": e.resets,
             "controllable": e.controllable,

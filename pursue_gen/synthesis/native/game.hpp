@@ -28,6 +28,7 @@ struct Edge {
     std::vector<Clause> clauses;
     int channel;  // -1: a step of its own
     bool sends;
+    bool heard;  // no move where it changes nothing but where its automaton is, and its clocks
     std::vector<Test> assign;
     std::vector<int> resets;
     bool controllable;

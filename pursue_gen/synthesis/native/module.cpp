@@ -57,6 +57,7 @@ Game read_game(const py::dict& in) {
             for (const auto& clause : e["clauses"]) edge.clauses.push_back(tests(clause));
             edge.channel = e["channel"].cast<int>();
             edge.sends = e["sends"].cast<bool>();
+            edge.heard = e["heard"].cast<bool>();
             edge.assign = tests(e["assign"]);
             edge.resets = e["resets"].cast<std::vector<int>>();
             edge.controllable = e["controllable"].cast<bool>();

@@ -112,10 +112,23 @@ class Joints {
                 out.push_back(joint);
                 for (int b = 0; sender->channel >= 0 && b < count_; ++b)
                     if (b != a) add_receivers(d, b, sender->channel, first, out);
+                if (sender->heard)
+                    out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
+                                             [&](int k) { return !is_heard(joints_[k], *sender, d); }),
+                              out.end());
             }
     }
 
   private:
+    // Whether the move from d changes more than where its sender is, and its clocks.
+    bool is_heard(const Joint& joint, const Edge& sender, const Discrete& d) const {
+        Discrete after = joint.target(d);
+        after[joint.owner] = d[joint.owner];
+        return after != d || std::any_of(joint.resets.begin(), joint.resets.end(), [&](int x) {
+                   return std::find(sender.resets.begin(), sender.resets.end(), x) == sender.resets.end();
+               });
+    }
+
     int add(const Edge& edge, int automaton) {
         Joint joint{{}, automaton, true, edge.guard, {}, {}, {}};
         extend(joint, edge, automaton);
