@@ -8,16 +8,19 @@ only such variables, change nothing for the others.
 What is left out cannot stop time: wherever it may be, the environment can let as much time pass as it likes. So each
 play of the part is one of the network, with or without moves of what is left out, and the part is won if and only if
 the network is, moves that change nothing for anybody else counted as none (see `game.JointMove`). Controllable
-agents that are left out stay where they are.
+agents that are left out stay where they are, and those that are not make no detours (`detours`).
 """
 
 from __future__ import annotations
 
-from typing import Dict, Set, Tuple
+from collections import defaultdict
+from dataclasses import replace
+from typing import Dict, FrozenSet, Sequence, Set, Tuple
 
-from pursue_gen.language.numbers import Number
+from pursue_gen.synthesis.detours import Detour, detours
+from pursue_gen.synthesis.time_passes import lets_time_pass
 from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.network import Automaton, ClockBound, Edge, Location, Network, Objective
+from pursue_gen.tga.network import Automaton, Edge, Network, Objective
 from pursue_gen.tga.part import part_of
 
 
@@ -26,6 +29,10 @@ def cone_of_influence(network: Network, objective: Objective) -> Network:
     cone = _Cone(network, objective)
     while cone.grow():
         pass
+    gone = cone.unnoticed()
+    if any(gone.get(name) for name in cone.automata):
+        without = (replace(a, edges=tuple(e for e in a.edges if e not in gone[a.name])) for a in network.automata)
+        network = replace(network, automata=tuple(without))
     return part_of(network, cone.automata, cone.variables)
 
 
@@ -44,21 +51,23 @@ class _Cone:
         self._network = network
         self.automata = {name for name, _ in (*objective.goal, *objective.bad)}
         self.automata.intersection_update(automaton.name for automaton in network.automata)
-        self.automata.update(a.name for a in network.automata if not _lets_time_pass(a, network))
+        self.automata.update(a.name for a in network.automata if not lets_time_pass(a, network))
         self.variables: Set[str] = set()
         self._clocks: Set[str] = set()
+        self._detours = detours(network, objective)
 
     def grow(self) -> bool:
         """Take in what the part depends on by one step more; False if that is nothing."""
         before = len(self.automata), len(self.variables), len(self._clocks)
         received: Set[str] = set()
         sent: Set[str] = set()
+        gone = self.unnoticed()
         for automaton in self._network.automata:
             if automaton.name not in self.automata:
                 continue
             self._clocks |= automaton.clocks
             for edge in automaton.edges:
-                if not self._may_go(automaton, edge):
+                if edge not in gone[automaton.name] and not self._may_go(automaton, edge):
                     self.variables.update(edge.variables)
                     if edge.sync is not None:
                         (sent if edge.sync.sends else received).add(edge.sync.channel)
@@ -68,6 +77,26 @@ class _Cone:
             ):
                 self.automata.add(automaton.name)
         return before != (len(self.automata), len(self.variables), len(self._clocks))
+
+    def unnoticed(self) -> Dict[str, FrozenSet[Edge]]:
+        """By automaton the edges of the detours of which nothing that matters takes notice."""
+        kept = [automaton for automaton in self._network.automata if automaton.name in self.automata]
+        tests: Dict[str, Set[FrozenSet[int]]] = defaultdict(set)
+        for edge in (edge for automaton in kept for edge in automaton.edges):
+            for clause in edge.guard.integers:
+                for name in {test.variable for test in clause}:
+                    tests[name].add(frozenset(test.value for test in clause if test.variable == name))
+        gone: Dict[str, FrozenSet[Edge]] = defaultdict(frozenset)
+        for name, some in self._detours.items():
+            if name in self.automata:
+                away = (one for one in some if one.is_unnoticed(self.variables, tests))
+                others = [automaton for automaton in kept if automaton.name != name]
+                gone[name] = frozenset(e for one in away if not self._is_heard(one, others) for e in one.edges)
+        return gone
+
+    def _is_heard(self, detour: Detour, others: Sequence[Automaton]) -> bool:
+        """True if one of these automata hears that the detour begins or ends."""
+        return any(self._hears(other, edge) for other in others for edge in detour.edges if edge.sync is not None)
 
     def _may_go(self, automaton: Automaton, edge: Edge) -> bool:
         """True for an edge that needs a variable which does not matter, and does nothing that does."""
@@ -103,75 +132,3 @@ class _Cone:
         if edge.sync.sends:
             return edge.sync.channel in received
         return edge.sync.channel in sent and not edge.controllable  # the move is the environment's because of it
-
-
-def _lets_time_pass(automaton: Automaton, network: Network) -> bool:
-    """True if the environment can let time pass for ever, wherever the automaton has come to without commands.
-
-    At each bound of an invariant there is an edge of the environment that leads away whatever the variables are, and
-    each new stay may last a time unit: the clock of the bound is reset on all ways into it.
-    """
-    bounded = {location.name: location for location in automaton.locations if location.invariant}
-    here = bounded.get(automaton.initial)
-    if here is not None and network.start and not _starts_within(network, here):
-        return False
-    return all(_may_be_left(automaton, bounded[name]) for name in _reached(automaton, network) if name in bounded)
-
-
-def _reached(automaton: Automaton, network: Network) -> Set[str]:
-    """The locations that the automaton may come to if the controller leaves it alone."""
-    others = {
-        edge.sync.channel
-        for other in network.automata
-        for edge in other.edges
-        if edge.sync is not None and not edge.sync.sends and not edge.controllable
-    }
-    onward: Dict[str, Set[str]] = {}
-    for edge in automaton.edges:
-        if not edge.controllable or not _own(edge) or (edge.sync is not None and edge.sync.channel in others):
-            onward.setdefault(edge.source, set()).add(edge.target)
-    found, pending = {automaton.initial}, [automaton.initial]
-    while pending:
-        new = onward.get(pending.pop(), set()) - found
-        found |= new
-        pending += new
-    return found
-
-
-def _may_be_left(automaton: Automaton, location: Location) -> bool:
-    if len(location.invariant) != 1:
-        return False
-    bound = location.invariant[0]
-    entering = (edge for edge in automaton.edges if edge.target == location.name != edge.source)
-    if bound.op != "<=" or bound.bound < 1 or not all(bound.clock in edge.resets for edge in entering):
-        return False
-    return any(
-        edge.source == location.name
-        and edge.target != location.name
-        and not edge.controllable
-        and _own(edge)
-        and not edge.guard.integers
-        and all(_holds_at(test, bound) for test in edge.guard.clocks)
-        for edge in automaton.edges
-    )
-
-
-def _own(edge: Edge) -> bool:
-    return edge.sync is None or edge.sync.sends
-
-
-def _holds_at(test: ClockBound, bound: ClockBound) -> bool:
-    """True if a guard's test is true when the clock is at the bound."""
-    value, limit = bound.bound, test.bound
-    outcomes = {
-        "<": value < limit, "<=": value <= limit, ">": value > limit, ">=": value >= limit, "==": value == limit
-    }
-    return test.clock == bound.clock and outcomes.get(test.op, False)
-
-
-def _starts_within(network: Network, location: Location) -> bool:
-    """True if the clocks at the start are within the invariant of the location."""
-    tops: Tuple[Tuple[str, Number], ...] = tuple((bound.clock, bound.bound) for bound in location.invariant)
-    return all(
-        any(c.left == clock and c.right is None and c.bound <= top for c in network.start) for clock, top in tops
-    )
