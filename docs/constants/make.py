@@ -155,14 +155,18 @@ def constants(folder: str) -> List[Constant]:
 
 def _in_python(text: str) -> Iterator[Tuple[str, str, str]]:
     """Names, value and docstring of each number, and of each tuple of numbers, that a module names in capitals."""
-    body = ast.parse(text).body
+    body, lines = ast.parse(text).body, text.encode().split(b"\n")
+
+    def source(node: ast.expr) -> str:
+        return lines[node.lineno - 1][node.col_offset : node.end_col_offset].decode()
+
     for statement, after in zip(body, [*body[1:], ast.Pass()]):
         if isinstance(statement, ast.Assign) and _is_number(statement.value):
-            names = ast.get_source_segment(text, statement.targets[0]) or ""
+            names = source(statement.targets[0])
             said = after.value if isinstance(after, ast.Expr) else None
             docstring = said.value if isinstance(said, ast.Constant) and isinstance(said.value, str) else ""
             if names.isupper():
-                yield names, ast.get_source_segment(text, statement.value) or "", " ".join(docstring.split())
+                yield names, source(statement.value), " ".join(docstring.split())
 
 
 def _is_number(value: ast.expr) -> bool:
