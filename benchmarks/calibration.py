@@ -17,7 +17,7 @@ from typing import Callable, Dict, List, Optional, Tuple
 from pursue_gen.language import parse
 from pursue_gen.tools.calibration.picture import draw
 from pursue_gen.tools.calibration.proposal import Options, propose
-from pursue_gen.tools.calibration.samples import Sample, Samples, Way, Work
+from pursue_gen.tools.calibration.samples import Measured, Sample, Samples, Way, Work
 from pursue_gen.tools.calibration.windows import spread_of, window_of
 
 NOISES: Dict[str, Callable[[Random], float]] = {
@@ -87,7 +87,7 @@ reach_objective: do fetch
 def picture() -> str:
     """An example of what calibrate draws: simulated drives, one of them with somebody in the way."""
     random, scenario = Random("picture"), parse(FLOOR, "my_floor.pur", "my_floor")
-    kinds = [
+    kinds: List[Tuple[Measured, float, int]] = [
         (Way("bot1", "desk", "shelf"), 5.0, 18),
         (Way("bot1", "shelf", "desk"), 5.6, 18),
         (Way("bot1", "desk", "window"), 11.0, 40),

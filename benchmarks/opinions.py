@@ -11,7 +11,8 @@ from typing import Callable, Dict, List, Optional
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.outcomes import LimitHit, Lost
 from pursue_gen.proof.checker import verify
-from pursue_gen.solving.decomposition import Found, won_by_some
+from pursue_gen.solving.decomposition import won_by_some
+from pursue_gen.solving.found import Found
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.solution import Solution, solution

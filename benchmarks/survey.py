@@ -46,7 +46,8 @@ def building(size: int, seed: int) -> List[bytearray]:
 
 def scenario(rows: List[bytearray], places: int, seed: int) -> str:
     """A scenario of two robots and so many places on free ground."""
-    rng, size, lines, room = random.Random(seed), len(rows), [], 16
+    rng, size, room = random.Random(seed), len(rows), 16
+    lines: List[str] = []
     while len(lines) < places:
         x, y = rng.randrange(room, size - room), rng.randrange(room, size - room)
         if all(set(row[x - room : x + room]) == {FREE} for row in rows[y - room : y + room]):

@@ -69,7 +69,7 @@ def flaky_of(arguments: Sequence[str]) -> "tuple[int, Optional[str]]":
         if status != FAILURES or len(failed) != 1:
             return status, None
         print(f"\nOnce more, alone: {failed[0]}", flush=True)
-        again, _ = only_failed(["-rfE", failed[0]], Path(folder) / "again")
+        again, _ = only_failed(["-rfE", "-m", "", failed[0]], Path(folder) / "again")
     return (0, failed[0]) if again == 0 else (status, None)
 
 

@@ -17,7 +17,7 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.synthesis.budget import Budget
 
 _SHOWN = 3
-"""So many forms are offered at most."""
+"""So many forms are offered at most. Not measured."""
 
 
 @dataclass(frozen=True)

@@ -31,22 +31,21 @@ from pursue_gen.tga.network import Network, Objective
 from pursue_gen.thresholds import narrowed
 
 WORK, STATES = 100_000_000, 100_000
-"""The work of all games together, and the discrete states of each: ten seconds or so, the same on every machine."""
+"""The work of all games together, and the discrete states of each: ten seconds or so. Not measured."""
 
 SECONDS, _LONGER = 8.0, 0.55
-"""Of processor time for all of them: somebody has waited for long already; the part for the scenario with more time."""
+"""Of processor time for all games, as somebody has waited already; the part for more time. Not measured."""
 
 ROOM = 64
-"""MiB beside what is in use before."""
+"""MiB beside what is in use before. Not measured."""
 
 _OPTION, _OBJECTIVES, _FORMS, _ALONE, _EACH = 0.3, 0.5, 0.5, 0.5, 0.5
 """The part of the work for the scenario without an option; of the rest for single objectives and some of them; of the
 then rest for cheaper forms of these; of what is left for parts that are left out alone; and of the then rest for each
-attempt without several of them.
-"""
+attempt without several of them. Not measured."""
 
 _SHOWN, _SEVERAL = 5, 3
-"""So many parts are named at most, and so many that are left out together."""
+"""So many parts are named at most, and so many that are left out together. Not measured."""
 
 _Game = Tuple[Network, Objective]
 

@@ -16,7 +16,7 @@ from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Objective
 
 PAUSE = 1
-"""Time units that an agent waits at a place before it acts again (at least, and a little more)."""
+"""Time units that an agent waits at a place before it acts again (at least, and a little more). Not measured."""
 
 _PAUSE_OF = "@pause_"
 

@@ -23,10 +23,10 @@ from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 from pursue_gen.tga import scenario_objective, translate
 
 _FACTORS = (2, 4)
-"""So many times as long all limits are; the first with which a strategy is found counts."""
+"""So many times as long all limits are; the first with which a strategy is found counts. Not measured."""
 
 _STATES = 20_000
-"""Symbolic states of the checker that the time of a promise may take."""
+"""Symbolic states of the checker that the time of a promise may take. Not measured."""
 
 
 @dataclass(frozen=True)

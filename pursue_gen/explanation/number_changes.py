@@ -12,7 +12,7 @@ from pursue_gen.language.numbers import Number, whole_above, whole_below
 from pursue_gen.language.scenario import Battery, Event, Scenario, Travel
 
 SLOWER = 32
-"""How many times slower an agent, or longer an event, is tried."""
+"""How many times slower an agent, or longer an event, is tried. Not measured."""
 
 
 @dataclass(frozen=True)

@@ -33,10 +33,11 @@ from pursue_gen.tga.network import Edge, Network, Objective
 from pursue_gen.tga.pauses import pauses
 
 _MOST_STEPS, _MOST_BEGINNINGS = 60, 8
+"""So many steps of a play are followed, and so many beginnings of the robots at most. Not measured."""
 
 _FOR_MAIN, _FOR_FEW = 0.7, 0.1
 """The parts of the budget for the play in which the controller begins as it likes, and for whether few events of the
-environment are enough for one."""
+environment are enough for one. Not measured."""
 
 _FINE = Fraction(1, 1000)
 

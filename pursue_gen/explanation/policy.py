@@ -25,7 +25,7 @@ Choice = Tuple[JointMove, Fraction]
 _Key = Tuple[str, str, str, str]
 
 COARSE = Fraction(1, 10)
-"""How long after a moment that is just too early: soon enough for most plays, and short to write."""
+"""How long after a moment that is just too early: soon enough for most plays, and short to write. Not measured."""
 
 
 @dataclass(frozen=True)

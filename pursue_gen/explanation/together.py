@@ -16,7 +16,7 @@ from pursue_gen.synthesis.budget import Budget
 from pursue_gen.tga import scenario_objective, translate
 
 _SHARE = 0.5
-"""The part of what is left of the budget that one game may take."""
+"""The part of what is left of the budget that one game may take. Measured on the third ecobot."""
 
 
 @dataclass(frozen=True)

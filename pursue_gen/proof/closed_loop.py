@@ -19,7 +19,7 @@ from pursue_gen.tga.scale import common_denominator, least_common_multiple
 from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict, raw
 
 INSTANTS = 4
-"""Into so many parts a time unit is cut when instants just after another are explored (see `delays`)."""
+"""Into so many parts a time unit is cut when instants just after another are explored (see `delays`). Not measured."""
 
 Entry = Tuple[State, Dbm]
 """A discrete state and the clocks' values just after the step into it."""

@@ -25,13 +25,13 @@ from pursue_gen.tga.network import Network, Objective
 from pursue_gen.thresholds import narrowed
 
 STEP = Fraction(1, 20)
-"""The precision, in time units: the message of a busy robot takes about so long."""
+"""The precision, in time units: the message of a busy robot takes about so long. Not measured."""
 
 CAP = Fraction(10)
-"""The search ends there: no machine is so late. It is a hundred times the reaction of the default game."""
+"""The search ends there: no machine is so late (the default reaction is a hundredth of it). Not measured."""
 
 USUAL = 3_000
-"""States for `strategy_margin` that are worth a second."""
+"""States for `strategy_margin` that are worth a second. Not measured."""
 
 @dataclass(frozen=True)
 class Margin:

@@ -16,7 +16,7 @@ from pursue_gen.synthesis.strategy import Block, Strategy, Zone
 from pursue_gen.tga.network import ClockBound, Constraint, Guard
 
 INSTANT = Fraction(1, 1000)
-"""Who may act as soon as a clock is past a bound acts within this time, in time units."""
+"""Who may act as soon as a clock is past a bound acts within this time, in time units. Not measured."""
 
 
 def latest(played: Played, strategy: Strategy, reaction: Fraction) -> Fraction:

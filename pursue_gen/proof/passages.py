@@ -23,7 +23,7 @@ from pursue_gen.tga.network import Edge, Kind, Network, Objective
 from pursue_gen.tga.part import part_of
 
 _MOST = 20_000
-"""So many events a course may have."""
+"""So many events a course may have. Measured on 30 robots that change places."""
 
 
 class Fault(Exception):

@@ -19,7 +19,7 @@ from pursue_gen.synthesis.strategy import Move, ZoneKey
 from pursue_gen.zones.dbm import INF, Dbm, constant
 
 _OFTEN = 8
-"""A discrete state that is so often on one play of a reach game is searched for a loop that only clocks hide."""
+"""A discrete state so often on one play of a reach game is searched for a loop that clocks hide. Not measured."""
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ Spot = Tuple[str, Tuple[int, ...]]
 """A location of an automaton, and the values of the variables that it alone sets."""
 
 MOST = 5_000
-"""So many states a stage may begin in."""
+"""So many states a stage may begin in. Measured on six visitors who must be met, and on a delivery by twenty robots."""
 
 
 @dataclass(frozen=True)

@@ -24,20 +24,20 @@ from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Location, Network, Objective
 
 LIMIT = 20_000
-"""So many symbolic states are explored."""
+"""So many symbolic states are explored. Not measured."""
 
 _BLOCKS = 2
 """A strategy with more blocks than so many times the limit is not played: each block takes at least one symbolic state
-where plays come to it, and few do not."""
+where plays come to it, and few do not. Measured on a chase through a ring of 150 places."""
 
 _MANY = 8
-"""So many zones of a discrete state become their hull where they are too many: a time may then come out too long."""
+"""So many zones of a discrete state become their hull: a time may then come out too long. Not measured."""
 
 LONGEST = 100_000
-"""Times above this number of time units are not distinguished."""
+"""Times above this number of time units are not distinguished. Not measured."""
 
 _USUAL = 1_000
-"""Most plays end sooner than that, in time units: with it as a deadline the native checker's narrow numbers do."""
+"""Most plays end sooner, in time units: with this deadline the checker's narrow numbers do. Measured on CT4."""
 
 
 def counting_clock(network: Network) -> Optional[str]:

@@ -14,7 +14,7 @@ from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
 
 STATES = 2_000
-"""Symbolic states of the checker that the time of a promise may take: the same on every machine."""
+"""Symbolic states of the checker that the time of a promise may take: the same on every machine. Not measured."""
 
 
 def told(worst: Fraction, promise: StatedObjective) -> Number:

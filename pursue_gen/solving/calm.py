@@ -30,14 +30,15 @@ _RESERVES = tuple(Fraction(tenths, 10) for tenths in (1, 2, 3, 4, 6, 10))
 """The parts of a period that a robot has to spare when it sets off for a visit; the first that wins counts."""
 
 _WORK, _STATES = 20_000_000, 20_000
-"""The work of all games in which robots set off for what is due, and the discrete states of each."""
+"""The work of all games in which robots set off for what is due, and the discrete states of each. Measured on lab
+scenarios 10, 12, 16 and 17, and on battery_watch."""
 
 _SHARE, _POLICIES = 0.3, 0.1
-"""The part of what is left that one of them gets, and that all policies of a game get."""
+"""The part of what is left that one of them gets, and that all policies of a game get. Measured on lab scenario 13."""
 
 _LOOKS, _BLOCKS, _SYMBOLIC = 12, 20_000, 6_000
 """So many strategies with fewer commands are looked at for a game, which have so many blocks together, with so many
-symbolic states each."""
+symbolic states each. Measured on EB4."""
 
 
 @dataclass(frozen=True)

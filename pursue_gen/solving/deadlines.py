@@ -20,7 +20,7 @@ from pursue_gen.tga.network import Edge, Network, Objective
 from pursue_gen.tga.scale import common_denominator, least_common_multiple, scaled
 
 STATES = 20_000
-"""Symbolic states of the checker that a worst-case time may take."""
+"""Symbolic states of the checker that a worst-case time may take. Not measured."""
 
 Moves = FrozenSet[Tuple[str, Edge]]
 """Edges of agents."""

@@ -19,10 +19,10 @@ from pursue_gen.tga import translate
 from pursue_gen.tga.network import Kind, Objective
 
 _MOST_MOVES = 10_000
-"""The moves between discrete states that are looked at: some tenths of a second."""
+"""The moves between discrete states that are looked at: some tenths of a second. Not measured."""
 
 _MOST_EDGES = 20_000
-"""The edges of a network that is looked at; beyond that nothing is reported."""
+"""The edges of a network that is looked at; beyond that nothing is reported. Not measured."""
 
 _Search = Callable[[Game], Optional[Set[int]]]
 """The edges of a game that can be taken, or more; None: that would take too long."""

@@ -19,7 +19,8 @@ from pursue_gen.tga.part import part_of
 from pursue_gen.tga.pauses import pauses
 
 _MOMENTS = (1, 2)
-"""So many time units after a robot has come to a place somebody calls: no sooner, as a robot rests for one itself."""
+"""So many time units after a robot has come to a place somebody calls: no sooner, as a robot rests for one itself.
+Measured on large lab 7 and lab 21."""
 
 
 def without_turns(game: Network, watching: Collection[str]) -> Network:

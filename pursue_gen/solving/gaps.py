@@ -10,7 +10,7 @@ from pursue_gen.solving.walkers import Patrol, Walker
 from pursue_gen.tga.tours import Tour
 
 _OFTEN = 12
-"""On a round through so many places some may come more often than others."""
+"""On a round through so many places some may come more often than others. Not measured."""
 
 
 class Gap(NamedTuple):

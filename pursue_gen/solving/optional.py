@@ -24,7 +24,7 @@ from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.limits import Listener
 
 WORK = 100_000_000
-"""The work of the game in one piece with an optional objective: some twenty seconds. What takes more is given up."""
+"""The work of a game with an optional objective: some twenty seconds. What takes more is given up. Not measured."""
 
 T = TypeVar("T")
 

@@ -26,7 +26,7 @@ from pursue_gen.tga.network import Automaton, Clause, Edge, Kind, Network, Objec
 from pursue_gen.tga.part import part_of
 
 _ROUNDS = 200
-"""So many rounds at most."""
+"""So many rounds at most. Measured on 30 robots that change places."""
 
 _UNITS = 10
 """Times of ways are counted in tenths of time units."""

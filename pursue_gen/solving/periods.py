@@ -30,19 +30,19 @@ from pursue_gen.synthesis.limits import Limits, careful_memory
 from pursue_gen.tga import scenario_objective, translate
 
 WORK = 200_000_000
-"""The work of the search where no limit is set: some half a minute. Then the shortest period that is won counts."""
+"""The work of the search without a limit: half a minute. Then the shortest period won counts. Not measured."""
 
 _LITTLE = 5_000_000
-"""The work of a search for `check`: a second at most."""
+"""The work of a search for `check`: a second at most. Not measured."""
 
 _SHARE = 0.4
-"""The part of what is left of the budget that one game may take."""
+"""The part of what is left of the budget that one game may take. Not measured."""
 
 _SEARCH = 0.5
-"""The part of the seconds that the search may take."""
+"""The part of the seconds that the search may take. Not measured."""
 
 _WALKS = 2
-"""The longest period that is tried, for each place: walks along all ways there and back, with all events on the way."""
+"""The longest period that is tried, per place: walks along all ways and back, with all events. Not measured."""
 
 def without_period(scenario: Scenario) -> Tuple[Patrol, ...]:
     """The patrols whose period is to be found."""

@@ -35,37 +35,41 @@ from pursue_gen.solving.solution import Solution, guaranteed
 from pursue_gen.synthesis.budget import Budget
 
 WORK = 40_000_000
-"""The work of the search, a few seconds at most: the same on every machine."""
+"""The work of the search, a few seconds at most: the same on every machine. Measured on catch the thief and drug
+delivery."""
 
 _DISCRETE_STATES = 30_000
-"""The most discrete states of its games with few clocks: larger ones take long, whatever work is counted."""
+"""The most discrete states of its games with few clocks: larger ones take long, whatever work is counted. Measured on
+20 officers who chase a thief."""
 
 _DISCRETE_STATES_OF_BOUND = 100_000
-"""Those of the one game that gives a lower bound."""
+"""Those of the one game that gives a lower bound. Measured on the same scenarios."""
 
 _PROMPT, _PROMPT_GAME, _DELAYED_GAME = 0.6, 5_000_000, 8_000_000
-"""Games with a deadline: the part of the work for those without a reaction delay, and that of each without and with."""
+"""Games with a deadline: the part of the work for those without a reaction delay, and that of each without and with.
+Measured on catch the thief and drug delivery."""
 
 _CLOCKS = 8
-"""In games of more clocks each piece of work takes longer: they get less of it."""
+"""In games of more clocks each piece of work takes longer: they get less of it. Not measured."""
 
 _HARD = 20_000_000
-"""A game that took more work than this has none left for games with a deadline, which are larger."""
+"""A game that took more work than this has none left for games with a deadline, which are larger. Measured on CT3b."""
 
 _MANY = 2 * _DISCRETE_STATES
-"""Nor has one of so many discrete states: games with a deadline have about as many."""
+"""Nor has one of so many discrete states: games with a deadline have about as many. Measured on a chase through a ring
+of 150 places."""
 
 _ENOUGH = Fraction(11, 10)
-"""A strategy that takes no longer than this part of the lower bound is quick."""
+"""A strategy that takes no longer than this part of the lower bound is quick. Not measured."""
 
 _DELAYED = tuple((Fraction(n, 20), late) for n, late in ((21, 2), (21, 1), (22, 1), (24, 1)))
 """What is tried with a reaction delay: parts of the deadline that is kept without, and of the delay (some to spare)."""
 
 _PRECISION = Fraction(21, 20)
-"""The search for a deadline ends where the shortest that is won is so close to the longest that is not."""
+"""The search for a deadline ends where the shortest won is so close to the longest not won. Not measured."""
 
 _UNDECIDED = 2
-"""So many games in a row that are not decided end the search, as long as no deadline is known to be kept."""
+"""So many undecided games in a row end the search while no deadline is known to be kept. Not measured."""
 
 _NOT_WITHIN = "SYN023"
 

@@ -20,16 +20,16 @@ _ROUNDING = 1e-6
 """Sums of so many times are not off by more: what is a hair too late is not said to be so."""
 
 _STEPS = 400_000
-"""So many places of rounds are looked at."""
+"""So many places of rounds are looked at. Measured on patrols of 12 to 140 places."""
 
 _GIVEN = (1, 2, 3)
-"""So many visits in a row may go from one robot to another."""
+"""So many visits in a row may go from one robot to another. Measured on the same scenarios."""
 
 _TREES = 20
-"""So many spanning trees show whether visits are too late."""
+"""So many spanning trees show whether visits are too late. Measured on a patrol of six rooms by two robots."""
 
 _ORDERS = 24
-"""So many ways to give the parts of the walk to the robots are tried."""
+"""So many ways to give the parts of the walk to the robots are tried. Not measured."""
 
 
 @dataclass(frozen=True)

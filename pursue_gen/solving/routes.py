@@ -40,13 +40,13 @@ class Floor:
 
 
 _ORDERS = 24
-"""So many orders of robots are tried."""
+"""So many orders of robots are tried. Not measured."""
 
 _STEPS = 60_000
-"""So many steps of the search in time, and of that one by one, at most."""
+"""So many steps of the search in time, and of that one by one, at most. Not measured."""
 
 _FEW = 4
-"""So many robots are few."""
+"""So many robots are few. Not measured."""
 
 _GAP = 1
 """So much later than a robot has set off from a place another one sets off for it: nobody does at the same instant, so

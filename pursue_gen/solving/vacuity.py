@@ -17,7 +17,7 @@ from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Edge, Network
 
 _WORK = 3_000_000
-"""The work for all games together: half a second at most. What is not decided with it gives no warning."""
+"""The work for all games together: half a second at most. What it does not decide gives no warning. Not measured."""
 
 
 def check_assumed_alone(scenario: Scenario) -> Iterator[Diagnostic]:

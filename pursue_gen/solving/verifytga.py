@@ -42,7 +42,7 @@ _MODEL, _QUERY = "TGA.xml", "TCTL.q"
 _LAST_LINES, _LAST_COLUMNS = 6, 200
 
 _SLEEPS = 10
-"""A tool that waits for something takes no processor time: it is ended after so many times the limit of real time."""
+"""A tool that waits takes no processor time: it is ended after so many times the limit of real time. Not measured."""
 
 """The exit statuses of the failures: not met or not winning; time or memory; no tool, or one that does not work."""
 

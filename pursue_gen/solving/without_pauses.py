@@ -23,10 +23,10 @@ from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.pauses import acting_at_most, pauses
 
 _FEW = 30_000_000
-"""The work that is spent on whether few calls are enough for the environment, about a second."""
+"""The work that is spent on whether few calls are enough for the environment, about a second. Not measured."""
 
 _FIRST, _PART = 0.02, 0.25
-"""The parts of a budget for the game as it is, before others are tried, and for each of these."""
+"""The parts of a budget for the game as it is, before others are tried, and for each of these. Not measured."""
 
 
 def verdict_with(

@@ -10,10 +10,11 @@ from typing import Iterator
 from pursue_gen.synthesis.limits import SOLVING, Limits, Progress, limit_reached, memory_in_use
 
 _INTERVAL = 0.1
-"""Seconds of the clock from one look to the next. (With a timer of its own, processor time comes in large ticks.)"""
+"""Seconds of the clock between two looks. (With a timer, processor time comes in large ticks.) Not measured."""
 
 _LATE, _LARGE = 0.3, 1.05
-"""Seconds after the limit, and the part of the memory, where who checks the limits has not done so: it knows more."""
+"""Seconds after the limit, and the part of the memory, where who checks the limits has not done so: it knows more.
+Measured on a corridor with 20 robots."""
 
 
 @contextmanager

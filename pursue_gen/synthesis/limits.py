@@ -13,19 +13,19 @@ from pursue_gen.outcomes import LimitHit
 from pursue_gen.zones.effort import look_after
 
 CAREFUL = 1024
-"""MiB that the commands allow themselves by default, if the machine has them."""
+"""MiB that the commands allow themselves by default, if the machine has them. Not measured."""
 
 DEFAULT_SECONDS = 60.0
-"""Seconds of processor time that the commands allow themselves by default."""
+"""Seconds of processor time that the commands allow themselves by default. Not measured."""
 
 _FRESH = 128
-"""MiB that a process of ours has at most before it works on anything."""
+"""MiB that a process of ours has at most before it works on anything. Not measured."""
 
 _SHARE = 0.8
-"""The part of the available memory that may be taken; the machine has to go on."""
+"""The part of the available memory that may be taken; the machine has to go on. Not measured."""
 
 _CHECK_INTERVAL, _REPORT_INTERVAL = 0.05, 0.2
-"""Seconds from one check of the memory to the next, and from one report to the next."""
+"""Seconds from one check of the memory to the next, and from one report to the next. Not measured."""
 
 
 @dataclass(frozen=True)

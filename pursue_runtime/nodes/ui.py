@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import os
 import sys
-import threading
 import time
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Dict, Optional, Sequence
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -33,27 +31,27 @@ from pursue_runtime.nodes.node import (
 from pursue_runtime.nodes.publishing import Newcomers, listeners
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.nodes.ui_page import UIPage
+from pursue_runtime.nodes.ui_state import GATHERING, READY, RUNNING, STARTING, UIState
 from pursue_runtime.nodes.ui_traffic import Traffic
 from pursue_runtime.nodes.ui_typed import Typed
 from pursue_runtime.state import STOPPED, WAITING, WON, SystemState
 from pursue_runtime.strategy import Strategy, parse_plan
 from pursue_runtime.ui.environment import make_player
-from pursue_runtime.ui.mission_view import Environment, MissionView, Readiness, reporters
+from pursue_runtime.ui.mission_view import Environment, reporters
 from pursue_runtime.ui.options import ARGUMENTS, Options, read_options, read_told
-from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, Terminal, on_terminal
+from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, on_terminal
 from pursue_runtime.ui.trace import TraceError
 from pursue_runtime.ui.verdict import ALONE, INTERRUPTED, NOT_STARTED, Verdict, drop_interrupted, write_verdict
 from pursue_runtime.words import EVENTS, FINISH, PLAN, START
 
-GATHERING, READY, STARTING, RUNNING = "waiting for the nodes", "ready", "starting", "running"
 RETRY = 1.0  # real seconds until `_start_` is published again
 TRIES = 10
 REDRAW = 1.0  # real seconds between two progress lines
 VANISHED = 2.0  # real seconds after `Finish!` without a message of the observer
 
 
-class UI:
-    """The UI on ROS: one lock, an alarm for whatever comes next, callbacks for messages."""
+class UI(UIState):
+    """The UI on ROS: an alarm for whatever comes next, callbacks for messages."""
 
     def __init__(
         self,
@@ -65,19 +63,11 @@ class UI:
         reporting: Sequence[str],
     ) -> None:
         """`reporting`: the agents whose ends are reported here."""
-        self.options, self.membership, self.ending, self.model = options, membership, ending, model
-        self.mission = MissionView(model, player, membership.people())
-        self.readiness = Readiness(options.nodes)
-        self.terminal = Terminal(sys.stdout, os.environ)
-        self.lock = threading.RLock()
-        self.phase = GATHERING
-        self.observer = ""
+        super().__init__(options, membership, ending, player, model)
         self.tries = 0
-        self.verdict: Optional[Tuple[int, str]] = None
         self.typed = Typed(self, reporting)
-        self.page = UIPage(self)
+        self.page = UIPage(self, self.typed)
         self.finish_received: Optional[float] = None
-        self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
         Newcomers(self.events, lambda node: node == self.observer, self.say_again)
         self.alarm = Alarm(self.on_alarm, ending)
         self.alarm.set(patience=options.wait)
@@ -248,19 +238,6 @@ class UI:
             self.ending.end(status)
 
     # How it is --------------------------------------------------------------------------------------------------------
-
-    def missing(self) -> List[str]:
-        """The nodes for which the start of the mission waits."""
-        return self.readiness.missing() if self.phase == GATHERING else []
-
-    @property
-    def is_running(self) -> bool:
-        """True from the first state of the mission under way on."""
-        return self.phase == RUNNING
-
-    def can_start(self) -> bool:
-        """True where every node is ready and the mission was not started."""
-        return self.phase == READY
 
     def connected(self) -> bool:
         """True when the observer and this node are connected both ways."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 import time
-from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Tuple
+from typing import Any, Dict, Mapping, Optional, Tuple
 
 import rospy
 
@@ -14,6 +14,8 @@ from pursue_runtime.folders import scenario_folder
 from pursue_runtime.nodes.links import traffic
 from pursue_runtime.nodes.node import start_thread
 from pursue_runtime.nodes.positions import watch_positions
+from pursue_runtime.nodes.ui_state import UIState
+from pursue_runtime.nodes.ui_typed import Typed
 from pursue_runtime.state import LIVE, WAITING, SystemState
 from pursue_runtime.troubles import Troubles
 from pursue_runtime.ui.mission_view import MARGIN
@@ -23,9 +25,6 @@ from pursue_runtime.ui.past_missions import PastMissions, shown_missions, worksp
 from pursue_runtime.ui.presence import LOOK, Presence
 from pursue_runtime.ui.requests import PageRequest, Presses
 from pursue_runtime.words import STOP
-
-if TYPE_CHECKING:
-    from pursue_runtime.nodes.ui import UI
 
 NO_ANSWER = "The observer does not answer"
 
@@ -39,9 +38,9 @@ LOOKS_AT_FILES = 4
 class UIPage:
     """The page of a UI; without `open` there is none, and nothing happens here."""
 
-    def __init__(self, ui: UI) -> None:
+    def __init__(self, ui: UIState, typed: Typed) -> None:
         self.lock = ui.lock
-        self._ui = ui
+        self._ui, self._typed = ui, typed
         self._board: Optional[PageServer] = None
         self._presses, self._presence, self._troubles = Presses(), Presence(), Troubles()
         self._received = (0.0, 0.0)  # when the last state came: Unix time, ROS time
@@ -154,9 +153,9 @@ class UIPage:
             return ""
         if not request.word or state is None:
             return f"{request.word or request.do} is not possible now."
-        ui.typed.find()
-        ends = {task.word for task in ui.typed.given}
-        begins = {offer.word for offer in ui.typed.offers if offer.opens <= MARGIN}
+        self._typed.find()
+        ends = {task.word for task in self._typed.given}
+        begins = {offer.word for offer in self._typed.offers if offer.opens <= MARGIN}
         word, remark = self._presses.word(request, state, ends if request.do == "done" else begins)
         if word:
             ui.events.publish(word)

@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Sequence, Tuple
+from typing import Sequence, Tuple
 
 import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.nodes.node import subscribe
 from pursue_runtime.nodes.positions import settings_of
+from pursue_runtime.nodes.ui_state import UIState
 from pursue_runtime.state import parse_state
 from pursue_runtime.ui.mission_view import traffic_lines
 from pursue_runtime.ui.options import ALL_TOPICS, IN_WORDS
 from pursue_runtime.words import EVENTS, SYSTEM_STATE
 
-if TYPE_CHECKING:
-    from pursue_runtime.nodes.ui import UI
-
 
 class Traffic:
     """Prints messages as they are published, beside the sentences of the UI; nothing where the options want words."""
 
-    def __init__(self, ui: UI) -> None:
+    def __init__(self, ui: UIState) -> None:
         self._ui = ui
         self._last: Tuple[object, ...] = ()
         known = settings_of(robot.name for robot in ui.model.of_kind("robot"))

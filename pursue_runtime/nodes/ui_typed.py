@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Iterator, List, Sequence, Set
+from typing import Iterator, List, Sequence, Set
 
 import rospy
 
 from pursue_runtime.nodes.node import start_thread
+from pursue_runtime.nodes.ui_state import UIState
 from pursue_runtime.ui.mission_view import (
     PossibleWord,
     Task,
@@ -21,14 +22,11 @@ from pursue_runtime.ui.mission_view import (
 from pursue_runtime.ui.requests import numbered
 from pursue_runtime.ui.terminal import on_terminal
 
-if TYPE_CHECKING:
-    from pursue_runtime.nodes.ui import UI
-
 
 class Typed:
     """The person at the terminal of a UI. `offers` and `given` are what can be typed, as `find` has seen it last."""
 
-    def __init__(self, ui: UI, reporting: Sequence[str]) -> None:
+    def __init__(self, ui: UIState, reporting: Sequence[str]) -> None:
         """`reporting`: the agents whose ends are reported here."""
         self._ui, self._reporting = ui, reporting
         self._words: Set[str] = {edge.word for automaton in ui.model.automata for edge in automaton.edges}

@@ -22,6 +22,8 @@ from pursue_gen.proof.checker import ProofReport as Report
 from pursue_gen.solving.rules import IDEAL
 from pursue_gen.tga.network import Kind
 
+pytestmark = pytest.mark.benchmark
+
 EVERYBODY = {"plain", "python", "native", "in turn", "soonest", "regions", "python, proven", "command"}
 
 

@@ -5,7 +5,11 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
+
 from benchmarks.missions import CROWDS, GOAL, names, scenario_of
+
+pytestmark = pytest.mark.benchmark
 
 
 def test_crowds_are_the_members_of_families_that_their_names_say() -> None:

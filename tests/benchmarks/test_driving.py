@@ -45,6 +45,7 @@ def test_the_least_way_of_patrols(objectives: "list[str]", expected: float) -> N
     assert bound(*objectives) == expected
 
 
+@pytest.mark.benchmark
 def test_a_robot_that_need_not_move_stands_still_and_one_on_patrol_drives_little_more_than_it_has_to() -> None:
     text = FLOOR + "objective: patrol a, c every 60 by one\n"
     with mock.patch.object(driving, "lab_scenario", lambda seed: text if seed else text.replace("a, c", "a")):

@@ -14,6 +14,8 @@ from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 
+pytestmark = pytest.mark.benchmark
+
 BY_NAME = {family.name: family for family in FAMILIES}
 
 

@@ -15,6 +15,8 @@ from pursue_gen.drawing.ground import FREE, read_ground
 from pursue_gen.language import parse
 from pursue_gen.survey.make import Options, surveyed
 
+pytestmark = pytest.mark.benchmark
+
 GROUND = read_ground(from_map.MAP, whole=True)
 FLOOR = Floor(GROUND, from_map.RADIUS)
 DESK, HALL, SHELF = (1.0, 1.0, 0.0), (6.0, 2.5, 0.0), (11.0, 5.0, math.pi / 2)

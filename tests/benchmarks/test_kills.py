@@ -25,6 +25,8 @@ from pursue_gen.tools.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Find
 from tests.tools.replay.recordings import PLAY, game, mission, write_bag, write_journal
 from tests.waiting import until
 
+pytestmark = pytest.mark.benchmark
+
 NODES = ("UI", "controller_bot1", "observer", "simulator")
 
 

@@ -11,6 +11,8 @@ from benchmarks.lab_scenarios import LARGE, SMALL, Size, lab_scenario, main
 from benchmarks.measure import ROOT
 from pursue_gen.language import check, parse
 
+pytestmark = pytest.mark.benchmark
+
 SIZES = (SMALL, LARGE, Size(places=4, robots=2, people=1, promises=2), Size(places=3, robots=1, people=1, promises=1))
 
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import pytest
+
 from benchmarks.language import TEXTS, floor, row, with_slips, with_unknown_names
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read
+
+pytestmark = pytest.mark.benchmark
 
 
 def codes(text: str) -> "set[str]":

@@ -15,7 +15,10 @@ pytest.importorskip("coverage")
 from benchmarks.mutant_tests import Measured, batches, measured, outcome, ran
 from benchmarks.mutants import PARTS, ROOT, drawn, files_of, folders_of, mutants_of, tried
 
-pytestmark = pytest.mark.skipif(sys.version_info < (3, 9), reason="writes Python code as only 3.9 and newer can")
+pytestmark = [
+    pytest.mark.benchmark,
+    pytest.mark.skipif(sys.version_info < (3, 9), reason="writes Python code as only 3.9 and newer can"),
+]
 
 
 @pytest.fixture(autouse=True)

@@ -15,6 +15,8 @@ from benchmarks.lab_scenarios import Size, lab_scenario
 from benchmarks.ordinary_families import ORDINARY
 from benchmarks.process import Ran
 
+pytestmark = pytest.mark.benchmark
+
 TINY = Size(places=3, robots=1, people=1, promises=1)
 
 ROW: Dict[str, Any] = {

@@ -9,6 +9,8 @@ import pytest
 
 from benchmarks.process import Ran, run
 
+pytestmark = pytest.mark.benchmark
+
 
 def python(code: str, seconds: float, folder: Path, memory: int = 0) -> Ran:
     return run([sys.executable, "-c", code], seconds, folder, memory)

@@ -14,6 +14,8 @@ from pursue_gen.solving.rules import IDEAL, Rules
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.tga.network import Kind
 
+pytestmark = pytest.mark.benchmark
+
 GAME = Played(7, 40, True, 0.05, True, 0.01, None)
 
 

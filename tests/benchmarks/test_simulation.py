@@ -13,6 +13,8 @@ import pytest
 from benchmarks import simulation, simulation_page
 from benchmarks.simulation import bundled, cells, kind_of, main
 
+pytestmark = pytest.mark.benchmark
+
 
 def row(scenario: str, missions: int, **more: Any) -> Dict[str, Any]:
     facts = {"scenario": scenario, "faults": "loss", "missions": missions, "margin": 0.3, "latest": 0.125}

@@ -12,6 +12,8 @@ from pursue_gen.language import load
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 
+pytestmark = pytest.mark.benchmark
+
 FILES = sorted(STORIES.glob("*.pur"))
 
 

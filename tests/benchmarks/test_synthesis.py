@@ -15,6 +15,8 @@ from benchmarks.measure import RUNS, Bounds, Case, measured
 from benchmarks.plots import pictures
 from tests.conftest import thesis_scenario
 
+pytestmark = pytest.mark.benchmark
+
 ENOUGH = Bounds(600.0, 2048)
 
 

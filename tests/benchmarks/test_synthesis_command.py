@@ -14,6 +14,8 @@ from benchmarks.measure import Bounds
 from benchmarks.process import Ran
 from pursue_gen.language import check, load
 
+pytestmark = pytest.mark.benchmark
+
 ENOUGH = Bounds(600.0, 2048)
 NOWHERE = Path("nowhere")
 

@@ -41,6 +41,8 @@ from pursue_gen.tga.network import (
 from tests.conftest import thesis_scenario
 from tests.synthesis import random_games
 
+pytestmark = pytest.mark.benchmark
+
 # A reader -------------------------------------------------------------------------------------------------------------
 
 _ID = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*")

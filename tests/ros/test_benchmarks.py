@@ -15,7 +15,7 @@ from ros_world import Ros
 from benchmarks import ros_world as bench
 from benchmarks.ros_world import PORTS, free_port, world
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.benchmark]
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 

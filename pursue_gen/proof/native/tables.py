@@ -88,7 +88,7 @@ _latest: List[Tables] = []
 """The tables that were made last: one strategy is checked several times in a row, or each part of it."""
 
 _KEPT = 50_000
-"""So many blocks they have, but for the last ones."""
+"""So many blocks they have, but for the last ones. Measured on a patrol of 140 places."""
 
 
 def tables_of(network: Network, strategy: Strategy) -> Tables:

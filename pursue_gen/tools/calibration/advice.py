@@ -9,10 +9,10 @@ from typing import Any, Dict, Iterator, Sequence
 from pursue_gen.diagnostics import counted
 
 TIMES = 2.0
-"""The reaction should be so many times what was needed at most: another mission has a busier machine."""
+"""The reaction should be so many times what was needed at most: another mission has a busier machine. Not measured."""
 
 ROOMY = 8.0
-"""From so many times on it is worth while to say that less would do."""
+"""From so many times on it is worth while to say that less would do. Not measured."""
 
 TOLERANCE = 0.1
 """The observer's ~tolerance where nothing else is said, in time units."""

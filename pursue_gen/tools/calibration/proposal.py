@@ -32,7 +32,7 @@ BY = "calibrate"
 """Begins the notes in the scenario's text."""
 
 STEP = Fraction(1, 10)
-"""Windows are rounded outwards to multiples of so many time units."""
+"""Windows are rounded outwards to multiples of so many time units. Not measured."""
 
 TOLERANCE = 0.1
 """Time units by which something may miss its window, as `replay` and the observer have it: messages take time."""

@@ -14,7 +14,7 @@ from pursue_runtime.locations import action_of, in_words
 from pursue_runtime.state import WAITING, SystemState
 
 _SAME = 0.005
-"""Seconds between the beginnings that several agents have of what they do together."""
+"""Seconds between the beginnings that several agents have of what they do together. Not measured."""
 
 
 @dataclass(frozen=True)

@@ -40,10 +40,10 @@ from pursue_gen.tools.play.state import (
 from pursue_gen.tools.play.world import Offer
 
 _FARTHEST = 32
-"""Horizons beyond so many time units are not looked for: that can take minutes."""
+"""Horizons beyond so many time units are not looked for: that can take minutes. Not measured."""
 
 _SCAN = 400
-"""So many moments are looked at in turn where the likely ones hold no answer."""
+"""So many moments are looked at in turn where the likely ones hold no answer. Not measured."""
 
 Answer = Tuple[JointMove, Fraction]
 """A move and after what delay it is made."""

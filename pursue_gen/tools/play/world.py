@@ -32,7 +32,7 @@ from pursue_gen.tools.play.state import (
 )
 
 _STEPS = 100
-"""Draws are multiples of 1/100 of a time unit where the window allows it: short to read."""
+"""Draws are multiples of 1/100 of a time unit where the window allows it: short to read. Not measured."""
 
 
 @dataclass(frozen=True)

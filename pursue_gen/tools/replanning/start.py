@@ -18,7 +18,7 @@ from pursue_gen.tools.replanning.request import Request, wrong
 T = TypeVar("T")
 
 _FINEST = 10
-"""The grid of clock values has at least so many points in a time unit."""
+"""The grid of clock values has at least so many points in a time unit. Not measured."""
 
 
 def network_from(network: Network, request: Request, told_apart: bool = False) -> Network:

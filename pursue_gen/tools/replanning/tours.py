@@ -16,7 +16,8 @@ from pursue_gen.tools.replanning.request import Request, wrong
 from pursue_gen.tools.replanning.start import around, network_from, start_clocks
 
 _LATE = (Fraction(5), Fraction(2), Fraction(0))
-"""So many time units later than expected a plan may come into force, tried in this order."""
+"""So many time units later than expected a plan may come into force, tried in this order. Measured on a patrol of six
+rooms by two robots."""
 
 
 def tours_from_here(

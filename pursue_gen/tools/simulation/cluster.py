@@ -18,10 +18,10 @@ from pursue_gen.tools.simulation.outcome import Outcome
 from pursue_gen.tools.simulation.runs import SHARE, Case, MissionRunner
 
 TIMEOUT = 10.0
-"""Seconds within which a scheduler has to answer."""
+"""Seconds within which a scheduler has to answer. Not measured."""
 
 AHEAD = 4
-"""Shares that each thread of a worker has in its queue, so that it never waits for the next one."""
+"""Shares that each thread of a worker has in its queue, so that it never waits for the next one. Not measured."""
 
 
 class Future(Protocol):

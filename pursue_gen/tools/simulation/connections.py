@@ -9,10 +9,11 @@ from pursue_gen.tools.simulation.event_queue import Action, EventQueue
 from pursue_gen.tools.simulation.faults import FaultPlan
 
 SHARE = 0.2
-"""Where messages are lost, each takes at most this share of the reaction: the rest is for sending it again."""
+"""Where messages are lost, each takes at most this share of the reaction: the rest is for sending it again. Measured on
+the bundled scenarios, with one message in twenty lost."""
 
 RECONNECTION = 0.5, 2.0
-"""Seconds between which a robot connects to its controller again, and gets the order that it should carry out."""
+"""Seconds, least and most, until a robot connects again and gets the order that it carries out. Not measured."""
 
 DECIMALS = 2e-6
 """Seconds by which messages come before the last moment that was promised: stamps travel with six decimals."""

@@ -13,7 +13,7 @@ from pursue_gen.tools.simulation.runs import Case, case_of
 from pursue_gen.workspace.make import options_for
 
 _LONG, _SHORT = 1000.0, 200.0
-"""The default time after which a mission is over, in time units: with a goal, and without one."""
+"""The default time after which a mission is over, in time units: with a goal, and without one. Not measured."""
 _LONGEST = 1e6
 
 

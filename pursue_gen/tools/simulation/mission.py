@@ -35,10 +35,10 @@ HEARTBEAT, SILENCE = 1.0, 20.0
 """Seconds, as the observer's parameters ~heartbeat and ~silence have them."""
 
 USUAL = 1.25
-"""Reactions for which a command is due at most without faults: controllers wait a quarter at strict bounds."""
+"""Reactions that a command is due without faults: controllers wait a quarter at strict bounds. Not measured."""
 
 RETURN = 3.0
-"""Reactions that pass at most from the return of a node to the effect of a command that it has delayed."""
+"""Reactions at most from the return of a node to the effect of a command that it delayed. Not measured."""
 
 
 class SimulatedMission:

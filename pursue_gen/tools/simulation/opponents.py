@@ -25,10 +25,10 @@ FIRST = 1e-3
 
 _STILL = 0.3
 """Of the missions of mixed opponents that a fair draw gives to those who stand still, which is a third, the part that
-they keep: one mission in ten."""
+they keep: one mission in ten. Not measured."""
 
 SPANS = (0.5, 3.0, 10.0, 40.0)
-"""Where an agent may wait for ever, it waits up to one of these, in time units."""
+"""Where an agent may wait for ever, it waits up to one of these, in time units. Not measured."""
 
 
 class Option(NamedTuple):

@@ -11,10 +11,10 @@ from pursue_gen.tools.simulation.stage import Stage
 from pursue_runtime.observer.planning import PlanRequest
 
 MIN_TIME, MAX_TIME = 0.2, 3.0
-"""Seconds between which the planner answers."""
+"""Seconds between which the planner answers. Not measured."""
 
 STATES = 12_000
-"""The states that the planner may take (see `replan`): a search ends at the same point on every machine."""
+"""The states that the planner may take (see `replan`): the same on every machine. Not measured."""
 
 
 SEARCHES = threading.Event()

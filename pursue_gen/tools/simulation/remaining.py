@@ -22,13 +22,14 @@ from pursue_gen.tga.network import Network
 from pursue_gen.zones.dbm import INF, Dbm, constant, raw
 
 STATES = 2_000
-"""So many symbolic states are looked at from one point; a game with longer plays is too large."""
+"""So many symbolic states are looked at from one point; a game with longer plays is too large. Not measured."""
 
 KNOWN = 20_000
-"""So many points are remembered."""
+"""So many points are remembered. Not measured."""
 
 CHEAP = 200
-"""A game of so many symbolic states, or fewer, can be looked ahead in all the time."""
+"""A game of so many symbolic states, or fewer, can be looked ahead in all the time. Measured on a game of 1,400
+symbolic states."""
 
 FOREVER = 1e9
 """Where the strategy does not know how to go on: time units."""

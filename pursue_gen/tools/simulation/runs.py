@@ -28,10 +28,10 @@ ENDS = (GOAL, SAFE, STOPPED, HELD, LOST, FAILED)
 """In the order of tables."""
 
 SHARE = 20
-"""So many missions are given to a process at once."""
+"""So many missions are given to a process at once. Not measured."""
 
 _SPAN, _PART = 50.0, 0.6
-"""Faults begin within so many time units, or within this part of the longest that a mission may take."""
+"""Faults begin within so many time units, or within this part of the longest that a mission may take. Not measured."""
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("rospy", reason="ROS is not installed")
 
-from pursue_runtime.nodes import controller, drive_legs, observer, ui, witness
+from pursue_runtime.nodes import controller, drive_legs, observer, ui, ui_state, witness
 from pursue_runtime.nodes.node import WARN
 from pursue_runtime.state import SystemState, format_state
 
@@ -53,8 +53,8 @@ def test_a_controller_begins_without_an_observer_and_is_not_ready(monkeypatch: p
 
 
 def test_the_ui_says_again_what_an_observer_has_not_heard_that_connects(monkeypatch: pytest.MonkeyPatch) -> None:
-    parts = ("MissionView", "Readiness", "Terminal", "Alarm", "Typed", "UIPage", "Traffic", "subscribe_states",
-             "subscribe", "Diagnostics", "Links")  # fmt: skip
+    replaced(monkeypatch, ui_state, ("MissionView", "Readiness", "Terminal"))
+    parts = ("Alarm", "Typed", "UIPage", "Traffic", "subscribe_states", "subscribe", "Diagnostics", "Links")
     newcomers = replaced(monkeypatch, ui, parts)
     options: Any = SimpleNamespace(nodes=("bot",), wait=1.0)
     made: Any = ui.UI(options, *(Anything() for _ in range(5)))  # type: ignore[arg-type]

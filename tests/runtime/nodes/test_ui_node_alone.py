@@ -12,7 +12,8 @@ import pytest
 pytest.importorskip("rospy", reason="ROS is not installed")
 
 from pursue_runtime.nodes import ui as ui_module
-from pursue_runtime.nodes.ui import GATHERING, NOT_STARTED, READY, RUNNING, STARTING, TRIES, UI, VANISHED
+from pursue_runtime.nodes.ui import NOT_STARTED, TRIES, UI, VANISHED
+from pursue_runtime.nodes.ui_state import GATHERING, READY, RUNNING, STARTING
 from pursue_runtime.state import SystemState
 
 STATE = SystemState(3, 100.0, {}, {}, {}, status="running")
