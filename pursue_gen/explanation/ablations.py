@@ -9,16 +9,13 @@ from pursue_gen.language.conditions import condition_text, names_in
 from pursue_gen.language.scenario import (
     Agent,
     Assumption,
-    AtMost,
     Both,
     Choice,
-    NeverHolds,
     Ref,
     RuleBody,
     Scenario,
     Sequence,
     StatedObjective,
-    Waits,
 )
 
 
@@ -85,12 +82,9 @@ def without_agent(scenario: Scenario, name: str) -> Optional[Scenario]:
 
 
 def _names(assumption: Assumption, agent: str, gone: AbstractSet[str]) -> bool:
-    """True if the assumption is about the agent or one of these events."""
-    if isinstance(assumption, NeverHolds):
-        return False  # nor can be left out what a condition names
-    return assumption.agent.name == agent or (
-        isinstance(assumption, (AtMost, Waits)) and assumption.event.name in gone
-    )
+    """True if the assumption is about the agent or one of these events; what a condition names is never left out."""
+    wanted = {"agent": {agent}, "event": gone}
+    return any(ref.name in wanted.get(kind, ()) for kind, ref in assumption.names())
 
 
 def without_conditions(scenario: Scenario) -> Iterator[Tuple[str, str, Callable[[Scenario], Scenario]]]:

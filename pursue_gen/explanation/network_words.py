@@ -9,7 +9,7 @@ from pursue_gen.diagnostics import listed, units
 from pursue_gen.language import network_names as names
 from pursue_gen.language.numbers import decimal_text
 from pursue_gen.language.objectives.base import STATUSES
-from pursue_gen.language.scenario import Leaves, Scenario, StatedObjective, Waits
+from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Constraint, Zone
@@ -119,10 +119,7 @@ def words_of(scenario: Scenario, network: Network) -> Words:
     objectives = stated(scenario)
     clocks.update((clock_of(name), each.words.since) for name, each in objectives.items())
     for number, assumption in enumerate(scenario.assumptions, start=1):
-        if isinstance(assumption, Waits):
-            clocks[names.assumption_clock(number)] = f"{assumption.agent.shown}'s last {assumption.event.shown}"
-        elif isinstance(assumption, Leaves):
-            clocks[names.assumption_clock(number)] = f"{assumption.agent.shown}'s arrival at {assumption.place.shown}"
+        clocks[names.assumption_clock(number)] = assumption.since
     clocks = {clock: clocks.get(clock, "the start") for clock in network.clocks}
     turns = {}
     for own in own_turns(scenario):

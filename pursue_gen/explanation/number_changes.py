@@ -40,8 +40,7 @@ def event_changes(scenario: Scenario, event: Event) -> Iterator[NumberChange]:
     name, shown, span, (low, high) = event.name, event.shown, event.span, event.window
 
     def make(earliest: Number, latest: Number) -> Scenario:
-        changed = replace(event, duration=earliest, latest=latest)
-        return replace(scenario, events=tuple(changed if e == event else e for e in scenario.events))
+        return scenario.with_instead(event, replace(event, duration=earliest, latest=latest))
 
     def say(earliest: Number, latest: Number) -> str:
         return f"{shown} lasting {earliest} to {latest} instead of {low} to {high}"
@@ -66,8 +65,7 @@ def travel_changes(scenario: Scenario, travel: Travel) -> Iterator[NumberChange]
     a, b = travel.a.shown, travel.b.shown
 
     def make(earliest: Number, latest: Number) -> Scenario:
-        changed = replace(travel, earliest=earliest, latest=latest)
-        return replace(scenario, travels=tuple(changed if t == travel else t for t in scenario.travels))
+        return scenario.with_instead(travel, replace(travel, earliest=earliest, latest=latest))
 
     def say(earliest: Number, latest: Number) -> str:
         return f"{who} going from {a} to {b} in {earliest} to {latest} instead of {low} to {high}"
@@ -89,35 +87,28 @@ def battery_changes(scenario: Scenario, battery: Battery) -> Iterator[NumberChan
     """A battery that holds more, or that is recharged faster."""
     name, before, span = battery.agent.name, battery.capacity, battery.span
 
-    def with_battery(changed: Battery) -> Scenario:
-        return replace(scenario, batteries=tuple(changed if b == battery else b for b in scenario.batteries))
-
     yield NumberChange(
         "capacity", name, f"a larger battery of {name}", before, range(before + 1, 3 * before + 1),
-        lambda k: with_battery(replace(battery, capacity=k)),
+        lambda k: scenario.with_instead(battery, replace(battery, capacity=k)),
         lambda k: f"a battery of {name} with capacity {k} instead of {before}", span,
     )  # fmt: skip
     if battery.dock is not None:
         rate = battery.recharges
         yield NumberChange(
             "recharges", name, f"a battery of {name} that is recharged faster", rate, whole_above(rate, 4 * rate + 1),
-            lambda k: with_battery(replace(battery, recharges=k)),
+            lambda k: scenario.with_instead(battery, replace(battery, recharges=k)),
             lambda k: f"a battery of {name} that recharges {k} instead of {rate} per unit", span,
         )  # fmt: skip
 
 
 def count_changes(scenario: Scenario, event: Event, most: int) -> Iterator[NumberChange]:
     """An event that can happen more often where robots do it, less often where the environment does."""
-
-    def make(k: int) -> Scenario:
-        changed = replace(event, at_most=k)
-        return replace(scenario, events=tuple(changed if e == event else e for e in scenario.events))
-
     doers = [agent for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
     ours = any(agent.controllable for agent in doers)
     values = range(most + 1, min(2 * most + 2, MOST_TIMES) + 1) if ours else range(most - 1, 0, -1)
     if values:
         yield NumberChange(
-            "times", event.name, f"{event.shown} {'more' if ours else 'less'} often", most, values, make,
+            "times", event.name, f"{event.shown} {'more' if ours else 'less'} often", most, values,
+            lambda k: scenario.with_instead(event, replace(event, at_most=k)),
             lambda k: f"{event.shown} at_most {k} times instead of {most}", event.span,
         )  # fmt: skip

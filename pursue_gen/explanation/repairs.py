@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Callable, Iterable, Iterator, Optional, Sequence, Tuple, TypeVar
+from typing import Callable, Iterable, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Span, listed
 from pursue_gen.explanation.ablations import without_conditions
@@ -26,7 +26,6 @@ _FINEST = 1000
 """The largest denominator of a reaction that the command line takes."""
 
 Variant = Tuple[Scenario, Rules]
-_Part = TypeVar("_Part")
 
 
 @dataclass(frozen=True)
@@ -139,11 +138,11 @@ def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[Kno
 
     word = "faster" if agent.controllable else "slower"
     values = whole_below(pace, 1) if agent.controllable else whole_above(pace, pace * SLOWER)
-    what, others = f"a {word} {agent.shown}", scenario.agents
+    what = f"a {word} {agent.shown}"
     if values:
         yield _number(
             "agent", agent.name, what, pace, values,
-            lambda k: (replace(scenario, agents=_with(others, agent, replace(agent, mobile=k))), rules),
+            lambda k: (scenario.with_instead(agent, replace(agent, mobile=k)), rules),
             lambda k: f"{what}, mobile {k} instead of {pace}", agent.span, 2,
         )  # fmt: skip
 
@@ -155,7 +154,7 @@ def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[
         return
 
     def make(k: int) -> Variant:
-        return replace(scenario, events=_with(scenario.events, event, replace(event, duration=k))), rules
+        return scenario.with_instead(event, replace(event, duration=k)), rules
 
     def say(k: int) -> str:
         return f"{event.shown} lasting {k} instead of {duration or 'no time'}"
@@ -194,11 +193,11 @@ def _distance_knobs(scenario: Scenario, rules: Rules, connection: Connection) ->
     if connection.distance > 1:
         yield _number(
             "distance", ends, f"a shorter way between {ends}", connection.distance, whole_below(connection.distance, 1),
-            lambda k: (replace(scenario, connections=_with(ways, connection, replace(connection, distance=k))), rules),
+            lambda k: (scenario.with_instead(connection, replace(connection, distance=k)), rules),
             lambda k: f"{ends} at distance {k} instead of {connection.distance}", connection.span, 2,
         )  # fmt: skip
     if connection.one_way and not any((w.a, w.b) == (connection.b, connection.a) for w in ways):
-        freer = replace(scenario, connections=_with(ways, connection, replace(connection, one_way=False)))
+        freer = scenario.with_instead(connection, replace(connection, one_way=False))
         label = f"a way between {ends} in both directions"
         yield _switch("direction", ends, label, "one_way", (freer, rules), connection.span)
 
@@ -222,15 +221,9 @@ def _order_knobs(scenario: Scenario, rules: Rules) -> Iterator[Knob]:
 
 def _control_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[Knob]:
     if not agent.controllable and (agent.can_do or agent.mobile is not None):
-        ally = replace(agent, human=True, controllable=True)
-        changed = replace(scenario, agents=_with(scenario.agents, agent, ally))
+        changed = scenario.with_instead(agent, replace(agent, human=True, controllable=True))
         label = f"{agent.shown} following instructions (human controllable)"
         yield _switch("control", agent.name, label, "not controllable", (changed, rules), agent.span)
-
-
-def _with(parts: Tuple[_Part, ...], old: _Part, new: _Part) -> Tuple[_Part, ...]:
-    """The parts of a scenario with another one in place of `old`."""
-    return tuple(new if part == old else part for part in parts)
 
 
 def _switch(

@@ -6,6 +6,8 @@ import re
 from dataclasses import dataclass
 from typing import Dict, Tuple
 
+from pursue_gen.language.assumptions import KINDS as ASSUMPTIONS
+
 MEANINGS: Dict[str, str] = {
     "POI": "A place where something can happen, or where ways meet.",
     "CONNECT": "A way between two places, in both directions unless it is one_way. Write it once.",
@@ -21,11 +23,7 @@ MEANINGS: Dict[str, str] = {
     "OBJECTIVE": "What must always hold: an answer in time, an event that never happens, two agents who never meet.",
     "REACH_OBJECTIVE": "What is to be achieved once.",
     "ASSUME": "What an agent that is not controlled is assumed to do, or not to do. A mission watches it.",
-    "DOES": "The event that it does at most so many times.",
-    "WAITS": "How many units of time it waits at least.",
-    "BETWEEN": "The event: from the end of one to the beginning of the next.",
-    "LEAVES": "The place that it leaves in time.",
-    "NEVER": "It never sets off to that place.",
+    **{word.upper(): meaning for kind in ASSUMPTIONS.values() for word, meaning in kind.meanings.items()},
     "AT": "The place; in a condition: the agent stands there, idle or at work.",
     "AND": "The other end of the way; in a rule: both of the two, in any order; in a condition: both hold.",
     "DISTANCE": "How long the way is, in the unit of distance that you chose.",
@@ -144,13 +142,7 @@ FORMS: Dict[str, Tuple[Form, ...]] = {
             "battery {agent} capacity {=100} uses {=2} per unit recharges {=5} per unit at {POI}",
         ),
     ),
-    "ASSUME": (
-        Form("how often somebody does something", "assume: {agent} does {event} at_most {=2} times"),
-        Form("how long somebody waits in between", "assume: {agent} waits {=5} between {event}"),
-        Form("how long somebody stays", "assume: {agent} leaves {POI} within {=30}"),
-        Form("where somebody never goes", "assume: {agent} never at {POI}"),
-        Form("what never holds", "assume: not ({agent} at {POI} and {agent} at {POI})"),
-    ),
+    "ASSUME": tuple(Form(kind.title, kind.form()) for kind in ASSUMPTIONS.values()),
     "OBJECTIVE": (
         Form("an answer in time", "objective: if {event} then {event} within {=20}"),
         Form("an answer to what comes to hold", "objective: if {agent} at {POI} then {agent} at {POI} within {=20}"),

@@ -8,6 +8,7 @@ from typing import Dict, FrozenSet, List, Sequence, Tuple
 from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
+from pursue_gen.language.assumptions import KINDS as ASSUMPTIONS
 from pursue_gen.language.numbers import MOST_DIGITS
 from pursue_gen.language.similar import closest
 from pursue_gen.language.usable import proposal
@@ -25,9 +26,7 @@ FORMS: Dict[str, str] = {
              'behind the name: label "Porter 1"; before location, of a robot: radius 0.2 tolerance 0.1 inflation 0.5)',
     "TRAVEL": "travel bot from a to b takes 5 to 8",
     "BATTERY": "battery bot capacity 100 uses 2 per unit recharges 5 per unit at dock (recharges … is optional)",
-    "ASSUME": "assume: guest does call at_most 2 times · assume: guest waits 5 between call · "
-    "assume: visitor leaves hall within 30 · assume: visitor never at store · "
-    "assume: not (visitor at a and guest at a)",
+    "ASSUME": " · ".join(kind.filled(kind.example.__getitem__) for kind in ASSUMPTIONS.values()),
     "OBJECTIVE": "objective: if e1 then e2 within 20 (or conditions: if bot1 at a then open is_true within 20) · "
     "objective: avoid e (or a condition: avoid open is_true) · "
     "objective: always open is_true · objective: bot1 never_with bot2 at a (at is optional) · "
@@ -38,6 +37,8 @@ FORMS: Dict[str, str] = {
 """What each statement looks like, by the token that begins it."""
 
 STATEMENTS = frozenset(FORMS) | {"TAIL"}
+
+_ASSUMED = {word.upper(): word for kind in ASSUMPTIONS.values() for word in kind.meanings}
 
 KEYWORDS: Dict[str, str] = {
     "POI": "poi", "CONNECT": "connect", "EVENT": "event", "RULE": "rule", "STATE": "state",
@@ -51,24 +52,20 @@ KEYWORDS: Dict[str, str] = {
     "ONLY_IF": "only_if", "IS_TRUE": "is_true", "IS_FALSE": "is_false", "HUMAN": "human",
     "CONTROLLABLE": "controllable", "MOBILE": "mobile", "CAN_DO": "can_do", "REACTS_TO": "reacts_to", "IF": "if",
     "THEN": "then", "WITHIN": "within", "AVOID": "avoid", "NEVER_WITH": "never_with", "DO": "do", "AFTER": "after",
-    "ASSUME": "assume", "DOES": "does", "WAITS": "waits", "BETWEEN": "between", "LEAVES": "leaves", "NEVER": "never",
-    "AT": "at", "NOT": "not", "ALWAYS": "always", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no",
-    "ROBOT": "robot", "OPTIONAL": "optional", "BATTERY": "battery", "CAPACITY": "capacity", "USES": "uses",
-    "PER": "per", "UNIT": "unit", "RECHARGES": "recharges", "RADIUS": "radius",
+    "ASSUME": "assume", **_ASSUMED, "AT": "at", "NOT": "not", "ALWAYS": "always", "ON_WAY": "on_way", "DOING": "doing",
+    "ANY": "any", "NO": "no", "ROBOT": "robot", "OPTIONAL": "optional", "BATTERY": "battery", "CAPACITY": "capacity",
+    "USES": "uses", "PER": "per", "UNIT": "unit", "RECHARGES": "recharges", "RADIUS": "radius",
     "TOLERANCE": "tolerance", "INFLATION": "inflation",
 }  # fmt: skip
 """The words of the language, by token."""
 
-MAY_BE_NAMES: Dict[str, str] = {
-    "HUMAN": "human", "TOGETHER": "together", "ONE_WAY": "one_way", "TRAVEL": "travel", "TO": "to", "TAKES": "takes",
-    "DOES": "does", "AT_MOST": "at_most", "TIMES": "times", "WAITS": "waits", "BETWEEN": "between", "LEAVES": "leaves",
-    "NEVER": "never", "AT": "at", "ON_WAY": "on_way", "DOING": "doing", "ANY": "any", "NO": "no", "ROBOT": "robot",
-    "ALWAYS": "always", "EACH": "each", "PATROL": "patrol", "ORDER": "order", "EVERY": "every", "BY": "by",
-    "OPTIONAL": "optional", "LABEL": "label", "BATTERY": "battery", "CAPACITY": "capacity", "USES": "uses",
-    "PER": "per", "UNIT": "unit", "RECHARGES": "recharges", "RADIUS": "radius",
-    "TOLERANCE": "tolerance", "INFLATION": "inflation",
-}  # fmt: skip
-"""Those of them that scenarios may use as names, by token."""
+_NAMES = """
+HUMAN TOGETHER ONE_WAY TRAVEL TO TAKES AT_MOST TIMES AT ON_WAY DOING ANY NO ROBOT ALWAYS EACH PATROL ORDER EVERY BY
+OPTIONAL LABEL BATTERY CAPACITY USES PER UNIT RECHARGES RADIUS TOLERANCE INFLATION
+"""
+MAY_BE_NAMES: Dict[str, str] = {token: KEYWORDS[token] for token in (*_NAMES.split(), *_ASSUMED)}
+"""Those of them that scenarios may use as names, by token: `human` is an agent of published scenarios, and the others
+are younger than many scenarios."""
 
 RESERVED = frozenset(KEYWORDS.values()) - set(MAY_BE_NAMES.values())
 """Those of them that cannot be names."""

@@ -163,12 +163,8 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
     for battery in scenario.batteries:
         yield from all_of("agent", [battery.agent])
         yield from all_of("POI", [battery.dock])
-    for assumption in scenario.assumptions:
-        yield from all_of("agent", [getattr(assumption, "agent", None)])
-        yield from all_of("event", [getattr(assumption, "event", None)])
-        yield from all_of("POI", [getattr(assumption, "place", None)])
-    for objective in scenario.objectives:
-        yield from ((kind, ref.name, ref.span) for kind, ref in objective.names())
+    for named in (*(each.names() for each in scenario.assumptions), *(each.names() for each in scenario.objectives)):
+        yield from ((kind, ref.name, ref.span) for kind, ref in named)
 
 
 def _file_name(scenario: Scenario) -> Iterator[Diagnostic]:

@@ -7,9 +7,12 @@ from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
 from lark import Token
 
+from pursue_gen.language.assumptions import KINDS, NAMES
 from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES, kind_of
 from pursue_gen.language.poses import robots_in
 from pursue_gen.language.syntax import DECLARED, Statement, bare, start_of
+
+_ASSUMED = [found for kind in KINDS.values() for found in kind.fields()]
 
 _USED: Dict[Tuple[str, str], str] = {
     ("CONNECT", "CONNECT"): "POI",
@@ -33,11 +36,7 @@ _USED: Dict[Tuple[str, str], str] = {
     ("TRAVEL", "TO"): "POI",
     ("BATTERY", "BATTERY"): "agent",
     ("BATTERY", "AT"): "POI",
-    ("ASSUME", "ASSUME"): "agent",
-    ("ASSUME", "DOES"): "event",
-    ("ASSUME", "BETWEEN"): "event",
-    ("ASSUME", "LEAVES"): "POI",
-    ("ASSUME", "AT"): "POI",
+    **{("ASSUME", word.upper()): NAMES[field] for word, field in _ASSUMED if field in NAMES},
     ("OBJECTIVE", "OBJECTIVE"): "agent",
     ("OBJECTIVE", "NEVER_WITH"): "agent",
     ("OBJECTIVE", "PATROL"): "POI",
@@ -61,7 +60,7 @@ SUBJECTS = ("agent", "state")
 
 _OPENS = {
     ("CONNECT", "ONLY_IF"), ("EVENT", "ONLY_IF"), ("OBJECTIVE", "AVOID"), ("OBJECTIVE", "ALWAYS"), ("OBJECTIVE", "IF"),
-    ("ASSUME", "NOT"),
+    *(("ASSUME", word.upper()) for word, field in _ASSUMED if field == "condition"),
 }  # fmt: skip
 """The statements with a condition in them, and the word behind which it begins."""
 

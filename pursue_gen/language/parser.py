@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Tuple, Union
+from typing import Any, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Tuple, Union, cast
 
 from lark import Token, Tree
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, Span, error, in_order
 from pursue_gen.language import scenario as pml
+from pursue_gen.language.assumptions import KINDS, NAMES
 from pursue_gen.language.condition_trees import condition_of
 from pursue_gen.language.conditions import Condition, Who
 from pursue_gen.language.document import Document
@@ -22,8 +23,6 @@ from pursue_runtime.named_files import read_start
 
 MOST = 1_000_000
 """The largest distance, duration, inverse speed or deadline: what comes of it must fit a machine's integers."""
-
-_ASSUMPTIONS = (pml.AtMost, pml.Waits, pml.Leaves, pml.NeverAt, pml.NeverHolds)
 
 MOST_BYTES = MOST_LETTERS * 4  # bytes of a letter
 """The most bytes of a scenario."""
@@ -120,7 +119,7 @@ def read_document(document: Document, name: Optional[str] = None) -> Reading:
         safety=only(pml.Safety),
         reach=only(pml.Reach),
         travels=only(pml.Travel),
-        assumptions=tuple(part for part in parts if isinstance(part, _ASSUMPTIONS)),
+        assumptions=only(pml.Assumption),
         batteries=only(pml.Battery),
     )
     broken = any(finding.severity is Severity.ERROR for finding in syntax.findings)
@@ -275,17 +274,15 @@ class _Builder:
         return pml.Dependency(self._ref(event), self._ref(state), value.type == "IS_TRUE", span)
 
     def _assumption(self, tree: Any, span: Span) -> pml.Assumption:
-        first, *rest = tree.children
-        if tree.data == "never_holds":
-            return pml.NeverHolds(condition_of(first, self._ref), span)
-        agent = self._ref(first)
-        if tree.data == "at_most":
-            return pml.AtMost(agent, self._ref(rest[0]), self._count(rest[1]), span)
-        if tree.data == "waits":
-            return pml.Waits(agent, self._ref(rest[1]), self._number(rest[0]), span)
-        if tree.data == "leaves":
-            return pml.Leaves(agent, self._ref(rest[0]), self._number(rest[1]), span)
-        return pml.NeverAt(agent, self._ref(rest[0]), span)
+        kind: Any = KINDS[tree.data]
+        fields = zip((field for _, field in kind.fields()), tree.children)
+        return cast(pml.Assumption, kind(**{field: self._field(field, child) for field, child in fields}, span=span))
+
+    def _field(self, name: str, tree: Any) -> Any:
+        """The value of a field of an assumption."""
+        if name == "condition":
+            return condition_of(tree, self._ref)
+        return self._ref(tree) if name in NAMES else self._count(tree) if name == "times" else self._number(tree)
 
     def _agent(
         self, name: Token, _: Any, label: Any, human: Any, controllable: Any, mobile: Any, radius: Any, tolerance: Any,

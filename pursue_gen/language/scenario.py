@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any, Callable, Collection, Dict, Iterator, Optional, Tuple, Union
 
@@ -102,6 +102,13 @@ class Scenario:
         reach: Tuple[Any, ...] = tuple(new for new in map(changed, self.reach) if new is not None)
         return replace(self, safety=safety, reach=reach)
 
+    def with_instead(self, old: object, new: object) -> Scenario:
+        """The scenario with another part in place of one of its parts."""
+        known = {field.name: getattr(self, field.name) for field in fields(self)}
+        parts = {kind: several for kind, several in known.items() if isinstance(several, tuple) and old in several}
+        changed: Any = {kind: tuple(new if each == old else each for each in parts[kind]) for kind in parts}
+        return replace(self, **changed)
+
     @property
     def objectives(self) -> Tuple[StatedObjective, ...]:
         """All objectives: those that always hold, then those that are reached once."""
@@ -154,9 +161,7 @@ class Scenario:
         for safety in self.safety:
             yield from ((condition, safety.span) for condition in safety.conditions)
         for assumption in self.assumptions:
-            condition = getattr(assumption, "condition", None)
-            if condition is not None:
-                yield condition, assumption.span
+            yield from ((condition, assumption.span) for condition in assumption.conditions)
 
     def on_patrol(self, patrol: Patrol) -> Tuple[Agent, ...]:
         """The agents of whom one has to be at the place."""

@@ -13,7 +13,9 @@ from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Sequence, Set
 from lark import Lark, Token, UnexpectedToken
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
+from pursue_gen.language.assumptions import KINDS as ASSUMPTIONS
 from pursue_gen.language.messages import (
+    KEYWORDS,
     MAY_BE_NAMES,
     STATEMENTS,
     explain,
@@ -134,9 +136,20 @@ def span_of(token: Token, file: str) -> Span:
 @lru_cache(maxsize=None)
 def grammar() -> Lark:
     """The parser; made once, at the first text, so that to import the package costs nothing."""
-    text = (Path(__file__).parent / "grammar.lark").read_text(encoding="utf-8")
     how: Dict[str, Any] = {"start": ["statement", "wrong", "comment"], "propagate_positions": True}
-    return Lark(text, parser="lalr", lexer="basic", cache=_kept_tables() or False, **how)
+    return Lark(grammar_text(), parser="lalr", lexer="basic", cache=_kept_tables() or False, **how)
+
+
+def grammar_text() -> str:
+    """The grammar: grammar.lark, and what follows from the kinds of assumptions and the words of the language."""
+    rules = [
+        (Path(__file__).parent / "grammar.lark").read_text(encoding="utf-8"),
+        f'assumption: "assume" ":" ({" | ".join(ASSUMPTIONS)})',
+        *(f"{name}: {kind.rule()}" for name, kind in ASSUMPTIONS.items()),
+        f"ref: WORD | {' | '.join(MAY_BE_NAMES)}",
+        *(f'{token}: "{word}"' for token, word in KEYWORDS.items()),
+    ]
+    return "\n".join(rules) + "\n"
 
 
 def _kept_tables() -> Optional[str]:

@@ -4,20 +4,8 @@ from __future__ import annotations
 
 from typing import Dict, List
 
-from pursue_gen.diagnostics import units
-from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.scenario import (
-    Agent,
-    Assumption,
-    AtMost,
-    Battery,
-    Leaves,
-    NeverHolds,
-    Scenario,
-    StatedObjective,
-    Waits,
-)
+from pursue_gen.language.scenario import Agent, Battery, Scenario, StatedObjective
 
 
 def objective_words(scenario: Scenario) -> List[str]:
@@ -58,28 +46,9 @@ def statement_text(objective: StatedObjective) -> str:
     return f"{optional}{objective.word}: {objective.text}"
 
 
-def assumption_words(assumption: Assumption) -> str:
-    """What is assumed, as a sentence without its full stop; the same words as in the scenario where they read well."""
-    if isinstance(assumption, NeverHolds):
-        return f"it never holds that {condition_words(assumption.condition)}"
-    name = assumption.agent.shown
-    if isinstance(assumption, AtMost):
-        times = "once" if assumption.times == 1 else f"{assumption.times} times"
-        return (
-            f"{name} does {assumption.event.shown} at most {times}"
-            if assumption.times
-            else (f"{name} never does {assumption.event.shown}")
-        )
-    if isinstance(assumption, Waits):
-        return f"{name} waits {units(assumption.time)} between one {assumption.event.shown} and the next"
-    if isinstance(assumption, Leaves):
-        return f"{name} leaves {assumption.place.shown} within {units(assumption.time)}"
-    return f"{name} is never at {assumption.place.shown}"
-
-
 def condition_of_promise(scenario: Scenario) -> str:
     """All that is assumed of agents that are not controlled, in one clause; "" where nothing is."""
-    says = [assumption_words(assumption) for assumption in scenario.assumptions]
+    says = [assumption.clause for assumption in scenario.assumptions]
     return f"as long as {', and '.join(says)}" if says else ""
 
 

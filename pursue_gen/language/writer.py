@@ -46,20 +46,6 @@ def scenario_text(scenario: Scenario) -> str:
     return text
 
 
-def assumption_text(assumption: pml.Assumption) -> str:
-    """The statement, as in `assume: visitor never at lab`."""
-    if isinstance(assumption, pml.NeverHolds):
-        return f"assume: not ({condition_text(assumption.condition)})"
-    name = assumption.agent.name
-    if isinstance(assumption, pml.AtMost):
-        return f"assume: {name} does {assumption.event.name} at_most {assumption.times} times"
-    if isinstance(assumption, pml.Waits):
-        return f"assume: {name} waits {assumption.time} between {assumption.event.name}"
-    if isinstance(assumption, pml.Leaves):
-        return f"assume: {name} leaves {assumption.place.name} within {assumption.time}"
-    return f"assume: {name} never at {assumption.place.name}"
-
-
 def _plain(value: Any) -> Any:
     """A part with numbers that are exact, and tuples; a float is the number that it is shown as."""
     if isinstance(value, (Fraction, float)):
@@ -101,7 +87,7 @@ def _statements(scenario: Scenario) -> Iterator[str]:
     yield from map(_agent, scenario.agents)
     yield from map(_travel, scenario.travels)
     yield from map(_battery, scenario.batteries)
-    yield from map(assumption_text, scenario.assumptions)
+    yield from (assumption.text for assumption in scenario.assumptions)
     yield from _objectives(scenario.safety)
     yield from _objectives(scenario.reach)
 

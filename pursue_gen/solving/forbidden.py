@@ -11,8 +11,7 @@ from dataclasses import replace
 from typing import AbstractSet, Callable, Dict, Iterator, Optional, Set, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, listed, warning
-from pursue_gen.language.scenario import Assumption, AtMost, Scenario
-from pursue_gen.language.wording import assumption_words
+from pursue_gen.language.scenario import Assumption, Scenario
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import NO_CHANNEL, Game, initial_state, joint_moves
 from pursue_gen.tga import translate
@@ -50,10 +49,10 @@ def _findings(scenario: Scenario, usual: _Deeds, kept: _Deeds, search: _Search) 
         lost.setdefault(enough or scenario.assumptions, set()).add(deed)
     for assumed in sorted(lost, key=lambda some: (scenario.assumptions.index(some[0]), len(some))):
         # Of "does call at_most 0 times" nobody has to be told that there is no call.
-        said = {(each.agent.name, each.event.name) for each in assumed if isinstance(each, AtMost) and not each.times}
+        said = {each.excluded for each in assumed}
         words = _words(scenario, kept, lost[assumed] - said)
         if words:
-            why = " and ".join(assumption_words(each) for each in assumed)
+            why = " and ".join(each.clause for each in assumed)
             hint = "correct what is assumed, or add what makes these events possible; if this is meant, delete them"
             yield warning("PML266", f"as long as {why}, {words}", assumed[0].span, hint)
 

@@ -16,7 +16,7 @@ from typing import List, Optional, Tuple
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.document import Document, Edit, edited
 from pursue_gen.language.lines import Lines
-from pursue_gen.language.scenario import Leaves, Patrol, Scenario, Waits
+from pursue_gen.language.scenario import Patrol, Scenario
 from pursue_gen.language.syntax import end_of
 from pursue_gen.language.wording import periods_found
 from pursue_gen.outcomes import LimitHit
@@ -126,7 +126,7 @@ def longest(scenario: Scenario) -> int:
     """The longest period that is tried, in time units."""
     moves = sum(window[1] + 2 for agent in scenario.agents for window in scenario.movements(agent).values())
     work = sum(event.window[1] + 2 for event in scenario.events if event.window is not None)
-    waiting = sum(assumption.time for assumption in scenario.assumptions if isinstance(assumption, (Leaves, Waits)))
+    waiting = sum(assumption.known_number for assumption in scenario.assumptions if assumption.since)
     places = Counter(patrol.span for patrol in without_period(scenario))
     return max(2, ceil(_WALKS * max(places.values(), default=1) * (moves + work + waiting)))
 

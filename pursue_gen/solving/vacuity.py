@@ -7,7 +7,6 @@ from typing import Collection, Iterator, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, warning
 from pursue_gen.language.scenario import Assumption, Safety, Scenario
-from pursue_gen.language.wording import assumption_words
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.budget import Budget
@@ -34,7 +33,7 @@ def check_assumed_alone(scenario: Scenario) -> Iterator[Diagnostic]:
                 continue
             singles = ((each,) for each in everything)
             enough = next((one for one in singles if _holds(scenario, objective, one, budget)), everything)
-            why = " and ".join(assumption_words(each) for each in enough)
+            why = " and ".join(each.clause for each in enough)
             message = f"{objective.text}: this holds without anything that robots do, as long as {why}"
             hint = "assume less where the robots are to see to it; else delete the objective"
             yield warning("PML265", message, objective.span, hint)

@@ -7,12 +7,12 @@ A mission in which an assumption has been broken goes on with 0 in it, and plans
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Callable, Dict, List, Mapping, Optional, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple, Type
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Clauses, Value, clauses_of
 from pursue_gen.language.numbers import exact
-from pursue_gen.language.scenario import AboutOne, AtMost, Leaves, NeverAt, NeverHolds, Scenario, Waits
+from pursue_gen.language.scenario import Assumption, AtMost, Leaves, NeverAt, NeverHolds, Scenario, Waits
 from pursue_gen.language.symbols import Role
 from pursue_gen.tga.agents import PAUSE
 from pursue_gen.tga.changes import Change, beginning, setting_off, states_set
@@ -22,12 +22,10 @@ from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Location
 
 def assumed(automaton: Automaton, scenario: Scenario, conditions: Conditions) -> Automaton:
     """The automaton of an agent, kept to what the scenario assumes of it."""
+    agents = [agent for agent in scenario.agents if agent.name == automaton.name]
     for number, assumption in enumerate(scenario.assumptions, start=1):
-        if isinstance(assumption, NeverHolds):
-            if any(agent.name == automaton.name and not agent.controllable for agent in scenario.agents):
-                automaton = _never_holds(automaton, number, assumption, scenario, conditions)
-        elif assumption.agent.name == automaton.name:
-            automaton = _kept(automaton, number, assumption)
+        if any(map(assumption.binds, agents)):
+            automaton = _KEPT[type(assumption)](automaton, number, assumption, scenario, conditions)
     return automaton
 
 
@@ -36,7 +34,7 @@ def assumption_variables(scenario: Scenario) -> Tuple[Tuple[str, int], ...]:
     found: List[Tuple[str, int]] = []
     for number, assumption in enumerate(scenario.assumptions, start=1):
         found.append((names.assumption(number), 1))
-        if isinstance(assumption, (AtMost, Waits)):
+        if assumption.counts:
             found.append((names.assumption_count(number), 0))
     return tuple(found)
 
@@ -44,7 +42,7 @@ def assumption_variables(scenario: Scenario) -> Tuple[Tuple[str, int], ...]:
 def assumption_clocks(scenario: Scenario) -> Tuple[str, ...]:
     """The clocks of the assumptions about times."""
     numbered = enumerate(scenario.assumptions, start=1)
-    return tuple(names.assumption_clock(number) for number, a in numbered if isinstance(a, (Waits, Leaves)))
+    return tuple(names.assumption_clock(number) for number, assumption in numbered if assumption.since)
 
 
 def without_broken(automaton: Automaton, values: Mapping[str, int]) -> Automaton:
@@ -113,17 +111,7 @@ def _where(edge: Edge, tests: Tuple[Clause, ...]) -> Edge:
     return replace(edge, guard=replace(edge.guard, integers=(*edge.guard.integers, *tests)))
 
 
-def _kept(automaton: Automaton, number: int, assumption: AboutOne) -> Automaton:
-    if isinstance(assumption, AtMost):
-        return _at_most(automaton, number, assumption)
-    if isinstance(assumption, Waits):
-        return _waits(automaton, number, assumption)
-    if isinstance(assumption, Leaves):
-        return _leaves(automaton, number, assumption)
-    return _never_at(automaton, number, assumption)
-
-
-def _at_most(automaton: Automaton, number: int, assumption: AtMost) -> Automaton:
+def _at_most(automaton: Automaton, number: int, assumption: AtMost, *_: object) -> Automaton:
     """Each time is counted; there is no edge for one time more."""
     count = names.assumption_count(number)
 
@@ -136,7 +124,7 @@ def _at_most(automaton: Automaton, number: int, assumption: AtMost) -> Automaton
     return _each(automaton, edges)
 
 
-def _waits(automaton: Automaton, number: int, assumption: Waits) -> Automaton:
+def _waits(automaton: Automaton, number: int, assumption: Waits, *_: object) -> Automaton:
     """The first time is free; a clock runs from the end of each one to the next."""
     count, clock, event = names.assumption_count(number), names.assumption_clock(number), assumption.event.name
     lasts = any(_sends(edge, names.done(event)) for edge in automaton.edges)
@@ -154,7 +142,7 @@ def _waits(automaton: Automaton, number: int, assumption: Waits) -> Automaton:
     return _each(automaton, edges)
 
 
-def _leaves(automaton: Automaton, number: int, assumption: Leaves) -> Automaton:
+def _leaves(automaton: Automaton, number: int, assumption: Leaves, *_: object) -> Automaton:
     """An invariant where it stands; what it does there begins only where it can set off in time afterwards."""
     place, clock, most = assumption.place.name, names.assumption_clock(number), assumption.time
     takes = {location.name: max((b.bound for b in location.invariant), default=0) for location in automaton.locations}
@@ -179,7 +167,7 @@ def _leaves(automaton: Automaton, number: int, assumption: Leaves) -> Automaton:
     return _each(replace(automaton, locations=locations), edges)
 
 
-def _never_at(automaton: Automaton, number: int, assumption: NeverAt) -> Automaton:
+def _never_at(automaton: Automaton, number: int, assumption: NeverAt, *_: object) -> Automaton:
     place = assumption.place.name
     ways = {edge.source for edge in automaton.edges if edge.target == place and edge.leaves is Role.WAY}
     return _each(automaton, lambda edge: [_when_broken(edge, number) if edge.target in ways else edge])
@@ -216,3 +204,13 @@ def _with(
         assign=(*edge.assign, assign) if assign else edge.assign,
         resets=(*edge.resets, reset) if reset else edge.resets,
     )
+
+
+_KEPT: Mapping[Type[Assumption], Callable[[Automaton, int, Any, Scenario, Conditions], Automaton]] = {
+    AtMost: _at_most,
+    Waits: _waits,
+    Leaves: _leaves,
+    NeverAt: _never_at,
+    NeverHolds: _never_holds,
+}
+"""By the kind of an assumption, with its number, the automaton of an agent that keeps to it."""

@@ -7,9 +7,8 @@ from typing import Dict, Iterator, List, Mapping, Tuple
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.batteries import levels
-from pursue_gen.language.scenario import AtMost, Scenario
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, Symbol, role_of
-from pursue_gen.language.wording import assumption_words
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Automaton, Network
 from pursue_gen.tga.objectives import stated
@@ -108,8 +107,7 @@ def _left(number: int) -> str:
 def _assumptions(scenario: Scenario) -> Iterator[Status]:
     for number, assumption in enumerate(scenario.assumptions, start=1):
         holds = {"1": "assumed", "0": "broken: not assumed any more"}
-        yield Status(names.assumption(number), assumption_words(assumption), holds)
-        if isinstance(assumption, AtMost) and assumption.times:
-            label = f"{assumption.event.shown} by {assumption.agent.shown}"
-            done = {str(times): f"{times} of {assumption.times} times" for times in range(assumption.times + 1)}
+        yield Status(names.assumption(number), assumption.clause, holds)
+        label, done = assumption.counted
+        if done:
             yield Status(names.assumption_count(number), label, done)

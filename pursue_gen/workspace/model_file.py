@@ -8,7 +8,6 @@ from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, role_of
-from pursue_gen.language.wording import assumption_words
 from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Objective
@@ -52,7 +51,7 @@ def _assumptions(scenario: Scenario, network: Network) -> Iterator[Dict[str, str
     for place, assumption in enumerate(scenario.assumptions, start=1):
         clock = names.assumption_clock(place)
         timed = {"clock": clock} if clock in network.clocks else {}
-        yield {"variable": names.assumption(place), **timed, "says": assumption_words(assumption)}
+        yield {"variable": names.assumption(place), **timed, "says": assumption.clause}
 
 
 def _has_several(objective: Objective) -> bool:

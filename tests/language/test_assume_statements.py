@@ -9,7 +9,6 @@ import pytest
 from pursue_gen.language import parse
 from pursue_gen.language.checks import check
 from pursue_gen.language.scenario import AtMost, Leaves, NeverAt, Waits
-from pursue_gen.language.wording import assumption_words
 from tests.assumptions import APART, AWAY, LEAVES, MUSEUM, PLAYROOM, ROOMS, SPACED, TWICE, scenario
 
 
@@ -24,7 +23,7 @@ def test_each_form_is_read() -> None:
     assert isinstance(spaced, Waits) and (spaced.agent.name, spaced.event.name, spaced.time) == ("child", "spill", 20)
     assert isinstance(leaves, Leaves) and (leaves.place.name, leaves.time) == ("gallery", 30)
     assert isinstance(away, NeverAt) and (away.agent.name, away.place.name) == ("visitor", "store")
-    assert [assumption_words(each) for each in (twice, spaced, leaves, away)] == [
+    assert [each.clause for each in (twice, spaced, leaves, away)] == [
         "child does spill at most 2 times",
         "child waits 20 units between one spill and the next",
         "visitor leaves gallery within 30 units",
@@ -42,7 +41,7 @@ def test_its_words_may_be_names_everywhere_else() -> None:
     )
     story = parse(text, "words.pur", "words")
     assert [f.code for f in check(story)] == []
-    assert [assumption_words(each) for each in story.assumptions] == [
+    assert [each.clause for each in story.assumptions] == [
         "leaves leaves at within 5 units", "leaves is never at never",
     ]
 

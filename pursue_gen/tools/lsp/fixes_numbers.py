@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from pursue_gen.diagnostics import Diagnostic
-from pursue_gen.language.assumption_checks import MOST_TIMES as MOST_ASSUMED
-from pursue_gen.language.assumption_checks import SHORTEST_STAY
+from pursue_gen.language.assumptions import NUMBERED
 from pursue_gen.language.checks import MOST_TIMES
 from pursue_gen.language.document import Edit, behind, written
 from pursue_gen.language.draft import Draft
@@ -119,8 +118,8 @@ def without_condition(document: Draft, finding: Diagnostic, part: Statement, at:
 
 def possible_number(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
     """The nearest number that can be assumed."""
-    for word, number in (("AT_MOST", MOST_ASSUMED), ("WAITS", 1), ("WITHIN", SHORTEST_STAY)):
+    for word, kind in NUMBERED.items():
         found = part.pair(word)
         if found is not None:
-            yield f"Write {found[0]} {number}", (written(found[1], str(number)),)
+            yield f"Write {found[0]} {kind.nearest}", (written(found[1], str(kind.nearest)),)
     yield "Delete this statement", (document.deleted(part),)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Callable, Dict, Iterator, List, Optional, Tuple
 
 from pursue_gen.diagnostics import units
+from pursue_gen.language.assumptions import NUMBERED
 from pursue_gen.language.batteries import MOST_CAPACITY, levels
 from pursue_gen.language.behaviour import predecessors
 from pursue_gen.language.conditions import condition_words, names_in
@@ -18,11 +19,9 @@ from pursue_gen.language.numbers import Number, exact, read_number
 from pursue_gen.language.parser import MOST
 from pursue_gen.language.scenario import (
     Agent,
-    Assumption,
     Both,
     Choice,
     Event,
-    NeverHolds,
     Poi,
     Ref,
     Rule,
@@ -34,7 +33,7 @@ from pursue_gen.language.scenario import (
     Window,
 )
 from pursue_gen.language.syntax import Statement, start_of
-from pursue_gen.language.wording import assumption_words, battery_words, size_words
+from pursue_gen.language.wording import battery_words, size_words
 
 _MOST_LINES = 12
 
@@ -218,7 +217,7 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
     lines += _if_any("can do", [ref.name for ref in agent.can_do])
     lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])
     lines += [f"- {in_markdown(scenario, battery_words(b))}" for b in scenario.batteries if b.agent.name == agent.name]
-    assumed = (assumption_words(each) for each in scenario.assumptions if _is_about(each, agent.name))
+    assumed = (each.clause for each in scenario.assumptions if each.is_about(agent.name))
     lines += [f"- assumed: {in_markdown(scenario, words)}" for words in assumed]
     for safety in scenario.safety:
         lines += [f"- {line}" for line in safety.about("agent", agent.name)]
@@ -249,14 +248,10 @@ def _number(scenario: Scenario, part: Statement, start: int, number: Number) -> 
         return _battery(scenario, part)
     if word == "OPTIONAL":
         return "The first one to be given up is the one with the greatest number; those with one number go together."
-    if word == "WITHIN" and part.kind == "ASSUME":
-        return f"It has set off {units(number)} of time after it came, or after the start."
+    if part.kind == "ASSUME" and word in NUMBERED:
+        return NUMBERED[word].number_words(number)
     if word == "EVERY":
         return f"Somebody is there again {units(number)} of time after the last one left, or after the start."
-    if word == "WAITS":
-        return f"The next one begins {units(number)} of time after the end of the last, or later."
-    if word == "AT_MOST" and part.kind == "ASSUME":
-        return f"It begins that {number} time{'' if number == 1 else 's'} at most in the whole mission."
     if word == "AT_MOST":
         return f"It can happen {'once' if number == 1 else f'{number} times'} in all."
     if word == "WITHIN" and part.kind == "REACH_OBJECTIVE":
@@ -282,13 +277,6 @@ def _battery(scenario: Scenario, part: Statement) -> str:
             count = len(levels(scenario, battery))
             return f"The battery can be at {count} levels; the game has up to {count} times as many states."
     return ""
-
-
-def _is_about(assumption: Assumption, agent: str) -> bool:
-    """True if the assumption names the agent."""
-    if isinstance(assumption, NeverHolds):
-        return any(kind == "agent" and ref.name == agent for kind, ref in names_in(assumption.condition))
-    return assumption.agent.name == agent
 
 
 def _in(name: str, refs: Tuple[Ref, ...]) -> bool:

@@ -14,7 +14,7 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.explanation.network_words import Words
 from pursue_gen.explanation.texts import time_text
-from pursue_gen.language.wording import assumption_words, objective_words, promise_words
+from pursue_gen.language.wording import objective_words, promise_words
 from pursue_gen.tools.play.advice import Holding
 from pursue_gen.tools.play.counter import CounterPlay
 from pursue_gen.tools.play.saving import save
@@ -83,7 +83,7 @@ def opening(session: Session) -> Tuple[str, ...]:
     wants = (f"{setup.scenario.name}. What is wanted:", *(f"  {wish}" for wish in objective_words(setup.scenario)))
     wants += tuple(f"  ({sentence}.)" for sentence in promise_words(setup.scenario))
     if setup.scenario.assumptions:
-        wants += ("What is assumed of others:", *(f"  {assumption_words(a)}." for a in setup.scenario.assumptions))
+        wants += ("What is assumed of others:", *(f"  {a.clause}." for a in setup.scenario.assumptions))
     if isinstance(session.game, StrategyPlay):
         plays = f"a strategy of {session.game.advisor.size} blocks plays the robots."
         first = ("The robots can see to it, whatever others do.", f"You play all other agents, {plays}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Dict, List, Mapping, Optional, Tuple
 
-from pursue_gen.language.wording import assumption_words
+from pursue_gen.language.symbols import Symbol
 from pursue_gen.synthesis.lookup import Entry
 from pursue_gen.tools.replay.assumptions import newly_broken
 from pursue_gen.tools.replay.beginnings import EXACT
@@ -222,8 +222,8 @@ class _Checker:
         """The state before with the assumptions broken that are broken in the next one; each of them is reported."""
         broken = newly_broken(before.values, state.values)
         for name in broken:
-            assumption = self._game.scenario.assumptions[int(name[len("assume") :]) - 1]
-            self._report(WORLD, "assumption", state, f"an assumption is broken: {assumption_words(assumption)}")
+            assumption = self._game.scenario.assumptions[int(Symbol.of(name).parts[0]) - 1]
+            self._report(WORLD, "assumption", state, f"an assumption is broken: {assumption.clause}")
         return before._replace(values={**before.values, **dict.fromkeys(broken, 0)}) if broken else before
 
     def _move(self, before: SystemState, state: SystemState) -> Optional[Move]:

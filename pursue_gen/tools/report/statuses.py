@@ -7,7 +7,6 @@ from typing import Dict, List, Tuple
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import Condition, condition_text
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import assumption_words
 from pursue_gen.tga.status_words import statuses
 from pursue_gen.tools.report.recording import Recording, Stay, Step, lasting
 from pursue_gen.tools.simulation.meaning import holds
@@ -33,7 +32,7 @@ def broken(recording: Recording) -> Tuple[Tuple[str, Stay], ...]:
     for number, assumption in enumerate(recording.scenario.assumptions, start=1):
         variable = names.assumption(number)
         changes = ((step.at, str(step.values.get(variable, 1))) for step in recording.steps)
-        found += [(assumption_words(assumption), stay) for stay in lasting(recording, changes) if stay.what == "0"]
+        found += [(assumption.clause, stay) for stay in lasting(recording, changes) if stay.what == "0"]
     return tuple(found)
 
 

@@ -12,7 +12,7 @@ from pursue_gen.explanation.explain import Explanation, attempt_texts, endless_t
 from pursue_gen.explanation.texts import time_text
 from pursue_gen.language.numbers import decimal_text
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import assumption_words, kind_words, objective_words, promise_words, speed_words
+from pursue_gen.language.wording import kind_words, objective_words, promise_words, speed_words
 from pursue_gen.partition import unneeded, unneeded_words
 from pursue_gen.solving.answers import answers
 from pursue_gen.solving.rules import Rules
@@ -40,7 +40,7 @@ def section(
     if won is not None:
         parts += [f"<p>{safe(sentence)}.</p>" for sentence in promise_words(scenario)]
     if scenario.assumptions:
-        assumed = "".join(f"<li>{safe(assumption_words(each))}</li>" for each in scenario.assumptions)
+        assumed = "".join(f"<li>{safe(each.clause)}</li>" for each in scenario.assumptions)
         parts.append(f"<p>What is assumed of others:</p><ul>{assumed}</ul>")
     if won is not None:
         parts += _won(won, margin)

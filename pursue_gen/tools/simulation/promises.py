@@ -13,8 +13,7 @@ from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import EventOrCondition
 from pursue_gen.language.network_names import going, has_happened
 from pursue_gen.language.objectives.base import Breaks
-from pursue_gen.language.scenario import NeverHolds, Ref, Safety, Scenario
-from pursue_gen.language.wording import assumption_words
+from pursue_gen.language.scenario import Ref, Safety, Scenario
 from pursue_gen.tools.simulation.meaning import holds
 from pursue_gen.tools.simulation.recorder import EPSILON
 from pursue_runtime.locations import is_action, is_under_way, place_of
@@ -163,10 +162,11 @@ class Promises:
     def _check_assumed(self, state: SystemState) -> None:
         """What is assumed never to hold does not, until a mission has seen it broken."""
         for number, assumption in enumerate(self._scenario.assumptions, start=1):
-            if not isinstance(assumption, NeverHolds) or not state.values.get(names.assumption(number), 0):
-                continue
-            if holds(assumption.condition, self._scenario, state.locations, state.values):
-                self.problems.append(f"state {state.seq}: not so that {assumption_words(assumption)}, but not broken")
+            relied_on = state.values.get(names.assumption(number), 0)
+            if relied_on and any(
+                holds(each, self._scenario, state.locations, state.values) for each in assumption.conditions
+            ):
+                self.problems.append(f"state {state.seq}: not so that {assumption.clause}, but not broken")
 
     def _is(self, what: Optional[EventOrCondition], event: str, state: SystemState) -> bool:
         """True if the event happens now, or the condition holds."""

@@ -13,6 +13,7 @@ import pytest
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.messages import FORMS, KEYWORDS
 from pursue_gen.language.parser import read
+from pursue_gen.language.syntax import grammar_text
 
 from .scenarios import ROOT, SCENARIOS
 from .test_completion import expanded
@@ -25,8 +26,7 @@ STATEMENTS = {KEYWORDS[kind] for kind in FORMS}
 
 def grammar_words() -> Set[str]:
     """Every word in quotes in the grammar."""
-    text = (ROOT / "pursue_gen" / "language" / "grammar.lark").read_text(encoding="utf-8")
-    rules = "\n".join(line for line in text.split("\n") if not line.startswith("//"))
+    rules = "\n".join(line for line in grammar_text().split("\n") if not line.startswith("//"))
     rules = re.sub(r": /.*/$", "", rules, flags=re.M)
     return set(re.findall(r'"([A-Za-z_]+)"', rules))
 

@@ -1,0 +1,27 @@
+"""What a strategy may rely on that agents do at most, at least or never. A module for each kind of assumption."""
+
+from __future__ import annotations
+
+from typing import Mapping, Type
+
+from pursue_gen.language.assumptions.at_most import AtMost
+from pursue_gen.language.assumptions.base import NAMES, AboutOne, Assumption, Setting
+from pursue_gen.language.assumptions.leaves import Leaves
+from pursue_gen.language.assumptions.never_at import NeverAt
+from pursue_gen.language.assumptions.never_holds import NeverHolds
+from pursue_gen.language.assumptions.waits import Waits
+
+__all__ = [
+    "KINDS", "NAMES", "NUMBERED", "AboutOne", "Assumption", "AtMost", "Leaves", "NeverAt", "NeverHolds", "Setting",
+    "Waits",
+]  # fmt: skip
+
+KINDS: Mapping[str, Type[Assumption]] = {
+    "at_most": AtMost, "waits": Waits, "leaves": Leaves, "never_at": NeverAt, "never_holds": NeverHolds,
+}  # fmt: skip
+"""The kinds of assumptions, by their rules in the grammar."""
+
+NUMBERED: Mapping[str, Type[Assumption]] = {
+    word.upper(): kind for kind in KINDS.values() for word, field in kind.fields() if field == kind.number
+}
+"""The kinds that have a number, by the word before it, as the token that it is."""

@@ -1,0 +1,62 @@
+"""`assume: agent does event at_most N times`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Mapping, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
+from pursue_gen.language.assumptions.base import AboutOne, Setting
+from pursue_gen.language.numbers import Number
+from pursue_gen.language.parts import Agent
+from pursue_gen.language.refs import Ref
+
+MOST_TIMES = 100
+"""The most times that an assumption may allow: each is a value of a variable of its own."""
+
+
+@dataclass(frozen=True)
+class AtMost(AboutOne):
+    """`assume: agent does event at_most times times`: it begins the event no more often."""
+
+    agent: Ref
+    event: Ref
+    times: int
+    span: Span = NOWHERE
+    title: ClassVar[str] = "how often somebody does something"
+    written: ClassVar[str] = "{agent} does {event} at_most {times} times"
+    example: ClassVar[Mapping[str, str]] = {"agent": "guest", "event": "call", "times": "2"}
+    meanings: ClassVar[Mapping[str, str]] = {"does": "The event that it does at most so many times."}
+    number: ClassVar[str] = "times"
+    nearest: ClassVar[int] = MOST_TIMES
+    counts: ClassVar[bool] = True
+
+    @classmethod
+    def number_words(cls, number: Number) -> str:
+        return f"It begins that {number} time{'' if number == 1 else 's'} at most in the whole mission."
+
+    @property
+    def clause(self) -> str:
+        name, event = self.agent.shown, self.event.shown
+        if not self.times:
+            return f"{name} never does {event}"
+        return f"{name} does {event} at most {'once' if self.times == 1 else f'{self.times} times'}"
+
+    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+        if self.times > MOST_TIMES:
+            message = f"at_most {self.times}: expected {MOST_TIMES} or less, as each time is counted"
+            hint = "write a smaller number, or how long it waits: waits 5 between"
+            return error("PML251", message, self.span, hint)
+        return self.never_does(agent, self.event)
+
+    @property
+    def excluded(self) -> Tuple[str, ...]:
+        return () if self.times else (self.agent.name, self.event.name)
+
+    @property
+    def counted(self) -> Tuple[str, Mapping[str, str]]:
+        done = {str(times): f"{times} of {self.times} times" for times in range(self.times + 1)}
+        return (f"{self.event.shown} by {self.agent.shown}", done) if self.times else ("", {})
+
+    def stronger(self, longest: Number) -> Sequence[int]:
+        return range(self.times - 1, 0, -1)

@@ -1,0 +1,210 @@
+"""What every kind of assumption has: a kind is a class in a module of its own, which says what is different with it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import AbstractSet, Any, Callable, ClassVar, Iterator, Mapping, NamedTuple, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import Diagnostic, Span, error, warning
+from pursue_gen.language.conditions import Condition, condition_text, names_in
+from pursue_gen.language.numbers import Number
+from pursue_gen.language.objectives import Safety
+from pursue_gen.language.parts import Agent, Event, State
+from pursue_gen.language.refs import Ref
+
+NAMES: Mapping[str, str] = {"agent": "agent", "event": "event", "place": "POI"}
+"""The fields that are names, and the kinds of things that these stand for. `condition` is one, others are numbers."""
+
+_RULES = {**dict.fromkeys(NAMES, "ref"), "condition": "_plain"}
+_HOLES = {field: f"{{{kind}}}" for field, kind in NAMES.items()}
+_HOLES["condition"] = "({agent} at {POI} and {agent} at {POI})"
+
+
+class Setting(NamedTuple):
+    """The scenario in which an assumption stands, as far as one asks for it."""
+
+    agents: Tuple[Agent, ...]
+    events: Tuple[Event, ...]
+    states: Tuple[State, ...]
+    safety: Tuple[Safety, ...]
+    assumptions: Tuple[Assumption, ...]
+    onward: Callable[[str], AbstractSet[str]]  # the places to which ways lead from a place, itself included
+    at_start: Callable[[Condition], bool]  # whether a condition holds at the start
+
+
+class Assumption:
+    """What agents that are not controlled are assumed to do, or not to do: a frozen dataclass."""
+
+    span: Span
+    title: ClassVar[str]
+    """What it is about, for those who look for a statement."""
+    written: ClassVar[str]
+    """How it is written behind `assume:`, with its fields in braces."""
+    example: ClassVar[Mapping[str, str]]
+    """A text for each of these fields."""
+    meanings: ClassVar[Mapping[str, str]] = {}
+    """What each word means that no other statement has. Such words may be names, too."""
+    number: ClassVar[str] = ""
+    """Its field with a number; "": it has none."""
+    nearest: ClassVar[int] = 0
+    """What is proposed in place of a number that it cannot have."""
+    counts: ClassVar[bool] = False
+    """A variable counts for it how often something has happened."""
+
+    @classmethod
+    def fields(cls) -> Iterator[Tuple[str, str]]:
+        """Each field that is written, behind the last word before it."""
+        word = "assume"
+        for part in cls.written.split():
+            if part.startswith("{"):
+                yield word, part[1:-1]
+            else:
+                word = part
+
+    @classmethod
+    def filled(cls, texts: Callable[[str], str]) -> str:
+        """The statement with a text for each of its fields."""
+        return f"assume: {cls.written}".format_map({field: texts(field) for _, field in cls.fields()})
+
+    @classmethod
+    def rule(cls) -> str:
+        """How it is written, in terms of the grammar: a tree has its fields as children."""
+        words = (word if word.startswith("{") else f'"{word}"' for word in cls.written.split())
+        return " ".join(words).format_map({field: _RULES.get(field, "NUMBER") for _, field in cls.fields()})
+
+    @classmethod
+    def form(cls) -> str:
+        """The statement with holes to fill in, as `language.forms` has them."""
+        return cls.filled(lambda field: _HOLES.get(field) or f"{{={cls.example[field]}}}")
+
+    @classmethod
+    def number_words(cls, number: Number) -> str:
+        """What that number means in it."""
+        raise NotImplementedError
+
+    @property
+    def text(self) -> str:
+        """The statement, as in `assume: visitor never at lab`."""
+        return self.filled(self._text)
+
+    @property
+    def subject(self) -> str:
+        """The statement without its number: two of one subject say the same, or contradict."""
+        return self.filled(lambda field: "…" if field == self.number else self._text(field))
+
+    def _text(self, field: str) -> str:
+        value = getattr(self, field)
+        if field == "condition":
+            return f"({condition_text(value)})"
+        return str(value.name if field in NAMES else value)
+
+    @property
+    def clause(self) -> str:
+        """What is assumed, in words, as in `visitor is never at lab`."""
+        raise NotImplementedError
+
+    def names(self) -> Iterator[Tuple[str, Ref]]:
+        """Each name outside its conditions, behind the kind of thing that it stands for."""
+        return ((NAMES[field], getattr(self, field)) for _, field in self.fields() if field in NAMES)
+
+    @property
+    def conditions(self) -> Tuple[Condition, ...]:
+        """The conditions with each of which it is broken."""
+        return ()
+
+    def is_about(self, agent: str) -> bool:
+        """True if it names the agent, be it in a condition."""
+        named = [*self.names(), *(pair for condition in self.conditions for pair in names_in(condition))]
+        return any(kind == "agent" and ref.name == agent for kind, ref in named)
+
+    def binds(self, agent: Agent) -> bool:
+        """True if it says of this agent that it does not do all that it could."""
+        raise NotImplementedError
+
+    def again(self, line: int) -> Diagnostic:
+        """The finding that a line assumes the same already."""
+        return error("PML253", f"line {line} assumes this already", self.span, "delete one of the two")
+
+    def check(self, setting: Setting) -> Iterator[Diagnostic]:
+        """What is wrong with it; its names are declared."""
+        raise NotImplementedError
+
+    @property
+    def since(self) -> str:
+        """The moment since which its clock counts; "": it has no clock."""
+        return ""
+
+    @property
+    def excluded(self) -> Tuple[str, ...]:
+        """An agent and an event that it never does, where that is all that it says; (): it says something else."""
+        return ()
+
+    @property
+    def counted(self) -> Tuple[str, Mapping[str, str]]:
+        """What it counts, and the words for each number; "" and none where nothing is said of that."""
+        return "", {}
+
+    @property
+    def known_number(self) -> Number:
+        """Its number; 0 where it has none."""
+        return getattr(self, self.number) if self.number else 0
+
+    def with_number(self, number: int) -> Any:
+        """The same with another number, where it has one."""
+        changed: Any = self
+        return replace(changed, **{self.number: number}) if self.number else self
+
+    def stronger(self, longest: Number) -> Sequence[int]:
+        """Numbers with which it would say more, the smallest change first; times up to `longest` units."""
+        return ()
+
+    @classmethod
+    def missing(cls, setting: Setting, longest: Number) -> Iterator[Tuple[Assumption, Sequence[int]]]:
+        """Assumptions of this kind that may be missing, and the numbers that each may have, as `stronger`."""
+        return iter(())
+
+
+class AboutOne(Assumption):
+    """An assumption about one agent."""
+
+    agent: Ref
+
+    def binds(self, agent: Agent) -> bool:
+        return agent.name == self.agent.name
+
+    def again(self, line: int) -> Diagnostic:
+        message = f"line {line} assumes this of {self.agent.name} already"
+        return error("PML253", message, self.span, "keep the one that is meant")
+
+    def check(self, setting: Setting) -> Iterator[Diagnostic]:
+        for agent in [each for each in setting.agents if each.name == self.agent.name][:1]:
+            if agent.controllable:
+                message = f"{agent.name} is controlled: what it does is decided, not assumed"
+                hint = "write an objective, a rule or a stateDependency, or take controllable away from it"
+                yield error("PML250", message, self.agent.span, hint)
+            else:
+                found = self.wrong(agent, setting)
+                yield from () if found is None else (found,)
+
+    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+        """What is wrong with it, its agent being one that is not controlled."""
+        raise NotImplementedError
+
+    def never_does(self, agent: Agent, event: Ref) -> Optional[Diagnostic]:
+        """A warning where the agent cannot do the event that it is about; else None."""
+        if any(ref.name == event.name for ref in agent.can_do):
+            return None
+        message = f"{self.clause}: {agent.name} cannot do {event.name} anyway"
+        hint = f"delete the assumption, or give it to {agent.name}: can_do {event.name}"
+        return warning("PML254", message, event.span, hint)
+
+    def never_comes(self, agent: Agent, place: Ref, setting: Setting) -> Optional[Diagnostic]:
+        """A warning where the agent never comes to the place that it is about; else None."""
+        start = agent.location.name
+        if agent.mobile is None and place.name != start:
+            message = f"{agent.name} is not mobile: it stays in {start} anyway"
+        elif place.name not in setting.onward(start):
+            message = f"no way leads {agent.name} from {start} to {place.name} anyway"
+        else:
+            return None
+        return warning("PML254", message, self.span, "delete the assumption")

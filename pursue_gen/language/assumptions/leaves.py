@@ -1,0 +1,59 @@
+"""`assume: agent leaves place within T`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Mapping, Optional, Sequence
+
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
+from pursue_gen.language.assumptions.base import AboutOne, Setting
+from pursue_gen.language.numbers import Number, whole_below
+from pursue_gen.language.parts import Agent
+from pursue_gen.language.refs import Ref
+
+SHORTEST_STAY = 2
+"""Time units: an agent rests for one before it may set off."""
+
+
+@dataclass(frozen=True)
+class Leaves(AboutOne):
+    """`assume: agent leaves place within time`: so many time units after it came (or the start) it has set off."""
+
+    agent: Ref
+    place: Ref
+    time: Number
+    span: Span = NOWHERE
+    title: ClassVar[str] = "how long somebody stays"
+    written: ClassVar[str] = "{agent} leaves {place} within {time}"
+    example: ClassVar[Mapping[str, str]] = {"agent": "visitor", "place": "hall", "time": "30"}
+    meanings: ClassVar[Mapping[str, str]] = {"leaves": "The place that it leaves in time."}
+    number: ClassVar[str] = "time"
+    nearest: ClassVar[int] = SHORTEST_STAY
+
+    @classmethod
+    def number_words(cls, number: Number) -> str:
+        return f"It has set off {units(number)} of time after it came, or after the start."
+
+    @property
+    def clause(self) -> str:
+        return f"{self.agent.shown} leaves {self.place.shown} within {units(self.time)}"
+
+    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+        place, start = self.place.name, agent.location.name
+        if self.time < SHORTEST_STAY:
+            message = f"within {self.time} is too short: whoever arrives rests for 1 time unit before it can set off"
+            return error("PML251", message, self.span, f"write within {SHORTEST_STAY} or more")
+        if agent.mobile is None and place == start:
+            message = f"{agent.name} is not mobile: it stays in {start}, and cannot leave it"
+            return error("PML252", message, self.span, "make it mobile (mobile 1)")
+        found = self.never_comes(agent, self.place, setting)
+        if found is None and setting.onward(place) == {place}:
+            return error("PML252", f"no way leads away from {place}", self.span, f"connect {place} and …")
+        return found
+
+    @property
+    def since(self) -> str:
+        return f"{self.agent.shown}'s arrival at {self.place.shown}"
+
+    def stronger(self, longest: Number) -> Sequence[int]:
+        return whole_below(self.time, SHORTEST_STAY)

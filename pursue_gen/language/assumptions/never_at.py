@@ -1,0 +1,54 @@
+"""`assume: agent never at place`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
+from pursue_gen.language.assumptions.base import AboutOne, Assumption, Setting
+from pursue_gen.language.conditions import At, atoms
+from pursue_gen.language.numbers import Number
+from pursue_gen.language.parts import Agent
+from pursue_gen.language.refs import Ref
+
+
+@dataclass(frozen=True)
+class NeverAt(AboutOne):
+    """`assume: agent never at place`: it does not set off to that place."""
+
+    agent: Ref
+    place: Ref
+    span: Span = NOWHERE
+    title: ClassVar[str] = "where somebody never goes"
+    written: ClassVar[str] = "{agent} never at {place}"
+    example: ClassVar[Mapping[str, str]] = {"agent": "visitor", "place": "store"}
+    meanings: ClassVar[Mapping[str, str]] = {"never": "It never sets off to that place."}
+
+    @property
+    def clause(self) -> str:
+        return f"{self.agent.shown} is never at {self.place.shown}"
+
+    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+        start = agent.location.name
+        if self.place.name != start:
+            return self.never_comes(agent, self.place, setting)
+        stays = f"{agent.name} is not mobile: it stays in {start}"
+        message = stays if agent.mobile is None else f"{agent.name} starts in {start}"
+        return error("PML252", message, self.span, "let it start somewhere else")
+
+    @classmethod
+    def missing(cls, setting: Setting, longest: Number) -> Iterator[Tuple[Assumption, Sequence[int]]]:
+        """For each place in a condition that must always, or never, hold, and each agent of whom it is said."""
+        conditions = [each.breaks.condition for each in setting.safety if each.breaks.condition is not None]
+        said = [atom for condition in conditions for atom in atoms(condition) if isinstance(atom, At)]
+        known = {each.subject for each in setting.assumptions}
+        for agent in (agent for agent in setting.agents if not agent.controllable and agent.mobile is not None):
+            for place in dict.fromkeys(atom.place.name for atom in said if _speaks_of(atom, agent)):
+                never = cls(Ref(agent.name, agent.span), Ref(place, agent.span), agent.span)
+                if never.subject not in known:
+                    yield never, (1,)
+
+
+def _speaks_of(atom: At, agent: Agent) -> bool:
+    return not atom.who.robots if atom.who.agent is None else atom.who.agent.name == agent.name

@@ -1,0 +1,69 @@
+"""`assume: agent waits T between event`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
+from pursue_gen.language.assumptions.at_most import AtMost
+from pursue_gen.language.assumptions.base import AboutOne, Assumption, Setting
+from pursue_gen.language.numbers import Number, whole_above
+from pursue_gen.language.parts import Agent
+from pursue_gen.language.refs import Ref
+
+
+@dataclass(frozen=True)
+class Waits(AboutOne):
+    """`assume: agent waits time between event`: so many time units from the end of one to the beginning of the next."""
+
+    agent: Ref
+    event: Ref
+    time: Number
+    span: Span = NOWHERE
+    title: ClassVar[str] = "how long somebody waits in between"
+    written: ClassVar[str] = "{agent} waits {time} between {event}"
+    example: ClassVar[Mapping[str, str]] = {"agent": "guest", "event": "call", "time": "5"}
+    meanings: ClassVar[Mapping[str, str]] = {
+        "waits": "How many units of time it waits at least.",
+        "between": "The event: from the end of one to the beginning of the next.",
+    }
+    number: ClassVar[str] = "time"
+    nearest: ClassVar[int] = 1
+    counts: ClassVar[bool] = True  # whether it has happened: the first time is free
+
+    @classmethod
+    def number_words(cls, number: Number) -> str:
+        return f"The next one begins {units(number)} of time after the end of the last, or later."
+
+    @property
+    def clause(self) -> str:
+        return f"{self.agent.shown} waits {units(self.time)} between one {self.event.shown} and the next"
+
+    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+        if self.time <= 0:
+            message = "waits 0 assumes nothing: expected more than 0"
+            return error("PML251", message, self.span, "write the time, or delete the assumption")
+        return self.never_does(agent, self.event)
+
+    @property
+    def since(self) -> str:
+        return f"{self.agent.shown}'s last {self.event.shown}"
+
+    def stronger(self, longest: Number) -> Sequence[int]:
+        return whole_above(self.time, longest)
+
+    @classmethod
+    def missing(cls, setting: Setting, longest: Number) -> Iterator[Tuple[Assumption, Sequence[int]]]:
+        """For each event that has to be answered, and each agent that may begin it again and again as it likes."""
+        calls = (each.breaks.begins for each in setting.safety)
+        answered = {call.name: call for call in calls if isinstance(call, Ref)}
+        known = {each.subject for each in setting.assumptions}
+        counted = {event.name for event in setting.events if event.at_most is not None}
+        for name, event in answered.items():
+            for agent in setting.agents:
+                if agent.controllable or name in counted or all(ref.name != name for ref in agent.can_do):
+                    continue
+                pause = cls(Ref(agent.name, agent.span), event, 1, event.span)
+                if known.isdisjoint((pause.subject, AtMost(pause.agent, event, 1).subject)):
+                    yield pause, whole_above(0, longest)
