@@ -16,8 +16,8 @@ from pursue_gen.solving.rules import Rules, played
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.workspace.model_file import render
 from pursue_runtime.model import Model, Position
-from pursue_runtime.phrases import sentence
 from pursue_runtime.state import SystemState
+from pursue_runtime.vocabulary import sentence
 from tests.conftest import ROOT
 
 PAGE = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")

@@ -6,22 +6,22 @@ from __future__ import annotations
 from typing import Tuple
 
 from pursue_runtime.model import Automaton, Move, Position
-from pursue_runtime.observer.uncovered import doing
-from pursue_runtime.phrases import phrase
 from pursue_runtime.sentences import MARKED, marked
+from pursue_runtime.vocabulary import deed, place
 from pursue_runtime.zones import INFINITY, due, last_moment
 
 
 def late_words(automaton: Automaton, position: Position) -> str:
     """Return that an agent is late which should have left its location by now."""
-    return f"{marked(automaton.name)} is late: it is still {doing(automaton, position)}"
+    here = place(MARKED, automaton, position.locations[automaton.name])
+    return f"{marked(automaton.name)} is late: it is still {here}"
 
 
 def untimely_words(automaton: Automaton, moves: Tuple[Move, ...], position: Position) -> str:
     """Return what the agent that begins these moves does, and how much too early or too late that is."""
     zones = [tuple(bound for move in moves for bound in move.edge.when)]
     early, late = due(zones, position.clocks, 0.0), -last_moment(zones, position.clocks)
-    what = f"{marked(automaton.name)} {phrase(MARKED, automaton, moves[0].edge).does}"
+    what = f"{marked(automaton.name)} {deed(MARKED, automaton, moves[0].edge).does}"
     if early:
         return f"{what} {early:.1f} time units too early; the mission goes on from there"
     if 0.0 < late < INFINITY:

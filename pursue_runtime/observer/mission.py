@@ -13,9 +13,9 @@ from pursue_runtime.observer.mission_status import MissionStatus
 from pursue_runtime.observer.orders import first_overdue
 from pursue_runtime.observer.planning import stays
 from pursue_runtime.orders import Order
-from pursue_runtime.phrases import phrase
 from pursue_runtime.sentences import MARKED, as_sentence, in_words, marked, quoted
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, SystemState
+from pursue_runtime.vocabulary import deed
 from pursue_runtime.words import (
     BLOCKED,
     FAILED,
@@ -265,7 +265,7 @@ class Mission(MissionStatus):
         states: List[SystemState] = []
         if moves and not why:
             name, edge = moves[0]
-            why = f"{marked(name)} {phrase(MARKED, self.model.automaton(name), edge).does}"
+            why = f"{marked(name)} {deed(MARKED, self.model.automaton(name), edge).does}"
         while moves:
             before = self.state(now)
             self._automata.take(moves, now)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import AbstractSet, List
+from typing import AbstractSet
 
-from pursue_runtime.locations import is_action, is_end, is_movement
-from pursue_runtime.model import Automaton, Model, Position
+from pursue_runtime.model import Model, Position
 from pursue_runtime.observer.mission_state import ACTING
 from pursue_runtime.observer.planning import stays
-from pursue_runtime.sentences import marked
+from pursue_runtime.sentences import MARKED, marked
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Cover
+from pursue_runtime.vocabulary import listed, place
 from pursue_runtime.zones import INFINITY
 
 SHOWN = 4
@@ -24,8 +24,8 @@ def uncovered_reason(
     matter to it. The sentence is the same while only time passes. `late`: the agents that are; `tolerance` as in
     `covers`."""
     if late:
-        who = [f"{marked(name)} is late {doing(model.automaton(name), position)}" for name in sorted(late)]
-        return f"{_joined(who)}, and the strategy does not say what to do then"
+        who = [f"{marked(name)} is late {_place(model, name, position)}" for name in sorted(late)]
+        return f"{listed(who)}, and the strategy does not say what to do then"
     where = _where(model, cover, position)
     if not cover.zones(SystemState(0, 0.0, *position)):
         return f"the strategy does not say what to do now that {where}"
@@ -46,22 +46,10 @@ def _where(model: Model, cover: Cover, position: Position) -> str:
     acting = model.of_kind(*ACTING)
     named = [automaton for automaton in acting if automaton.name in cover.names] or acting
     shown = named[:SHOWN] if len(named) > SHOWN + 1 else named
-    parts = [f"{marked(each.name)} is {doing(each, position)}" for each in shown]
+    parts = [f"{marked(each.name)} is {_place(model, each.name, position)}" for each in shown]
     more = len(named) - len(shown)
-    return _joined([*parts, f"{more} others are elsewhere"] if more else parts)
+    return listed([*parts, f"{more} others are elsewhere"] if more else parts)
 
 
-def doing(automaton: Automaton, position: Position) -> str:
-    """What an agent does, behind `is`: `at c`, `on its way to b`, `doing catch at b`."""
-    here = position.locations[automaton.name]
-    begins = [edge for edge in automaton.edges if edge.target == here != edge.source]
-    if is_movement(here):
-        ends = [edge.target for edge in automaton.edges_from(here) if is_end(edge.source, edge.target)]
-        return f"on its way to {marked(ends[0])}" if ends else "on its way"
-    if is_action(here) and begins:
-        return f"doing {marked(begins[0].word)} at {marked(begins[0].source)}"
-    return f"at {marked(here)}"
-
-
-def _joined(parts: List[str]) -> str:
-    return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
+def _place(model: Model, agent: str, position: Position) -> str:
+    return place(MARKED, model.automaton(agent), position.locations[agent])

@@ -9,10 +9,10 @@ from typing import Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.locations import is_end
 from pursue_runtime.model import Model, Position
-from pursue_runtime.phrases import possibility
 from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import RUNNING, SystemState
 from pursue_runtime.strategy import Strategy
+from pursue_runtime.vocabulary import deed
 from pursue_runtime.zones import EPSILON, due
 
 MOST = 16
@@ -62,7 +62,7 @@ def _steps(model: Model, strategies: Sequence[Strategy], here: Position, lost: "
         automaton = model.automaton(agent)
         if automaton.kind in ACTING:
             edge = taken[0].edge
-            yield Step(passed, agent, possibility(model, automaton, edge), commanded, edge.target)
+            yield Step(passed, agent, deed(model, automaton, edge).do, commanded, edge.target)
         here = model.after(taken, here)
         if here == before:
             return

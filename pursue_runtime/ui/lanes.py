@@ -9,9 +9,9 @@ from typing import Any, Dict, List, NamedTuple, Optional
 
 from pursue_runtime.locations import is_action, is_movement
 from pursue_runtime.model import Automaton, Model
-from pursue_runtime.phrases import where
 from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import ENDED, LIVE, SystemState
+from pursue_runtime.vocabulary import where
 
 MOST = 300
 """Segments of a lane; of a longer mission the last ones are kept."""

@@ -8,13 +8,13 @@ from __future__ import annotations
 from typing import Any, Collection, Dict, List, Mapping, NamedTuple, Optional, Protocol, Sequence, Tuple
 
 from pursue_runtime.locations import is_end, is_movement
-from pursue_runtime.model import Edge, Model
-from pursue_runtime.phrases import not_promised, phrase, sentence, where
+from pursue_runtime.model import Model
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.sentences import Told, in_words
 from pursue_runtime.simulator.simulator import ACTING, report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
+from pursue_runtime.vocabulary import deed, instruction, not_promised, sentence, where
 from pursue_runtime.words import (
     PING,
     RESUME,
@@ -72,7 +72,7 @@ def possible_words(model: Model, state: SystemState, clocks: Dict[str, float], k
                 continue
             closes = min([bound.bound - clocks[bound.left] for bound in zone if bound.left], default=float("inf"))
             word = report_word(model, automaton.name, edge.word)
-            text = f"{model.shown(automaton.name)} {phrase(model, automaton, edge).does}"
+            text = f"{model.shown(automaton.name)} {deed(model, automaton, edge).does}"
             found.setdefault(word, PossibleWord(word, opens, closes, automaton.name, text))
     return list(found.values())
 
@@ -104,8 +104,7 @@ def tasks(model: Model, state: SystemState, agents: Collection[str]) -> List[Tas
         end = next((edge for edge in ends if reports(automaton, edge)), None)
         if begin is not None and end is not None:
             is_person = automaton.kind == "human"
-            say = _instruction_text if is_person else _activity_text
-            text = say(model, begin, automaton.edges)
+            text = instruction(model, automaton, begin) if is_person else where(model, automaton, location)
             label = "Arrived" if is_movement(location) and not is_person else "Done"
             word = report_word(model, automaton.name, end.word)
             found.append(Task(automaton.name, automaton.kind, text, label, word, model.shown(automaton.name)))
@@ -304,29 +303,9 @@ class MissionView:
             return ""
         for edge in automaton.edges:
             if edge.word == state.event and edge.target == here:
-                over = is_end(edge.source, edge.target)
-                text = "" if over else _instruction_text(self._model, edge, automaton.edges, " now")
-                return text and f"{self._model.shown(person)}: {text}"
+                over, text = is_end(edge.source, edge.target), instruction(self._model, automaton, edge)
+                return "" if over else f"{self._model.shown(person)}: {text} now"
         return ""
-
-
-def _instruction_text(model: Model, edge: Edge, edges: Sequence[Edge], when: str = "") -> str:
-    """What a person does who takes this edge."""
-    if is_movement(edge.target):
-        return f"go from {model.shown(edge.source)} to {model.shown(_arrival(edges, edge))}{when}"
-    return f"do {model.shown(edge.word)}{when}, at {model.shown(edge.source)}"
-
-
-def _activity_text(model: Model, edge: Edge, edges: Sequence[Edge]) -> str:
-    """What an agent does that has taken this edge."""
-    if is_movement(edge.target):
-        return f"from {model.shown(edge.source)} to {model.shown(_arrival(edges, edge))}"
-    return f"{model.shown(edge.word)}, at {model.shown(edge.source)}"
-
-
-def _arrival(edges: Sequence[Edge], departure: Edge) -> str:
-    """Where a movement leads to."""
-    return next(edge.target for edge in edges if edge.source == departure.target != edge.target)
 
 
 def report_text(task: Task) -> str:

@@ -10,16 +10,6 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 from pursue_runtime.data import DataError
 from pursue_runtime.locations import is_action, is_end, is_movement
 from pursue_runtime.model import Automaton, Model
-from pursue_runtime.phrases import (
-    awaited,
-    begin_of,
-    doing,
-    listed,
-    not_promised,
-    phrase,
-    possibility,
-    sentence,
-)
 from pursue_runtime.poses import read_poses
 from pursue_runtime.sentences import Told, in_words
 from pursue_runtime.simulator.simulator import ACTING, end_window, report_word
@@ -32,6 +22,7 @@ from pursue_runtime.ui.outlook import Outlook
 from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_now
 from pursue_runtime.ui.statuses import Status, status_texts
 from pursue_runtime.ui.strategies import strategies_in
+from pursue_runtime.vocabulary import awaited, begin_of, deed, listed, not_promised, place, sentence, where
 from pursue_runtime.words import START
 
 MAX_ENTRIES = 300  # entries of the log
@@ -213,11 +204,11 @@ class Page:
     def _agent(self, automaton: Automaton, state: SystemState, at: float) -> Dict[str, Any]:
         """Where an agent is, what it does, and between which moments that ends."""
         location = state.locations.get(automaton.name, automaton.initial)
-        place, to = self._where(automaton, location)
+        origin, to = self._where(automaton, location)
         window = end_window(self._model, automaton, location)
         agent: Dict[str, Any] = {
-            "name": automaton.name, "place": place, "to": to,
-            "doing": doing(self._model, automaton, location, place),
+            "name": automaton.name, "place": origin, "to": to,
+            "doing": f"is {place(self._model, automaton, location)}",
             "awaited": awaited(self._model, automaton, location),
             "notes": [text for text, agents in self._notes(state) if automaton.name in agents],
             "since": None, "low": None, "high": None, "lost": automaton.name in state.lost,
@@ -290,7 +281,8 @@ class Page:
         event = word.rpartition(":")[2]
         edges = (edge for edge in automaton.edges if edge.word == event and edge.source != edge.target)
         edge = next(edges, None)
-        return phrase(self._model, automaton, edge).label if edge is not None else self._model.shown(event)
+        moves = edge is not None and is_movement(edge.target)
+        return where(self._model, automaton, edge.target) if edge and moves else self._model.shown(event)
 
     def _may(self, agent: str, word: str, state: SystemState) -> str:
         """What its agent may do with a word, behind the word may."""
@@ -298,7 +290,7 @@ class Page:
         event = word.rpartition(":")[2]
         edges = (edge for edge in automaton.edges_from(state.locations[agent]) if edge.word == event)
         edge = next(edges, None)
-        return possibility(self._model, automaton, edge) if edge is not None else self._model.shown(event)
+        return deed(self._model, automaton, edge).do if edge is not None else self._model.shown(event)
 
     def _kind(self, agent: str) -> str:
         return next((automaton.kind for automaton in self._acting if automaton.name == agent), NOTE)

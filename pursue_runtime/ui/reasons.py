@@ -11,11 +11,11 @@ from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Automaton, Model
-from pursue_runtime.phrases import is_there, possibility
 from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Command, Strategy
 from pursue_runtime.ui.statuses import Status
+from pursue_runtime.vocabulary import deed, place
 
 _SHOWN = 2
 """So many reasons are said."""
@@ -73,17 +73,17 @@ def _text(
         value = state.locations.get(name, str(state.values.get(name, "")))
         return f"{status.label}: {status.texts[value]}" if status is not None and value in status.texts else ""
     automaton = automata[name]
-    text = f"{model.shown(name)} {is_there(model, automaton, state.locations[name], 'is')}"
-    place, command = min(reason.instead, key=lambda each: is_under_way(each[0]))
+    text = f"{model.shown(name)} is {place(model, automaton, state.locations[name])}"
+    other, command = min(reason.instead, key=lambda each: is_under_way(each[0]))
     does = _does(model, automata, command)
-    return f"{text} (if it {is_there(model, automaton, place, 'were')}: {does})" if does else text
+    return f"{text} (if it were {place(model, automaton, other)}: {does})" if does else text
 
 
 def _does(model: Model, automata: Mapping[str, Automaton], command: Command) -> Optional[str]:
     """What a command has its agent do."""
     edges = automata[command.agent].edges_from(command.origin)
     edge = next((edge for edge in edges if (edge.word, edge.target) == (command.event, command.target)), None)
-    return None if edge is None else possibility(model, automata[command.agent], edge)
+    return None if edge is None else deed(model, automata[command.agent], edge).do
 
 
 class Why:

@@ -128,6 +128,6 @@ def test_a_person_reports_at_the_terminal_what_a_visitor_and_a_robot_have_done(r
         does("done bot", "bot arrives at b")
         until(says(r"\d\.\d  bot begins greet\b"), "the robot acts")
         time.sleep(0.5)
-        does("done bot", "bot ends greet")
+        does("done bot", "bot finishes greet")
         until(says("The goal is reached"), "the end")
         assert terminal.wait(PATIENCE) == 0

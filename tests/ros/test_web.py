@@ -219,7 +219,7 @@ def test_a_person_gets_instructions_and_says_when_it_is_done(ros: Ros, tmp_path:
             page.click("#tasks .done")
             page.wait(f"{over} || document.querySelector('#tasks li.idle') !== null")
         assert page.text("#status") == "won", page.text("#log")
-        assert told == {"bot2: go from c to a", "bot2: do bot2_ina, at a"}
+        assert told == {"bot2: go to a", "bot2: do bot2_ina at a"}
         assert fits(page)
         assert launched.wait(PATIENCE) == 0
         assert page.complaints == []

@@ -10,12 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_runtime.model import Model
-from pursue_runtime.phrases import phrase
-from pursue_runtime.sentences import MARKED, as_sentence, in_words, marked, quoted
+from pursue_runtime.sentences import as_sentence, in_words, marked, quoted
 from pursue_runtime.state import format_state, parse_state
 from pursue_runtime.ui.environment import IdleEnvironment
 from pursue_runtime.ui.mission_view import MissionView
-from tests.runtime.models import model_data, mover, worker
 from tests.runtime.observer.test_mission import CHASE, SEVERAL, Journey
 from tests.runtime.observer.test_uncovered import COVER
 from tests.runtime.texts import read
@@ -78,18 +76,6 @@ def test_a_text_that_is_no_sentence_is_shown_as_it_is(text: str) -> None:
     assert in_words(text, str.upper) == in_words(as_sentence(text), str.upper) == text
 
 
-@pytest.mark.parametrize(("source", "target", "does"), [
-    ("a", "going_a_to_b", "sets off from {a} to {b}"), ("going_a_to_b", "b", "arrives at {b}"),
-    ("s", "doing_screw_in_s", "begins {screw}"), ("doing_screw_in_s", "s", "ends {screw}"),
-])  # fmt: skip
-def test_what_an_agent_does_has_marks(source: str, target: str, does: str) -> None:
-    model = Model(model_data(mover("bot", "robot", 9), worker("boy", "agent")))
-    automaton, edge = next(
-        (each, edge) for each in model.automata for edge in each.edges if (edge.source, edge.target) == (source, target)
-    )
-    assert phrase(MARKED, automaton, edge).does == does
-
-
 # What the observer says
 
 
@@ -111,9 +97,10 @@ def test_a_name_that_is_a_word_of_the_sentence_has_its_label_where_it_is_meant(
 ) -> None:
     place = f"{place}_" if place == agent else place
     made = late(agent, place)
-    says = "{} is late on its way to {}, and the strategy does not say what to do then; looking for another plan"
+    says = "{} is late on its way from a to {}, and the strategy does not say what to do then; looking for another plan"
     assert in_words(made.mission.reason) == says.format(agent, place)
-    assert in_words(made.mission.reason, {agent: label, place: "{0}"}.__getitem__) == says.format(label, "{0}")
+    labels = {agent: label, place: "{0}", "a": "a"}
+    assert in_words(made.mission.reason, labels.__getitem__) == says.format(label, "{0}")
     assert not [text for _, text in made.logs if "{" in text]
 
 

@@ -9,7 +9,7 @@ from pursue_gen.tools.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Find
 from pursue_gen.tools.replay.record import MissionRecord
 from pursue_gen.tools.replay.steps import ReplayedStep
 from pursue_runtime.model import Model
-from pursue_runtime.phrases import sentence
+from pursue_runtime.vocabulary import sentence
 
 _MARKS = {NOTE: "", WORLD: "WORLD: ", FAULT: "FAULT: ", UNRECORDED: "NOT RECORDED: "}
 

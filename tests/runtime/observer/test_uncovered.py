@@ -49,12 +49,13 @@ def test_who_is_late_is_named_with_what_it_does() -> None:
     while state is None or state.status == "running":
         moment, state = made.tick_from(moment)
     assert state.reason == (
-        "{bot} is late on its way to {b}, and the strategy does not say what to do then; looking for another plan"
+        "{bot} is late on its way from {a} to {b}, and the strategy does not say what to do then; "
+        "looking for another plan"
     )
     for _ in ("without it", "with it"):
         made.mission.on_no_plan(made.mission.plan_request.number, "'do catch' cannot be guaranteed from here", moment)
     state = made.hear("_ping_", moment)
-    why = "{bot} is late on its way to {b}, and the strategy does not say what to do then"
+    why = "{bot} is late on its way from {a} to {b}, and the strategy does not say what to do then"
     assert state.reason == f"{why}; no other plan: 'do catch' cannot be guaranteed from here; waiting for {{bot}}"
 
 
@@ -69,7 +70,7 @@ def test_the_log_has_each_part_of_a_reason_once_while_the_mission_holds() -> Non
             made.mission.on_no_plan(made.mission.plan_request.number, "it cannot be guaranteed from here", 11.0)
         assert made.hear(word, 11.0).status == "holding"
     assert [text for level, text in made.logs if "the mission holds" in text and level == "warn"] == [
-        "the mission holds: bot is late on its way to b, and the strategy does not say what to do then;"
+        "the mission holds: bot is late on its way from a to b, and the strategy does not say what to do then;"
         " looking for another plan",
         "the mission holds: no other plan: it cannot be guaranteed from here; waiting for bot",
         "the mission holds: the way between a and b is blocked",
@@ -90,7 +91,7 @@ def test_who_is_late_and_what_happens_too_early_or_too_late_is_said_as_people_wo
     made = journey(ANYWHERE)
     made.hear("bot_a2b", 2.0)
     made.mission.on_time(6.5)
-    assert ("warn", "bot is late: it is still on its way to b") in made.logs
+    assert ("warn", "bot is late: it is still on its way from a to b") in made.logs
     made.hear("bot_going_a_to_b2b", 7.0)
     assert not [text for _, text in made.logs if "too" in text], "it was late: that is said already"
 

@@ -377,7 +377,7 @@ def test_what_is_to_be_achieved_and_the_guaranteed_time_are_above_all(page: Brow
     node.show(1, 0.0, event="_start_")
     node.show(2, 10.0, clock=2.0, event="bot_a2b", agent="bot", bot="going_a_to_b", thief="going_a_to_b")
     matches(page, "#guarantee", r"at most (50|4[789](\.\d)?) time units from now, 60 in all")
-    says(page, "#agents", "bot goes from a to b")
+    says(page, "#agents", "bot is on its way from a to b")
     says(page, "#agents", "thief is on its way from a to b")
     matches(page, "#agents", r"is to arrive at b in [4567]\.\d to [5678]\.\d")
     node.show(3, 30.0, clock=15.0, bot="going_a_to_b")
@@ -471,7 +471,7 @@ def test_a_screen_reader_knows_what_everything_is(page: Browser, show: Callable[
     node = show(*everybody(), ends=True)
     node.show(1, 0.0, event="_start_")
     node.show(2, 20.0, clock=12.0, bot="going_a_to_b", nurse="doing_screw_in_s")
-    says(page, "#agents", "bot goes from a to b")
+    says(page, "#agents", "bot is on its way from a to b")
     label = "document.getElementById(e.getAttribute('aria-labelledby') || '')?.textContent"
     nameless = f"(e) => !(e.getAttribute('aria-label') || {label} || e.textContent).trim()"
     for kind in ("button", "section", "progress", "[role=group]", "dialog", "svg", "summary"):
@@ -492,7 +492,7 @@ def test_a_screen_reader_knows_what_everything_is(page: Browser, show: Callable[
 def test_done_is_said_once_for_each_task(page: Browser, show: Callable[..., Node]) -> None:
     node = show(*everybody())
     node.show(2, 2.0, clock=3.5, nurse="doing_screw_in_s")
-    says(page, "#tasks", "nurse: do screw, at s")
+    says(page, "#tasks", "nurse: do screw at s")
     page.value("window.setTimeout = () => 0; true")  # however slow the machine: no time passes between the presses
     page.click(".done")
     page.click(".done")
@@ -506,10 +506,10 @@ def test_the_report_of_an_end_that_the_model_does_not_have_yet_is_confirmed(
     node = show(*everybody())
     node.clock = lambda: 0.0
     node.show(2, 2.0, clock=1.0, unit=30.0, nurse="doing_screw_in_s")
-    says(page, "#tasks", "nurse: do screw, at s")
+    says(page, "#tasks", "nurse: do screw at s")
     page.click(".done")
     page.wait("document.getElementById('sure').open")
-    matches(page, "#sure-text", r"nurse: do screw, at s\. By the model this ends in [12]\.\d time units at the ear")
+    matches(page, "#sure-text", r"nurse: do screw at s\. By the model this ends in [12]\.\d time units at the ear")
     page.click("#stop-no")
     page.wait("!document.getElementById('sure').open")
     page.click(".done")
@@ -524,7 +524,7 @@ def test_a_robot_that_is_held_goes_on_without_another_question(page: Browser, sh
     node = show(*everybody(), ends=True)
     node.show(2, 2.0, clock=1.0, unit=30.0, bot="going_a_to_b", held=("bot",))
     says(page, "#ends", "bot: held, until it is to continue")
-    says(page, "#agents", "bot goes from a to b; held, until it is resumed")
+    says(page, "#agents", "bot is on its way from a to b; held, until it is resumed")
     page.click("#ends .done")
     says(page, "#remark", "as you like")
     assert node.wanted == [("done", "bot:_resume_", 2)]
@@ -537,8 +537,8 @@ def test_without_a_simulator_arrivals_of_robots_and_others_are_reported_on_the_p
     page.wait("!document.getElementById('others').hidden")
     says(page, "#ends", "bot: not under way")
     node.show(2, 2.0, clock=20.5, thief="going_a_to_b", boy="doing_screw_in_s")
-    says(page, "#ends", "thief: from a to b")
-    says(page, "#ends", "boy: screw, at s")
+    says(page, "#ends", "thief: a → b")
+    says(page, "#ends", "boy: screw at s")
     labels = page.value("[...document.querySelectorAll('#ends .done')].map((each) => each.textContent).join()")
     assert labels == "Done,Arrived,Done"
     pressed = "document.querySelectorAll('#ends .done')[{}].click()"
@@ -551,7 +551,7 @@ def test_without_a_simulator_arrivals_of_robots_and_others_are_reported_on_the_p
 def test_with_a_simulator_only_people_report_their_ends(page: Browser, show: Callable[..., Node]) -> None:
     node = show(*everybody())
     node.show(2, 2.0, clock=2.0, thief="going_a_to_b", nurse="doing_screw_in_s")
-    says(page, "#tasks", "nurse: do screw, at s")
+    says(page, "#tasks", "nurse: do screw at s")
     assert page.value("document.getElementById('others').hidden") is True
 
 

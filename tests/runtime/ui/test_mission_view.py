@@ -192,7 +192,7 @@ def test_people_are_reported_in_words_once_it_is_taken() -> None:
     told = MissionView(walker, IdleEnvironment())
     told.on_state(state(walker, 1, 100.0, {}, event="_start_"), 100.0)
     lines = told.on_state(state(walker, 2, 104.0, {}, event="nurse_a2b", agent="nurse", nurse="going_a_to_b"), 104.0)
-    assert [line.strip() for line in lines] == ["4.0  nurse sets off from a to b", "nurse: go from a to b now"]
+    assert [line.strip() for line in lines] == ["4.0  nurse sets off from a to b", "nurse: go to b now"]
     lines = told.on_state(state(walker, 3, 113.5, {}, event="nurse_going_a_to_b2b", agent="nurse", nurse="b"), 113.5)
     assert [line.strip() for line in lines] == ["13.5  nurse arrives at b"]
 
@@ -201,7 +201,7 @@ def test_people_get_instructions_where() -> None:
     told = mission()
     told.on_state(at(1, 100.0, event="_start_"), 100.0)
     lines = told.on_state(at(2, 103.0, event="screw", agent="nurse", nurse="doing_screw_in_s"), 103.0)
-    assert [line.strip() for line in lines] == ["3.0  nurse begins screw", "nurse: do screw now, at s"]
+    assert [line.strip() for line in lines] == ["3.0  nurse begins screw", "nurse: do screw at s now"]
 
 
 def test_who_takes_part_in_what_another_one_begins_gets_instructions_as_well() -> None:
@@ -211,10 +211,10 @@ def test_who_takes_part_in_what_another_one_begins_gets_instructions_as_well() -
     told.on_state(state(house, 1, 100.0, {}, event="_start_", **there), 100.0)
     riding = {"porter": "doing_ride_in_lift", "waiter": "doing_ride_in_lift"}
     lines = told.on_state(state(house, 2, 104.0, {}, event="ride", agent="porter", **riding), 104.0)
-    assert [line.strip() for line in lines] == ["4.0  porter begins ride", "waiter: do ride now, at lift"]
+    assert [line.strip() for line in lines] == ["4.0  porter begins ride", "waiter: do ride at lift now"]
     assert [task.agent for task in tasks(house, told.state, ["porter", "waiter"])] == ["porter"], "who ends it"
     lines = told.on_state(state(house, 3, 108.5, {}, event="rideDONE", agent="porter", **there), 108.5)
-    assert [line.strip() for line in lines] == ["8.5  porter ends ride"]
+    assert [line.strip() for line in lines] == ["8.5  porter finishes ride"]
 
 
 # What happens
@@ -291,7 +291,8 @@ def test_what_happens_is_printed_in_words() -> None:
     for seq, (event, agent, places) in enumerate(steps, start=1):
         lines += told.on_state(at(seq, 100.0 + seq, event=event, agent=agent, **places), 100.0 + seq)
     assert [line.split("  ")[-1] for line in lines] == [
-        "the mission starts", "thief sets off from a to b", "boy begins screw", "thief arrives at b", "boy ends screw"
+        "the mission starts", "thief sets off from a to b", "boy begins screw", "thief arrives at b",
+        "boy finishes screw",
     ]
 
 
@@ -355,7 +356,7 @@ def test_the_menu_says_what_a_word_means() -> None:
     ]
     assert menu(ends)[0].strip().startswith("1  thief arrives at b: thief_going_a_to_b2b")
     reported = [report_text(task) for task in tasks(MODEL, now, ["thief", "boy"])]
-    assert reported == ["thief: arrived", "boy is done: screw, at s"]
+    assert reported == ["thief: arrived", "boy is done: screw at s"]
 
 
 # What people report
@@ -365,7 +366,7 @@ def test_people_report_the_end_of_what_they_are_reported() -> None:
     busy = state(crew, 3, 100.0, {}, nurse="going_a_to_b", cook="doing_screw_in_s", boy="doing_screw_in_s")
     people = reporters(crew, False, {})
     given = tasks(crew, busy, people)
-    assert [(task.agent, task.text) for task in given] == [("nurse", "go from a to b"), ("cook", "do screw, at s")]
+    assert [(task.agent, task.text) for task in given] == [("nurse", "go to b"), ("cook", "do screw at s")]
     assert tasks(crew, state(crew, 1, 100.0, {}), people) == []
     assert read_line("done nurse", [], set(), given) == ("nurse_going_a_to_b2b", "")
     assert read_line("done cook", [], set(), given) == ("cook:screwDONE", ""), "the boy could mean it too"
@@ -380,7 +381,7 @@ def test_without_a_simulator_everybody_s_ends_are_reported_by_a_person() -> None
     busy = state(crew, 3, 100.0, {}, bot="going_a_to_b", visitor="going_b_to_a", cook="doing_screw_in_s")
     given = tasks(crew, busy, reporters(crew, True, {}))
     assert [(task.agent, task.text, task.label) for task in given] == [
-        ("bot", "from a to b", "Arrived"), ("visitor", "from b to a", "Arrived"), ("cook", "do screw, at s", "Done")
+        ("bot", "a → b", "Arrived"), ("visitor", "b → a", "Arrived"), ("cook", "do screw at s", "Done")
     ]  # fmt: skip
     assert read_line("done visitor", [], set(), given) == ("visitor_going_b_to_a2a", "")
     assert read_line("done bot", [], set(), given) == ("bot_going_a_to_b2b", "")

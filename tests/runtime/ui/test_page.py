@@ -58,9 +58,9 @@ def test_ends_are_reported_on_the_page_for_those_whose_ends_come_from_there() ->
     assert everybody.scene()["reporters"] == ["bot", "thief", "nurse", "boy"]
     under_way = {"bot": "going_a_to_b", "thief": "going_a_to_b", "boy": "doing_screw_in_s"}
     bot, thief, boy = view(everybody, at(3, 100.0, **under_way))["tasks"]
-    assert (bot["text"], bot["label"], bot["word"]) == ("from a to b", "Arrived", "bot_going_a_to_b2b")
-    assert (thief["text"], thief["label"], thief["word"]) == ("from a to b", "Arrived", "thief_going_a_to_b2b")
-    assert (boy["text"], boy["label"], boy["word"]) == ("screw, at s", "Done", "boy:screwDONE")
+    assert (bot["text"], bot["label"], bot["word"]) == ("a → b", "Arrived", "bot_going_a_to_b2b")
+    assert (thief["text"], thief["label"], thief["word"]) == ("a → b", "Arrived", "thief_going_a_to_b2b")
+    assert (boy["text"], boy["label"], boy["word"]) == ("screw at s", "Done", "boy:screwDONE")
     assert page(reporters=("nurse",)).scene()["reporters"] == ["nurse"]
     assert view(page(reporters=("nurse",)), at(3, 100.0, **under_way))["tasks"] == []
 
@@ -82,7 +82,7 @@ def test_a_map_is_read_and_a_wrong_one_refused() -> None:
 def test_a_movement_is_reported_with_its_ends_and_the_window_of_its_arrival() -> None:
     seen = view(page(), at(3, 120.0, clocks={"Cbot": 2.0}, bot="going_a_to_b"), at=20.0)
     bot = agent(seen, "bot")
-    assert (bot["place"], bot["to"], bot["doing"]) == ("a", "b", "goes from a to b")
+    assert (bot["place"], bot["to"], bot["doing"]) == ("a", "b", "is on its way from a to b")
     assert (bot["since"], bot["low"], bot["high"]) == (18.0, 27.0, 28.0)
     (arrival,) = bot["next"]
     assert bot["awaited"] == arrival["may"] == "arrive at b"
@@ -91,8 +91,8 @@ def test_a_movement_is_reported_with_its_ends_and_the_window_of_its_arrival() ->
 
 def test_an_action_is_reported_where_it_is_done() -> None:
     nurse = agent(view(page(), at(3, 120.0, clocks={"Cnurse": 1.0}, nurse="doing_screw_in_s"), at=20.0), "nurse")
-    assert (nurse["place"], nurse["to"], nurse["doing"]) == ("s", "", "does screw, at s")
-    assert nurse["awaited"] == "end screw"
+    assert (nurse["place"], nurse["to"], nurse["doing"]) == ("s", "", "is doing screw at s")
+    assert nurse["awaited"] == "finish screw"
     assert (nurse["low"], nurse["high"]) == (22.0, 23.0)
 
 
@@ -108,14 +108,14 @@ def test_whoever_stands_is_reported_with_what_may_come_and_when() -> None:
 def test_who_is_not_controlled_is_not_said_to_go_anywhere() -> None:
     under_way = at(3, 120.0, clocks={"Cbot": 2.0}, bot="going_a_to_b", thief="going_a_to_b")
     seen = view(page(), under_way, at=20.0)
-    assert agent(seen, "bot")["doing"] == "goes from a to b"
+    assert agent(seen, "bot")["doing"] == "is on its way from a to b"
     assert agent(seen, "thief")["doing"] == "is on its way from a to b"
 
 
 def test_what_the_mission_waits_for() -> None:
     shown = page()
     busy = at(2, 100.0, clocks={"Cthief": 1.0}, bot="going_b_to_a", thief="going_a_to_b", nurse="doing_screw_in_s")
-    everybody = "Waits for bot to arrive at a, thief to arrive at b and nurse to end screw."
+    everybody = "Waits for bot to arrive at a, thief to arrive at b and nurse to finish screw."
     assert view(shown, busy)["turn"] == everybody
     without = view(shown, busy._replace(lost=("thief",)))
     assert "thief" not in without["turn"] and agent(without, "thief")["lost"]
@@ -158,7 +158,7 @@ def test_before_the_first_state_everybody_is_at_the_start() -> None:
 def test_people_get_instructions_and_when_it_is_planned_to_be_done() -> None:
     shown = page(reporters=("nurse",))
     (task,) = view(shown, at(3, 100.0, clocks={"Cnurse": 1.0}, nurse="doing_screw_in_s"), at=7.0)["tasks"]
-    assert (task["agent"], task["text"], task["word"]) == ("nurse", "do screw, at s", "nurse:screwDONE")
+    assert (task["agent"], task["text"], task["word"]) == ("nurse", "do screw at s", "nurse:screwDONE")
     assert (task["since"], task["low"], task["high"]) == (6.0, 9.0, 10.0)
     assert view(shown, at(4, 100.0))["tasks"] == []
     assert view(shown, at(4, 100.0, nurse="doing_screw_in_s", status="stopped"))["tasks"] == []
@@ -178,7 +178,7 @@ def test_the_log_tells_events_in_words_each_once() -> None:
     told += shown.on_state(at(5, 127.0, event="screwDONE", agent="boy", thief="b"), 27.0)
     assert [(entry["at"], entry["text"]) for entry in told] == [
         (0.0, "the mission starts"), (1.5, "thief sets off from a to b"), (22.0, "thief arrives at b"),
-        (23.0, "boy begins screw"), (27.0, "boy ends screw"),
+        (23.0, "boy begins screw"), (27.0, "boy finishes screw"),
     ]
     assert told == shown.log
     assert [entry["n"] for entry in told] == [1, 2, 3, 4, 5]

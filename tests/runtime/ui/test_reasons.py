@@ -82,7 +82,7 @@ def test_the_course_is_what_comes_if_nobody_else_begins_anything() -> None:
     known = strategy({ASKED: [GO], ("b", "a", 0): [SCREW]})
     steps = course(MODEL, [known], state(MODEL, 1, 50.0, {}))
     assert [(step.agent, step.does, step.commanded) for step in steps] == [
-        ("bot", "go to b", True), ("bot", "arrive at b", False), ("arm", "do screw", True),
+        ("bot", "go to b", True), ("bot", "arrive at b", False), ("arm", "begin screw", True),
     ]  # fmt: skip
     assert 2.0 < steps[0].after < 2.1 and 11.0 < steps[1].after < 11.2, "as early as the model allows"
     assert steps[2].after == pytest.approx(steps[1].after), "and no further than the goal"
@@ -91,7 +91,7 @@ def test_the_course_is_what_comes_if_nobody_else_begins_anything() -> None:
 def test_the_course_goes_on_with_what_is_under_way_and_does_not_wait_for_the_lost() -> None:
     known = strategy({("b", "a", 0): [BACK], ("b", "b", 0): [SCREW]})
     both = state(MODEL, 5, 50.0, {"Cbot": 4.0, "Cthief": 19.0}, bot="going_a_to_b", thief="going_a_to_b")
-    assert [step.does for step in course(MODEL, [known], both)] == ["arrive at b", "arrive at b", "do screw"]
+    assert [step.does for step in course(MODEL, [known], both)] == ["arrive at b", "arrive at b", "begin screw"]
     alone = course(MODEL, [known], both._replace(lost=("bot",)))
     assert [(step.agent, step.does) for step in alone] == [("thief", "arrive at b")]
     late = state(MODEL, 5, 50.0, {"Cbot": 14.0}, bot="going_a_to_b")
@@ -130,7 +130,7 @@ def test_the_page_keeps_the_reason_as_long_as_the_robot_does_what_it_was_sent_fo
     away = away._replace(commanded=True)
     view, bot = sight(page, away)
     assert bot["why"] == "because thief is at a (if it were at b: do rest)"
-    assert view["next"]["says"] == "arm is to do screw" and not view["next"]["certain"], "bot has to arrive before"
+    assert view["next"]["says"] == "arm is to begin screw" and not view["next"]["certain"], "bot has to arrive before"
     _, bot = sight(page, away._replace(seq=3, stamp=4.0, event="thief_a2b", agent="thief", commanded=False))
     assert bot["why"], "that was the reason"
     _, bot = sight(page, state(MODEL, 4, 13.0, {}, event="bot_going_a_to_b2b", agent="bot", bot="b"))

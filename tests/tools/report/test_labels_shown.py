@@ -25,10 +25,10 @@ from pursue_gen.tools.report.whole import Report, pictures, report_page
 from pursue_gen.workspace import Options, generate
 from pursue_runtime.data import parse_data
 from pursue_runtime.model import Model
-from pursue_runtime.phrases import sentence
 from pursue_runtime.state import RUNNING, SystemState
 from pursue_runtime.ui.mission_view import possible_words
 from pursue_runtime.ui.page import Facts, FloorPlan, Page
+from pursue_runtime.vocabulary import sentence
 
 DESK, SHELF = "<script>alert('d')</script>", "]]> & <b>it's</b>"
 FETCH, RING = "fetch [it](javascript:x) {{ 7*7 }}", "`ring` *now* ${HOME} %s"
@@ -157,7 +157,7 @@ def test_a_mission_shows_labels_and_listens_to_names() -> None:
     assert scene["labels"] == LABELS
     assert {("guest", "ring", RING)} <= {(each["agent"], each["word"], each["label"]) for each in scene["buttons"]}
     seen = page.view(Facts("running", (), gone, 2.0, 2.0))
-    assert seen["agents"][0]["doing"] == f"goes from {DESK} to {SHELF}"
+    assert seen["agents"][0]["doing"] == f"is on its way from {DESK} to {SHELF}"
     assert seen["tasks"][0]["shown"] == BOT
     assert BOT in seen["turn"]
     json.dumps([scene, seen])
