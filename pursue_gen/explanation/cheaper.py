@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 from typing import Iterator, Set, Tuple
 
 from pursue_gen.explanation.decided import decided_within
-from pursue_gen.language.parts import Agent
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.statements.agent import Agent
 from pursue_gen.solving.rules import Rules
 from pursue_gen.synthesis.budget import Budget
 

@@ -13,13 +13,13 @@ from pursue_gen.language.batteries import check_batteries
 from pursue_gen.language.behaviour import check_events, check_rules, components
 from pursue_gen.language.condition_checks import check_conditions
 from pursue_gen.language.labels import check_labels
-from pursue_gen.language.messages import shown
 from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.numbers import MOST_DIGITS, Number, exact, is_fine
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
 from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
+from pursue_gen.language.tokens import shown
 
 _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
 """Codes of findings that need a scenario that was read as a whole."""

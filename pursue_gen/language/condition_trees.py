@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Callable, Tuple
 
 from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, Holds, Not, OnWay, Who
-from pursue_gen.language.scenario import Ref
+from pursue_gen.language.refs import Ref
 
 RefOf = Callable[[Any], Ref]
 """From the tree of a name to the name and its place."""

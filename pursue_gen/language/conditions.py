@@ -6,6 +6,21 @@ from dataclasses import dataclass, replace
 from typing import Callable, Iterator, Optional, Tuple, Union
 
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.word import Word
+
+WORDS = (
+    Word("only_if", "What has to hold when the event begins, or when an agent sets off on the way."),
+    Word("is_true", "The state is true."),
+    Word("is_false", "The state is false."),
+    Word("at", "The place; in a condition: the agent stands there, idle or at work.", True),
+    Word("not", "What follows does not hold."),
+    Word("on_way", "The agent is between two places.", True),
+    Word("doing", "The agent is busy with this event.", True),
+    Word("any", "At least one of them: any robot, any agent.", True),
+    Word("no", "None of them: no robot, no agent.", True),
+    Word("robot", "The agents that are controllable and not human.", True),
+)
+"""The words of conditions, and before them, which several kinds of statements have."""
 
 
 @dataclass(frozen=True)

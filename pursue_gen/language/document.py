@@ -12,27 +12,23 @@ from typing import Dict, Iterable, List, Optional, Tuple, TypeVar
 from lark import Token
 
 from pursue_gen.diagnostics import Span
+from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.lines import Lines
 from pursue_gen.language.syntax import (
     COMMENTS,
     Statement,
     Syntax,
-    end_of,
-    start_of,
     statements_of,
     syntax_of,
     tokens_of,
     too_large,
 )
+from pursue_gen.language.tokens import end_of, start_of
 
 Block = Tuple[Token, ...]
 """A statement with the comments in it and behind it on its line, or comments on a line without a statement before."""
 
-_ORDER = (
-    "POI", "CONNECT", "EVENT", "RULE", "STATE", "STATEDEPENDENCY", "AGENT", "TRAVEL", "BATTERY", "ASSUME", "OBJECTIVE",
-)  # fmt: skip
-_RANK: Dict[str, int] = {kind: rank for rank, kind in enumerate(_ORDER)}
-_SECTION = {"REACH_OBJECTIVE": "OBJECTIVE", "OPTIONAL": "OBJECTIVE", "TAIL": "OBJECTIVE", "STATEDEPENDENCY": "STATE"}
+_RANK: Dict[str, int] = {kind: rank for rank, kind in enumerate(STATEMENTS)}
 
 AnyDocument = TypeVar("AnyDocument", bound="Document")
 
@@ -74,14 +70,9 @@ def statement_text(text: str, span: Span) -> str:
     return " ".join(alone.changed(*(written(comment, " ") for comment in alone.comments)).text.split())
 
 
-def section_of(kind: str) -> str:
-    """The kind of those statements among which one of this kind stands."""
-    return _SECTION.get(kind, kind)
-
-
 def rank(statement: Statement) -> int:
-    """The place of a statement's kind in the order that the original reads."""
-    return _RANK.get(statement.kind, _RANK["OBJECTIVE"])
+    """The place of a statement's kind in the order that the original reads; all kinds of objectives have one place."""
+    return min(_RANK.get(statement.kind, _RANK["OBJECTIVE"]), _RANK["OBJECTIVE"])
 
 
 @dataclass(frozen=True)

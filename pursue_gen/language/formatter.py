@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Dict, Iterator, List, Optional, Tuple
 
 from pursue_gen.diagnostics import Severity
-from pursue_gen.language.document import Document, section_of
+from pursue_gen.language.document import Document
+from pursue_gen.language.kinds import section_of
 from pursue_gen.outcomes import Invalid
 
 WIDTH = 100

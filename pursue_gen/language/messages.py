@@ -3,72 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Dict, FrozenSet, List, Sequence, Tuple
+from typing import FrozenSet, List, Sequence, Tuple
 
 from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
-from pursue_gen.language.assumptions import KINDS as ASSUMPTIONS
+from pursue_gen.language.kinds import KEYWORDS, MAY_BE_NAMES, RESERVED, STATEMENTS
 from pursue_gen.language.numbers import MOST_DIGITS
 from pursue_gen.language.similar import closest
+from pursue_gen.language.tokens import shown
 from pursue_gen.language.usable import proposal
-
-FORMS: Dict[str, str] = {
-    "POI": 'poi "a" (or with what people read: poi "a" label "security door")',
-    "CONNECT": "connect a and b distance 3 one_way only_if open is_true (one_way and only_if are optional)",
-    "EVENT": 'event "work" collaborative together location a duration 6 at_most 2 times only_if open is_true '
-             '(all but the name is optional; or: duration 6 to 9; behind the name: label "do the work")',
-    "RULE": 'rule "order": first before second (or: first or second, first and second; use brackets to nest; '
-            'or: rule "order" for each robot: …)',
-    "STATE": 'state "open": initially false, true_if e1, e2 false_if e3',
-    "STATEDEPENDENCY": "stateDependency: work only_if open is_true (or is_false)",
-    "AGENT": 'agent "bot" human controllable mobile 3 location a can_do e1, e2 reacts_to e3 (location is required; '
-             'behind the name: label "Porter 1"; before location, of a robot: radius 0.2 tolerance 0.1 inflation 0.5)',
-    "TRAVEL": "travel bot from a to b takes 5 to 8",
-    "BATTERY": "battery bot capacity 100 uses 2 per unit recharges 5 per unit at dock (recharges … is optional)",
-    "ASSUME": " · ".join(kind.filled(kind.example.__getitem__) for kind in ASSUMPTIONS.values()),
-    "OBJECTIVE": "objective: if e1 then e2 within 20 (or conditions: if bot1 at a then open is_true within 20) · "
-    "objective: avoid e (or a condition: avoid open is_true) · "
-    "objective: always open is_true · objective: bot1 never_with bot2 at a (at is optional) · "
-    "objective: patrol a, b in order every 60 by bot1 (or: by any robot; in order and every are optional)",
-    "REACH_OBJECTIVE": "reach_objective: do e1 and e2 after 10 within 60 (or: do e1; after and within are optional)",
-    "OPTIONAL": "optional 1 reach_objective: do e1 (or: optional 1 objective: avoid e; 1 is kept longest)",
-}
-"""What each statement looks like, by the token that begins it."""
-
-STATEMENTS = frozenset(FORMS) | {"TAIL"}
-
-_ASSUMED = {word.upper(): word for kind in ASSUMPTIONS.values() for word in kind.meanings}
-
-KEYWORDS: Dict[str, str] = {
-    "POI": "poi", "CONNECT": "connect", "EVENT": "event", "RULE": "rule", "STATE": "state",
-    "STATEDEPENDENCY": "stateDependency", "AGENT": "agent", "OBJECTIVE": "objective",
-    "REACH_OBJECTIVE": "reach_objective", "TRAVEL": "travel", "FROM": "from", "TO": "to", "TAKES": "takes",
-    "AND": "and", "DISTANCE": "distance", "ONE_WAY": "one_way", "LOCATION": "location", "DURATION": "duration",
-    "AT_MOST": "at_most", "TIMES": "times", "COLLABORATIVE": "collaborative", "TOGETHER": "together", "FOR": "for",
-    "EACH": "each", "PATROL": "patrol", "IN": "in", "ORDER": "order", "EVERY": "every", "BY": "by", "LABEL": "label",
-    "BEFORE": "before", "OR": "or",
-    "INITIALLY": "initially", "TRUE": "true", "FALSE": "false", "TRUE_IF": "true_if", "FALSE_IF": "false_if",
-    "ONLY_IF": "only_if", "IS_TRUE": "is_true", "IS_FALSE": "is_false", "HUMAN": "human",
-    "CONTROLLABLE": "controllable", "MOBILE": "mobile", "CAN_DO": "can_do", "REACTS_TO": "reacts_to", "IF": "if",
-    "THEN": "then", "WITHIN": "within", "AVOID": "avoid", "NEVER_WITH": "never_with", "DO": "do", "AFTER": "after",
-    "ASSUME": "assume", **_ASSUMED, "AT": "at", "NOT": "not", "ALWAYS": "always", "ON_WAY": "on_way", "DOING": "doing",
-    "ANY": "any", "NO": "no", "ROBOT": "robot", "OPTIONAL": "optional", "BATTERY": "battery", "CAPACITY": "capacity",
-    "USES": "uses", "PER": "per", "UNIT": "unit", "RECHARGES": "recharges", "RADIUS": "radius",
-    "TOLERANCE": "tolerance", "INFLATION": "inflation",
-}  # fmt: skip
-"""The words of the language, by token."""
-
-_NAMES = """
-HUMAN TOGETHER ONE_WAY TRAVEL TO TAKES AT_MOST TIMES AT ON_WAY DOING ANY NO ROBOT ALWAYS EACH PATROL ORDER EVERY BY
-OPTIONAL LABEL BATTERY CAPACITY USES PER UNIT RECHARGES RADIUS TOLERANCE INFLATION
-"""
-MAY_BE_NAMES: Dict[str, str] = {token: KEYWORDS[token] for token in (*_NAMES.split(), *_ASSUMED)}
-"""Those of them that scenarios may use as names, by token: `human` is an agent of published scenarios, and the others
-are younger than many scenarios."""
-
-RESERVED = frozenset(KEYWORDS.values()) - set(MAY_BE_NAMES.values())
-"""Those of them that cannot be names."""
 
 _SIGNS = {"COLON": "`:`", "COMMA": "`,`", "LPAR": "`(`", "RPAR": "`)`"}
 _OTHERS = {"NAME": "a name in quotes", "WORD": "a name", "NUMBER": "a number", "POSE": "a pose comment"}
@@ -76,10 +20,10 @@ QUOTES = "\u201c\u201d\u201e\u201f\u00ab\u00bb\u2018\u2019\u201a'`\u00b4"
 """Quotation marks that word processors and other languages put in place of straight ones."""
 _SHORT_NUMBER = 20
 """Digits: numbers that a message repeats have fewer."""
-_STARTERS = tuple(KEYWORDS[kind] for kind in FORMS)
+_STARTERS = tuple(KEYWORDS[kind] for kind in STATEMENTS)
 _SHORT = frozenset(("any", "at", "no", "not", "robot"))
 """Words of conditions that too many other words resemble."""
-_INNER = tuple(word for kind, word in KEYWORDS.items() if kind not in FORMS and word not in _SHORT)
+_INNER = tuple(word for kind, word in KEYWORDS.items() if kind not in STATEMENTS and word not in _SHORT)
 _MEANT = {
     "place": "poi", "room": "poi", "point": "poi", "robot": "agent", "person": "agent", "path": "connect",
     "way": "connect", "road": "connect", "action": "event", "task": "event", "order": "rule", "goal": "reach_objective",
@@ -88,12 +32,6 @@ _MEANT = {
     "never": "never_with", "is": "is_true", "to": "and", "then": "before", "starts": "location",
 }  # fmt: skip
 """Other words that people try, and the word of the language they most likely mean."""
-
-
-def shown(text: str, most: int = 30) -> str:
-    """A piece of a text as a message can hold it: signs that cannot be seen by their number, and not too long."""
-    text = text if len(text) <= most else text[: most - 1] + "…"
-    return "".join(c if c.isprintable() else f"U+{ord(c):04X}" for c in text)
 
 
 def kind_of(chunk: Sequence[Token]) -> str:
@@ -117,7 +55,7 @@ def unknown_statement(chunk: Sequence[Token], span: Span) -> Diagnostic:
     if _invisible(token):
         return _unseen(token, span)
     if token.type in ("HUMAN", "CONTROLLABLE", "MOBILE", "RADIUS", "TOLERANCE", "INFLATION"):
-        hint = f"it belongs to an agent: {FORMS['AGENT']}"
+        hint = f"it belongs to an agent: {STATEMENTS['AGENT'].form}"
     elif token.type in KEYWORDS and _MEANT.get(str(token)) not in _STARTERS:
         hint = f"{token} stands inside a statement; one begins with " + _list(list(_STARTERS))
     else:
@@ -213,7 +151,7 @@ def _hint(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     if token.type == "RPAR":
         return "this `)` has no `(`"
     if token.type in ("TRUE_IF", "FALSE_IF") and "COMMA" in expected:
-        return "put a comma behind true or false: " + FORMS["STATE"]
+        return "put a comma behind true or false: " + STATEMENTS["STATE"].form
     if token.type == "COLON" and "COLON" not in expected:
         return f"delete the colon behind {chunk[index - 1]}; {_form(chunk)}"
     return _meant(chunk, index, expected)
@@ -254,8 +192,8 @@ def _stray(chunk: Sequence[Token], index: int) -> str:
 def _meant(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     """Which word was meant, or what is missing before it."""
     token, statement = chunk[index], kind_of(chunk)
-    if statement in ("EVENT", "AGENT") and f" {token} " in FORMS[statement]:
-        return f"its parts come in this order: {FORMS[statement]}"
+    if statement in ("EVENT", "AGENT") and f" {token} " in STATEMENTS[statement].form:
+        return f"its parts come in this order: {STATEMENTS[statement].form}"
     meant = _MEANT.get(str(token).lower(), "")
     if any(KEYWORDS.get(kind) == meant for kind in expected):
         return f"did you mean {meant}?"
@@ -274,7 +212,7 @@ def _meant(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
 
 
 def _form(chunk: Sequence[Token]) -> str:
-    return "the form is: " + FORMS[kind_of(chunk)] if kind_of(chunk) in FORMS else "delete it"
+    return "the form is: " + STATEMENTS[kind_of(chunk)].form if kind_of(chunk) in STATEMENTS else "delete it"
 
 
 def _near(word: str, words: Tuple[str, ...]) -> str:

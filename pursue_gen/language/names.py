@@ -7,10 +7,11 @@ from typing import Any, Container, Dict, FrozenSet, Iterable, Iterator, List, Ma
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language.collisions import check_collisions
 from pursue_gen.language.conditions import names_in
+from pursue_gen.language.kinds import RESERVED
 from pursue_gen.language.labels import LABELLED, why_no_label
-from pursue_gen.language.messages import RESERVED, shown
 from pursue_gen.language.scenario import Ref, RuleBody, Scenario
 from pursue_gen.language.similar import Similar, closest
+from pursue_gen.language.tokens import shown
 from pursue_gen.language.usable import LONGEST, fitting, proposal, reserved, well_formed
 
 KINDS = ("POI", "event", "rule", "state", "agent")

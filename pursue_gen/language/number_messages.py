@@ -6,8 +6,8 @@ import re
 from typing import Optional
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
-from pursue_gen.language.messages import shown
 from pursue_gen.language.numbers import MOST_DIGITS, Number
+from pursue_gen.language.tokens import shown
 
 _LARGEST_POWER = 6
 """The largest number has so many zeros."""

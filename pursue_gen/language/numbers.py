@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from fractions import Fraction
 from math import ceil, floor
-from typing import Optional, Union
+from typing import Optional, Tuple, Union
 
 Number = Union[int, Fraction]
 """A time, a distance or an inverse speed. A whole one is an int wherever `exact` has made it."""
@@ -88,3 +88,12 @@ def whole_above(number: Number, most: Number) -> range:
 def is_fine(number: Number) -> bool:
     """True for a number with at most MOST_DIGITS digits after the point."""
     return bool(10**MOST_DIGITS % number.denominator == 0)
+
+
+Window = Tuple[Number, Number]
+"""Something ends later than the first time and at the second one at the latest (time units from its start)."""
+
+
+def window_of(low: Number, high: Optional[Number]) -> Window:
+    """The window of something for which the author wrote one number or two: one alone leaves one time unit."""
+    return low, exact(low + 1) if high is None else high

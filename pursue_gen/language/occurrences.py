@@ -7,61 +7,23 @@ from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
 from lark import Token
 
-from pursue_gen.language.assumptions import KINDS, NAMES
-from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES, kind_of
+from pursue_gen.language.kinds import DECLARED, KEYWORDS, MAY_BE_NAMES, STATEMENTS
+from pursue_gen.language.messages import kind_of
 from pursue_gen.language.poses import robots_in
-from pursue_gen.language.syntax import DECLARED, Statement, bare, start_of
-
-_ASSUMED = [found for kind in KINDS.values() for found in kind.fields()]
+from pursue_gen.language.syntax import Statement
+from pursue_gen.language.tokens import bare, start_of
 
 _USED: Dict[Tuple[str, str], str] = {
-    ("CONNECT", "CONNECT"): "POI",
-    ("CONNECT", "AND"): "POI",
-    ("EVENT", "LOCATION"): "POI",
-    ("RULE", "RULE"): "event",
-    ("RULE", "ROBOT"): "event",
-    ("RULE", "AGENT"): "event",
-    ("RULE", "BEFORE"): "event",
-    ("RULE", "OR"): "event",
-    ("RULE", "AND"): "event",
-    ("STATE", "TRUE_IF"): "event",
-    ("STATE", "FALSE_IF"): "event",
-    ("STATEDEPENDENCY", "STATEDEPENDENCY"): "event",
-    ("STATEDEPENDENCY", "ONLY_IF"): "state",
-    ("AGENT", "LOCATION"): "POI",
-    ("AGENT", "CAN_DO"): "event",
-    ("AGENT", "REACTS_TO"): "event",
-    ("TRAVEL", "TRAVEL"): "agent",
-    ("TRAVEL", "FROM"): "POI",
-    ("TRAVEL", "TO"): "POI",
-    ("BATTERY", "BATTERY"): "agent",
-    ("BATTERY", "AT"): "POI",
-    **{("ASSUME", word.upper()): NAMES[field] for word, field in _ASSUMED if field in NAMES},
-    ("OBJECTIVE", "OBJECTIVE"): "agent",
-    ("OBJECTIVE", "NEVER_WITH"): "agent",
-    ("OBJECTIVE", "PATROL"): "POI",
-    ("OBJECTIVE", "BY"): "agent",
-    ("OBJECTIVE", "AT"): "POI",
-    ("OBJECTIVE", "IF"): "event",
-    ("OBJECTIVE", "THEN"): "event",
-    ("OBJECTIVE", "AVOID"): "event",
-    ("REACH_OBJECTIVE", "DO"): "event",
-    ("REACH_OBJECTIVE", "AND"): "event",
+    (token, word.upper()): thing for token, kind in STATEMENTS.items() for word, thing in kind.used.items()
 }
 """The kind of thing that a name stands for, by the statement and the last word of the language before the name."""
-
-_QUOTED = ("TRAVEL", "BATTERY")
-"""Statements in which the agent that they are about may have quotes."""
 
 _BEFORE_NAMES = frozenset({"COLON", "COMMA", "LPAR"})
 
 SUBJECTS = ("agent", "state")
 """The kinds of things with which a part of a condition may begin."""
 
-_OPENS = {
-    ("CONNECT", "ONLY_IF"), ("EVENT", "ONLY_IF"), ("OBJECTIVE", "AVOID"), ("OBJECTIVE", "ALWAYS"), ("OBJECTIVE", "IF"),
-    *(("ASSUME", word.upper()) for word, field in _ASSUMED if field == "condition"),
-}  # fmt: skip
+_OPENS = {(token, word.upper()) for token, kind in STATEMENTS.items() for word in kind.conditions_behind}
 """The statements with a condition in them, and the word behind which it begins."""
 
 _OBJECT = {"AT": "POI", "DOING": "event"}
@@ -133,7 +95,7 @@ def _occurrences(part: Statement, number: int) -> Iterator[Occurrence]:
             yield of(token, DECLARED[part.kind], declares=True)
         elif token.type in KEYWORDS and not named[index]:
             kind = _USED.get((part.kind, token.type))
-        elif kind is not None and (used or (token.type == "NAME" and part.kind in _QUOTED)):
+        elif kind is not None and (used or (token.type == "NAME" and STATEMENTS[part.kind].second)):
             yield of(token, kind)
         elif token.type == "POSE":
             for name, offset, _ in robots_in(str(token)):

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import Dict, Iterator, List, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
-from pursue_gen.language.messages import shown
-from pursue_gen.language.scenario import Pose, Ref, Spot
+from pursue_gen.language.numbers import rounded_text
+from pursue_gen.language.refs import Ref
+from pursue_gen.language.tokens import shown
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _WORD = re.compile(r"[^\W\d]\w*")
@@ -25,6 +26,27 @@ _LONGEST = 40
 _LOOSE_UNIT = 0.05  # published poses have two decimals, so their quaternions are a little off unit length
 _TILT = 0.001
 _FARTHEST = 1e6  # metres; anything beyond is a slip of the pen
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A pose in frame `map`: position in metres, orientation as a unit quaternion, in the order of geometry_msgs."""
+
+    x: float
+    y: float
+    z: float
+    qx: float
+    qy: float
+    qz: float
+    qw: float
+
+
+@dataclass(frozen=True)
+class Spot:
+    """Where one robot stands at a place, instead of at the place's pose."""
+
+    robot: Ref
+    pose: Pose
 
 
 @dataclass(frozen=True)
@@ -158,3 +180,9 @@ def _pose_of(numbers: Tuple[float, ...], span: Span) -> Tuple[Optional[Pose], Tu
         message = "this orientation is not a turn about z: a robot that stands on a floor has qx = qy = 0"
         findings.append(warning("PML121", message, span, hint))
     return Pose(x, y, z, qx / length, qy / length, qz / length, qw / length), tuple(findings)
+
+
+def pose_text(pose: Pose) -> str:
+    """The pose as it stands in a comment, with as many digits as it needs."""
+    numbers = (pose.x, pose.y, pose.z, pose.qx, pose.qy, pose.qz, pose.qw)
+    return "[" + ", ".join(rounded_text(number, 6) for number in numbers) + "]"

@@ -14,32 +14,20 @@ from lark import Token
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.document import Document, Edit, behind, written
-from pursue_gen.language.messages import KEYWORDS
-from pursue_gen.language.numbers import Number, decimal_text, rounded_text
+from pursue_gen.language.kinds import KEYWORDS, STATEMENTS
+from pursue_gen.language.numbers import Number, decimal_text
 from pursue_gen.language.occurrences import are_names
-from pursue_gen.language.poses import end_of_poses
+from pursue_gen.language.poses import end_of_poses, pose_text
 from pursue_gen.language.scenario import Agent, Connection, Event, Poi, Pose, Scenario
-from pursue_gen.language.syntax import Statement, end_of, start_of
+from pursue_gen.language.statements.agent import SIZE
+from pursue_gen.language.syntax import Statement
+from pursue_gen.language.tokens import end_of, start_of
 
 REMARK = re.compile(r"(?://|/\*)[ \t]*(?P<command>survey|calibrate): ")
 """Begins a remark."""
 
-SIZE = ("radius", "tolerance", "inflation")
-"""The words of a robot's size, in the order in which they stand, which is that of the fields of `RobotSize`."""
-
 Movement = Tuple[str, str, str]
 """Agent, from, to."""
-
-PARTS: Mapping[str, Tuple[str, ...]] = {
-    "POI": ("POI", "LABEL", "POSE"),
-    "CONNECT": ("CONNECT", "AND", "DISTANCE", "ONE_WAY", "ONLY_IF"),
-    "EVENT": ("EVENT", "LABEL", "COLLABORATIVE", "TOGETHER", "LOCATION", "DURATION", "AT_MOST", "ONLY_IF"),
-    "AGENT": (
-        "AGENT", "LABEL", "HUMAN", "CONTROLLABLE", "MOBILE", "RADIUS", "TOLERANCE", "INFLATION", "LOCATION", "CAN_DO",
-        "REACTS_TO",
-    ),
-}  # fmt: skip
-"""The parts of a statement by the word that begins each, in the order in which they stand."""
 
 Part = Tuple[Token, ...]
 
@@ -145,8 +133,8 @@ class Rewriting:
 
 
 def parts_of(statement: Statement) -> Dict[str, Part]:
-    """The parts of a statement of PARTS that are there: the word that begins each → its tokens, that word first."""
-    begins = PARTS[statement.kind]
+    """The parts of a statement with parts that are there: the word that begins each → its tokens, that word first."""
+    begins = STATEMENTS[statement.kind].parts
     found: Dict[str, List[Token]] = {}
     current = ""
     for token, named in zip(statement.tokens, are_names(statement.tokens)):
@@ -158,11 +146,11 @@ def parts_of(statement: Statement) -> Dict[str, Part]:
 
 
 def part_edits(statement: Statement, kind: str, words: Optional[str]) -> List[Edit]:
-    """Writes a part of a statement of PARTS anew, adds it behind those before it, or leaves it out (None).
+    """Writes a part of a statement with parts anew, adds it behind those before it, or leaves it out (None).
 
     `words` are those behind the word that begins the part; of a POSE they are the comment itself.
     """
-    found, begins = parts_of(statement), PARTS[statement.kind]
+    found, begins = parts_of(statement), STATEMENTS[statement.kind].parts
     old = found.get(kind, ())
     if words is None:
         return [written(token, "") for token in old]
@@ -176,9 +164,3 @@ def part_edits(statement: Statement, kind: str, words: Optional[str]) -> List[Ed
 def remark_behind(document: Document, statement: Statement) -> Optional[Token]:
     """The remark behind a statement, on its line."""
     return next(filter(REMARK.match, document.comments_behind(statement)), None)
-
-
-def pose_text(pose: Pose) -> str:
-    """The pose as it stands in a comment, with as many digits as it needs."""
-    numbers = (pose.x, pose.y, pose.z, pose.qx, pose.qy, pose.qz, pose.qw)
-    return "[" + ", ".join(rounded_text(number, 6) for number in numbers) + "]"

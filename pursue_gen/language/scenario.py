@@ -9,7 +9,7 @@ from typing import Any, Callable, Collection, Dict, Iterator, Optional, Tuple, U
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.assumptions import AboutOne, Assumption, AtMost, Leaves, NeverAt, NeverHolds, Waits
 from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, Holds, Not, OnWay, Who
-from pursue_gen.language.numbers import exact
+from pursue_gen.language.numbers import Window, exact, window_of
 from pursue_gen.language.objectives import (
     Always,
     Avoid,
@@ -23,26 +23,17 @@ from pursue_gen.language.objectives import (
     WhyGivenUp,
     patrols_in,
 )
-from pursue_gen.language.parts import (
-    Agent,
-    Battery,
-    Both,
-    Choice,
-    Connection,
-    Dependency,
-    Event,
-    Poi,
-    Pose,
-    Rule,
-    RuleBody,
-    Sequence,
-    Spot,
-    State,
-    Travel,
-    Window,
-    window_of,
-)
+from pursue_gen.language.poses import Pose, Spot
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.statements.battery import Battery
+from pursue_gen.language.statements.connect import Connection
+from pursue_gen.language.statements.dependency import Dependency
+from pursue_gen.language.statements.event import Event
+from pursue_gen.language.statements.poi import Poi
+from pursue_gen.language.statements.rule import Both, Choice, Rule, RuleBody, Sequence
+from pursue_gen.language.statements.state import State
+from pursue_gen.language.statements.travel import Travel
 
 __all__ = [
     "AboutOne", "Agent", "AllOf", "Always", "AnyOf", "Assumption", "At", "AtMost", "Avoid", "Battery", "Both", "Choice",

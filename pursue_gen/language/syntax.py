@@ -13,11 +13,8 @@ from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Sequence, Set
 from lark import Lark, Token, UnexpectedToken
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
-from pursue_gen.language.assumptions import KINDS as ASSUMPTIONS
+from pursue_gen.language.kinds import BY_RULE, DECLARED, KEYWORDS, MAY_BE_NAMES, STATEMENTS, TAIL
 from pursue_gen.language.messages import (
-    KEYWORDS,
-    MAY_BE_NAMES,
-    STATEMENTS,
     explain,
     kind_of,
     looks_like_statement,
@@ -25,6 +22,7 @@ from pursue_gen.language.messages import (
     unfinished,
     unknown_statement,
 )
+from pursue_gen.language.tokens import end_of, span_of, start_of
 
 MOST_LETTERS = 1_000_000
 MOST_WORDS = 100_000
@@ -32,9 +30,6 @@ MOST_WORDS = 100_000
 
 COMMENTS = frozenset(("LINE_COMMENT", "BLOCK_COMMENT", "UNCLOSED_COMMENT"))
 """The tokens that are comments; a POSE is one, too, where it stands anywhere but behind a point of interest."""
-
-DECLARED: Dict[str, str] = {"POI": "POI", "EVENT": "event", "RULE": "rule", "STATE": "state", "AGENT": "agent"}
-"""The kind of thing that a statement declares, by the token that begins the statement."""
 
 _DEEPEST = 40
 """Brackets within brackets in a rule or a condition; beyond it is no scenario, and Python's own stack has an end."""
@@ -48,7 +43,7 @@ MOST_FINDINGS = 1000
 
 _BLANKS = COMMENTS - {"UNCLOSED_COMMENT"}
 """The comments that stand between words as blanks do."""
-_SECOND = {"TRAVEL": "FROM", "BATTERY": "CAPACITY"}
+_SECOND = {token: kind.second.upper() for token, kind in STATEMENTS.items() if kind.second}
 """Statements whose first word may be a name, and the word behind the agent that they are about."""
 _OPENS = frozenset(("CONTROLLABLE", "MOBILE", *MAY_BE_NAMES)) - {"LABEL"}
 _ENDS = frozenset(
@@ -112,27 +107,6 @@ class Syntax:
     lost: FrozenSet[str] = frozenset()
 
 
-def start_of(token: Token) -> int:
-    """The offset of a token."""
-    return token.start_pos or 0
-
-
-def end_of(token: Token) -> int:
-    """The offset behind a token."""
-    return (token.start_pos or 0) + len(token)
-
-
-def bare(name: Optional[Token]) -> str:
-    """A name without its quotes; "" where there is none."""
-    return "" if name is None else str(name)[1:-1]
-
-
-def span_of(token: Token, file: str) -> Span:
-    """Where a token stands."""
-    line, column = token.line or 1, token.column or 1
-    return Span(file, line, column, token.end_line or line, token.end_column or column + len(token))
-
-
 @lru_cache(maxsize=None)
 def grammar() -> Lark:
     """The parser; made once, at the first text, so that to import the package costs nothing."""
@@ -141,11 +115,11 @@ def grammar() -> Lark:
 
 
 def grammar_text() -> str:
-    """The grammar: grammar.lark, and what follows from the kinds of assumptions and the words of the language."""
+    """The grammar: grammar.lark, and what follows from the kinds of statements and their words."""
     rules = [
         (Path(__file__).parent / "grammar.lark").read_text(encoding="utf-8"),
-        f'assumption: "assume" ":" ({" | ".join(ASSUMPTIONS)})',
-        *(f"{name}: {kind.rule()}" for name, kind in ASSUMPTIONS.items()),
+        f"?statement: {' | '.join((*BY_RULE, TAIL))}",
+        *(kind.grammar for kind in STATEMENTS.values()),
         f"ref: WORD | {' | '.join(MAY_BE_NAMES)}",
         *(f'{token}: "{word}"' for token, word in KEYWORDS.items()),
     ]
@@ -230,9 +204,9 @@ class _Reader:
     def take(self, chunk: Sequence[Token]) -> None:
         """Parses one statement; notes its tree, or what is wrong with it."""
         first, finding = chunk[0], None
-        if first.type not in STATEMENTS:
+        if first.type not in (*STATEMENTS, TAIL):
             finding = unknown_statement(chunk, span_of(first, self.file))
-        elif first.type == "TAIL" and not self._after_objective:
+        elif first.type == TAIL and not self._after_objective:
             message = "a query of the original's tools (control: …) stands only behind an objective"
             finding = error("PML017", message, span_of(first, self.file), "delete it")
         else:
@@ -287,9 +261,10 @@ def _parser_after(tokens: Iterable[Token]) -> Any:
 def _declared(chunk: Sequence[Token]) -> Set[str]:
     """The names that a statement with an error in it perhaps declares."""
     kind = kind_of(chunk)
-    if kind in ("CONNECT", "STATEDEPENDENCY", "TRAVEL", "BATTERY", "OBJECTIVE", "REACH_OBJECTIVE", "OPTIONAL", "TAIL"):
+    declares = STATEMENTS[kind].declares if kind in STATEMENTS else "POI"  # one that is not known may declare anything
+    if not declares:
         tokens = [token for token in chunk if token.type == "UNCLOSED_COMMENT"]
-    elif kind in ("EVENT", "RULE", "STATE", "AGENT"):
+    elif declares != "POI":  # of a place the name may be several words, without quotes
         tokens = [token for token in chunk if token in chunk[1:3] or token.type == "UNCLOSED_COMMENT"]
     else:
         tokens = list(chunk)
@@ -299,8 +274,8 @@ def _declared(chunk: Sequence[Token]) -> Set[str]:
 def accepts(tokens: Sequence[Token]) -> FrozenSet[str]:
     """The kinds of tokens that may follow these of one statement, "$END" among them; none after a wrong one."""
     if not tokens:
-        return STATEMENTS - {"TAIL"}
-    if tokens[0].type not in STATEMENTS:
+        return frozenset(STATEMENTS)
+    if tokens[0].type not in (*STATEMENTS, TAIL):
         return frozenset()
     try:
         return frozenset(_parser_after(tokens).accepts())
@@ -345,8 +320,8 @@ def _chunks(tokens: List[Token]) -> List[List[Token]]:
             begins = following == "NUMBER" or (opens_line and (ended or following in ("OBJECTIVE", "REACH_OBJECTIVE")))
         elif token.type in ("OBJECTIVE", "REACH_OBJECTIVE") and _opened(found):
             begins = False
-        elif token.type in STATEMENTS:  # inside a line such a word may also stand where a name should
-            begins = opens_line or goes_on or token.type in ("CONNECT", "TAIL")
+        elif token.type in (*STATEMENTS, TAIL):  # inside a line such a word may also stand where a name should
+            begins = opens_line or goes_on or token.type in ("CONNECT", TAIL)
         elif token.type in ("WORD", "ROBOT") and opens_line and index:
             begins = goes_on or (ended and looks_like_statement(token))
         else:

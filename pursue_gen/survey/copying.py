@@ -9,8 +9,9 @@ from typing import FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple
 from pursue_gen.diagnostics import listed
 from pursue_gen.language.document import Edit, edited
 from pursue_gen.language.numbers import Number, exact, is_fine
-from pursue_gen.language.rewriting import SIZE, Movement, Rewriting
+from pursue_gen.language.rewriting import Movement, Rewriting
 from pursue_gen.language.scenario import Connection, Pose, Scenario
+from pursue_gen.language.statements.agent import SIZE
 from pursue_gen.workspace.robot_size import Sizes, sizes_of
 
 SURVEY = "survey"

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from pursue_gen.language.document import Document, Edit, behind, edited, statement_text, written
 from pursue_gen.language.parser import parse, read
-from pursue_gen.language.syntax import COMMENTS, end_of, start_of
+from pursue_gen.language.syntax import COMMENTS
+from pursue_gen.language.tokens import end_of, start_of
 
 from .texts import STATEMENTS
 

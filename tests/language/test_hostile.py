@@ -17,8 +17,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, render
+from pursue_gen.language import kinds
 from pursue_gen.language.checks import check_reading
-from pursue_gen.language.messages import FORMS, KEYWORDS
+from pursue_gen.language.kinds import KEYWORDS
 from pursue_gen.language.parser import read, read_text
 
 from .texts import STATEMENTS
@@ -225,7 +226,7 @@ WORDS = [*KEYWORDS.values(), *"a b bot man work hand tired order human 3 0 99999
 WORDS += ['"a"', '"b"', '"e"', '"', "“a”", ":", ",", "(", ")", ";", ".", "//", "/*", "*/", "\n"]
 WORDS += ["//[0,0,0,0,0,0,1]", "//[x]", "//[1,2", '"\x1b[31m"', '"' + "n" * 90 + '"']
 WORDS += ["control: A<> x", "\0", "\u202e", "\ufeff", "\r"]
-FORM_WORDS = [form.split("(")[0].replace("·", "\n").split() for form in FORMS.values()]
+FORM_WORDS = [kind.form.split("(")[0].replace("·", "\n").split() for kind in kinds.STATEMENTS.values()]
 
 lists_of_words = st.lists(st.sampled_from(WORDS), max_size=40)
 

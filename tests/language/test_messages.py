@@ -146,7 +146,7 @@ SLIPS = [
     ('agnt "b" location a', "PML011", 1, "expected a statement", "did you mean agent?"),
     ("objective:", "PML010", 11, "expected a name, `if` or `avoid`", "the form is"),
     ("objective if a then b within 3", "PML010", 11, "expected `:`", "the form is"),
-    ("objective: if a then b", "PML010", 23, "expected `is_true`, `is_false`, `within`", "the form is"),
+    ("objective: if a then b", "PML010", 23, "expected `within`, `is_true`, `is_false`", "the form is"),
     ("objective: if a at b", "PML010", 21, "expected `and`, `or` or `then`", "if bot1 at a then"),
     ("objective: if a at b and c at d or e on_way then f within 3", "PML010", 33, "found `or`", "put brackets around"),
     ("objective: if a at then b within 3", "PML010", 20, "expected a name after `at`", "cannot be a name"),
@@ -188,7 +188,7 @@ def test_no_nonsense_follows_from_a_syntax_error() -> None:
 
 def test_an_expected_list_reads_like_a_sentence() -> None:
     (finding,) = syntax_errors('event "e" e')
-    expected = "expected `location`, `duration`, `at_most`, `collaborative`, `label`, `only_if` or the end"
+    expected = "expected `label`, `collaborative`, `location`, `duration`, `at_most`, `only_if` or the end"
     assert expected in finding.message
 
 

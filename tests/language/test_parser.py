@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError, Span, render
 from pursue_gen.language import check, load, parse
-from pursue_gen.language.messages import KEYWORDS
+from pursue_gen.language.kinds import KEYWORDS
 from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import Avoid, Both, Choice, Connection, NeverWith, Reach, Ref, Respond, Sequence
 

@@ -8,8 +8,8 @@ from typing import ClassVar, Mapping, Optional, Sequence, Tuple
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import AboutOne, Setting
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.parts import Agent
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.statements.agent import Agent
 
 MOST_TIMES = 100
 """The most times that an assumption may allow: each is a value of a variable of its own."""

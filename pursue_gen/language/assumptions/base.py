@@ -9,8 +9,10 @@ from pursue_gen.diagnostics import Diagnostic, Span, error, warning
 from pursue_gen.language.conditions import Condition, condition_text, names_in
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives import Safety
-from pursue_gen.language.parts import Agent, Event, State
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.statements.event import Event
+from pursue_gen.language.statements.state import State
 
 NAMES: Mapping[str, str] = {"agent": "agent", "event": "event", "place": "POI"}
 """The fields that are names, and the kinds of things that these stand for. `condition` is one, others are numbers."""
@@ -36,6 +38,8 @@ class Assumption:
     """What agents that are not controlled are assumed to do, or not to do: a frozen dataclass."""
 
     span: Span
+    listed_in: ClassVar[str] = "assumptions"
+    """The field of a scenario that has it."""
     title: ClassVar[str]
     """What it is about, for those who look for a statement."""
     written: ClassVar[str]

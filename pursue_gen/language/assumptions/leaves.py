@@ -8,8 +8,8 @@ from typing import ClassVar, Mapping, Optional, Sequence
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.assumptions.base import AboutOne, Setting
 from pursue_gen.language.numbers import Number, whole_below
-from pursue_gen.language.parts import Agent
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.statements.agent import Agent
 
 SHORTEST_STAY = 2
 """Time units: an agent rests for one before it may set off."""

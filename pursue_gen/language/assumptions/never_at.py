@@ -9,8 +9,8 @@ from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import AboutOne, Assumption, Setting
 from pursue_gen.language.conditions import At, atoms
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.parts import Agent
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.statements.agent import Agent
 
 
 @dataclass(frozen=True)

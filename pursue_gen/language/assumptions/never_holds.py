@@ -9,7 +9,7 @@ from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import Assumption, Setting
 from pursue_gen.language.assumptions.leaves import Leaves
 from pursue_gen.language.conditions import Atom, Condition, Doing, Holds, atoms, condition_words
-from pursue_gen.language.parts import Agent
+from pursue_gen.language.statements.agent import Agent
 
 _DECIDED = "what robots and allies do is decided, not assumed"
 _OBJECTIVE = "write an objective instead, as in objective: avoid …"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass
+from typing import Mapping, Type
 
 from pursue_gen.language.objectives.avoid import Always, Avoid
 from pursue_gen.language.objectives.base import Safety, StatedObjective
@@ -13,9 +14,15 @@ from pursue_gen.language.objectives.reach import Reach
 from pursue_gen.language.objectives.respond import Respond
 
 __all__ = [
-    "Always", "Avoid", "GivenUp", "NeverWith", "Patrol", "Reach", "Respond", "Safety", "StatedObjective",
+    "KINDS", "Always", "Avoid", "GivenUp", "NeverWith", "Patrol", "Reach", "Respond", "Safety", "StatedObjective",
     "WhyGivenUp", "patrols_in",
 ]  # fmt: skip
+
+
+KINDS: Mapping[str, Type[Safety]] = {
+    "respond": Respond, "avoid": Avoid, "always": Always, "never_with": NeverWith, "patrol": Patrol,
+}  # fmt: skip
+"""The kinds of what always holds, by their rules in the grammar."""
 
 
 class WhyGivenUp(enum.Enum):

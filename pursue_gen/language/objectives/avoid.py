@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Callable, Iterator, Tuple
+from typing import Any, Callable, ClassVar, Iterator, Mapping, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.conditions import Condition, Not, condition_text, condition_words, held_by
 from pursue_gen.language.objectives.base import Breaks, Safety
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.tree_reader import TreeReader
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -18,6 +20,23 @@ class Avoid(Safety):
     event: Ref
     span: Span = NOWHERE
     optional: int = 0
+
+    grammar: ClassVar[str] = '"avoid" (ref | condition)'
+    form: ClassVar[str] = "avoid e (or a condition: avoid open is_true)"
+    own_words: ClassVar[Tuple[Word, ...]] = (
+        Word("avoid", "This event must never happen, or this condition must never hold."),
+    )
+    forms: ClassVar[Tuple[Form, ...]] = (
+        Form("never", "objective: avoid {event}"),
+        Form("never while …", "objective: avoid {agent} at {POI} and {agent} on_way"),
+    )
+    used: ClassVar[Mapping[str, str]] = {"avoid": "event"}
+    conditions_behind: ClassVar[Tuple[str, ...]] = ("avoid",)
+
+    @classmethod
+    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Safety:
+        what = reader.event_or_condition(children[0])
+        return cls(what, **at) if isinstance(what, Ref) else Always(what, False, **at)
 
     @property
     def text(self) -> str:
@@ -49,6 +68,16 @@ class Always(Safety):
     holds: bool = True
     span: Span = NOWHERE
     optional: int = 0
+
+    grammar: ClassVar[str] = '"always" condition'
+    form: ClassVar[str] = "always open is_true"
+    own_words: ClassVar[Tuple[Word, ...]] = (Word("always", "This condition must hold at every moment.", True),)
+    forms: ClassVar[Tuple[Form, ...]] = (Form("what always holds", "objective: always any robot at {POI}"),)
+    conditions_behind: ClassVar[Tuple[str, ...]] = ("always",)
+
+    @classmethod
+    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Safety:
+        return cls(reader.condition(children[0]), **at)
 
     @property
     def text(self) -> str:

@@ -3,14 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Callable, ClassVar, Iterator, Mapping, NamedTuple, Optional, Sequence, Tuple, TypeVar, cast
+from typing import (
+    Any,
+    Callable,
+    ClassVar,
+    Iterator,
+    Mapping,
+    NamedTuple,
+    Optional,
+    Sequence,
+    Tuple,
+    TypeVar,
+    Union,
+    cast,
+)
 
 from pursue_gen.diagnostics import Diagnostic, Span, listed
 from pursue_gen.language.conditions import At, Condition, EventOrCondition
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.parts import Agent
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.symbols import Role, role_of
+from pursue_gen.language.tree_reader import TreeReader
+from pursue_gen.language.word import Form, Word
 
 Stated = TypeVar("Stated", bound="StatedObjective")
 
@@ -57,6 +72,8 @@ class StatedObjective:
 
     span: Span
     optional: int
+    listed_in: ClassVar[str] = "safety"
+    """The field of a scenario that has it."""
     word: ClassVar[str] = "objective"
     """The word that begins its statement."""
     limited_by: ClassVar[str] = ""
@@ -150,6 +167,24 @@ class Breaks(NamedTuple):
 
 class Safety(StatedObjective):
     """An objective that holds until all that is to be reached is reached; for ever where nothing is."""
+
+    grammar: ClassVar[str]
+    """How it is written behind `objective:`, in Lark's notation."""
+    form: ClassVar[str]
+    """What it looks like there, for messages."""
+    own_words: ClassVar[Tuple[Word, ...]] = ()
+    """Words that no kind of statement or objective before it has."""
+    forms: ClassVar[Tuple[Form, ...]] = ()
+    """Ways to write its statement, to fill in."""
+    used: ClassVar[Mapping[str, str]] = {}
+    """The kind of thing that names stand for, by the last word of the language before them."""
+    conditions_behind: ClassVar[Tuple[str, ...]] = ()
+    """The words behind which a condition begins."""
+
+    @classmethod
+    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Union[Safety, Tuple[Safety, ...]]:
+        """The objective, or those of a statement that lists several, from its tree. `at`: `span`, its place."""
+        raise NotImplementedError
 
     @property
     def breaks(self) -> Breaks:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, Iterator, Optional, Sequence, Tuple
+from typing import Any, Callable, ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.conditions import At, Who
 from pursue_gen.language.objectives.base import Breaks, Safety
-from pursue_gen.language.parts import Agent
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.tree_reader import TreeReader
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -21,6 +23,22 @@ class NeverWith(Safety):
     span: Span = NOWHERE
     place: Optional[Ref] = None
     optional: int = 0
+
+    grammar: ClassVar[str] = 'ref "never_with" ref ["at" ref]'
+    form: ClassVar[str] = "bot1 never_with bot2 at a (at is optional)"
+    own_words: ClassVar[Tuple[Word, ...]] = (
+        Word("never_with", "These two agents must never be at one place, nor meet on a way."),
+    )
+    forms: ClassVar[Tuple[Form, ...]] = (
+        Form("two who never meet", "objective: {agent} never_with {agent}"),
+        Form("two who are never at one place", "objective: {agent} never_with {agent} at {POI}"),
+    )
+    used: ClassVar[Mapping[str, str]] = {"objective": "agent", "never_with": "agent", "at": "POI"}
+
+    @classmethod
+    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Safety:
+        first, second, place = children
+        return cls(reader.ref(first), reader.ref(second), at["span"], reader.ref_or_none(place))
 
     @property
     def text(self) -> str:

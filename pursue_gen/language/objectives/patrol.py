@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Callable, ClassVar, Iterator, Optional, Sequence, Tuple
+from typing import Any, Callable, ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
+
+from lark import Token
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
 from pursue_gen.language.conditions import At, Not, Who, by_robot
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective, Whole, Words
-from pursue_gen.language.parts import Agent
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.symbols import Role
+from pursue_gen.language.tree_reader import TreeReader
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -32,6 +36,42 @@ class Patrol(Safety):
     least: Optional[int] = None
     optional: int = 0
     limited_by: ClassVar[str] = "every"
+
+    grammar: ClassVar[str] = """"patrol" refs [IN ORDER] ["every" NUMBER] "by" patroller
+patroller: ref | ANY ROBOT"""
+    form: ClassVar[str] = (
+        "patrol a, b in order every 60 by bot1 (or: by any robot; in order and every are optional)"
+    )
+    own_words: ClassVar[Tuple[Word, ...]] = (
+        Word("patrol", "Places at which somebody has to be again and again.", True),
+        Word("in", "In this order: a visit counts in its turn only."),
+        Word(
+            "order",
+            "A visit counts in its turn only: first at the first place, then at the second, round after round.",
+            True,
+        ),
+        Word(
+            "every",
+            "So many units of time after somebody left, or after the start, somebody is there again. Without it, the "
+            "least that can be promised is found.",
+            True,
+        ),
+        Word("by", "Who has to be there: an agent, or any robot.", True),
+    )
+    forms: ClassVar[Tuple[Form, ...]] = (
+        Form("somebody who comes again and again", "objective: patrol {POI} every {=60} by {agent}"),
+        Form("somebody who comes as often as can be promised", "objective: patrol {POI} by {agent}"),
+        Form("somebody who makes rounds", "objective: patrol {POI}, {POI} in order every {=60} by {agent}"),
+    )
+    used: ClassVar[Mapping[str, str]] = {"patrol": "POI", "by": "agent"}
+
+    @classmethod
+    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Tuple[Safety, ...]:
+        refs, in_order, _, every, by = children
+        places, first, time = reader.refs(refs), by.children[0], reader.number_or_none(every)
+        agent = None if isinstance(first, Token) else reader.ref(first)
+        order = () if in_order is None else tuple(place.name for place in places)
+        return tuple(cls(place, time, Who(agent, agent is None), at["span"], order) for place in places)
 
     @property
     def _patroller(self) -> str:

@@ -8,8 +8,8 @@ from typing import Callable, ClassVar, Iterator, Optional, Sequence, Set, Tuple
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
 from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.objectives.base import StatedObjective, Whole, Words
-from pursue_gen.language.parts import Agent
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.symbols import Role, Symbol
 
 MOST_EVENTS = 5
@@ -26,6 +26,7 @@ class Reach(StatedObjective):
     span: Span = NOWHERE
     within: Optional[Number] = None
     optional: int = 0
+    listed_in: ClassVar[str] = "reach"
     word: ClassVar[str] = "reach_objective"
     limited_by: ClassVar[str] = "within"
     once: ClassVar[bool] = True

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Callable, ClassVar, Iterator, Sequence, Tuple
+from typing import Any, Callable, ClassVar, Iterator, Mapping, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.conditions import Condition, EventOrCondition, condition_text, condition_words, held_by
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective, Whole, Words
-from pursue_gen.language.parts import Agent
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.symbols import Role
+from pursue_gen.language.tree_reader import TreeReader
+from pursue_gen.language.word import Form, Word
 
 
 def _text(what: EventOrCondition) -> str:
@@ -38,6 +40,26 @@ class Respond(Safety):
     span: Span = NOWHERE
     optional: int = 0
     limited_by: ClassVar[str] = "deadline"
+
+    grammar: ClassVar[str] = '"if" (ref | condition) "then" (ref | condition) "within" NUMBER'
+    form: ClassVar[str] = "if e1 then e2 within 20 (or conditions: if bot1 at a then open is_true within 20)"
+    own_words: ClassVar[Tuple[Word, ...]] = (
+        Word("if", "After this event, or when this condition comes to hold, there has to be an answer."),
+        Word("then", "The event that has to follow, or the condition that has to hold at some moment."),
+        Word("within", "How many units of time later the answer must have come."),
+    )
+    forms: ClassVar[Tuple[Form, ...]] = (
+        Form("an answer in time", "objective: if {event} then {event} within {=20}"),
+        Form("an answer to what comes to hold", "objective: if {agent} at {POI} then {agent} at {POI} within {=20}"),
+    )
+    used: ClassVar[Mapping[str, str]] = {"if": "event", "then": "event"}
+    conditions_behind: ClassVar[Tuple[str, ...]] = ("if",)
+
+    @classmethod
+    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Safety:
+        trigger, response, deadline = children
+        answered = reader.event_or_condition(trigger), reader.event_or_condition(response)
+        return cls(*answered, reader.number(deadline), **at)
 
     @property
     def text(self) -> str:

@@ -12,14 +12,15 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.formatter import format_text, formatted
-from pursue_gen.language.forms import FORMS, HOLE, Form
-from pursue_gen.language.messages import RESERVED
+from pursue_gen.language.kinds import DECLARED, RESERVED, STATEMENTS
 from pursue_gen.language.names import KINDS
 from pursue_gen.language.navigation import rename
 from pursue_gen.language.poses import read_poses
-from pursue_gen.language.rewriting import PARTS, parts_of
-from pursue_gen.language.syntax import DECLARED, Statement, bare
+from pursue_gen.language.rewriting import parts_of
+from pursue_gen.language.syntax import Statement
+from pursue_gen.language.tokens import bare
 from pursue_gen.language.usable import reserved
+from pursue_gen.language.word import HOLE, Form
 from pursue_gen.tools.draw import fields
 from pursue_gen.tools.draw.fields import Values, refused
 from pursue_gen.tools.draw.places import lengths_per_metre, positions, with_all_positions
@@ -250,11 +251,12 @@ _FIELDS: Mapping[str, Mapping[str, Callable[[Values, str], Parts]]] = {
 
 
 def _add_form(document: Draft, values: Values) -> Done:
-    """{kind, form, values: […]}: a statement of FORMS, its holes filled in order."""
+    """{kind, form, values: […]}: one of the forms of a statement, its holes filled in order."""
     kind = fields.text_of(values, "kind")
-    if kind not in FORMS:
+    if kind not in STATEMENTS:
         raise refused(f"there is no statement {kind}", "load the page again")
-    form = FORMS[kind][fields.index_of(values, "form", len(FORMS[kind]))]
+    forms = STATEMENTS[kind].forms
+    form = forms[fields.index_of(values, "form", len(forms))]
     return added(document, filled(form, values.get("values")))
 
 
@@ -281,7 +283,8 @@ def _restate(document: Draft, values: Values) -> Done:
     """{statement, words}: other words for a statement."""
     number = fields.index_of(values, "statement", len(document.statements))
     words = fields.text_of(values, "words")
-    if document.statements[number].kind in PARTS:
+    known = STATEMENTS.get(document.statements[number].kind)
+    if known is not None and known.parts:
         raise refused("this statement has a form of its own", "load the page again")
     alone = Draft.of(words, document.file).statements
     if len(alone) != 1 or not words:

@@ -9,10 +9,12 @@ from pursue_gen.drawing.ground import Ground
 from pursue_gen.drawing.layout import drawable
 from pursue_gen.drawing.look import agent_looks, mark
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.forms import FORMS, HOLE
+from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.names import KINDS
 from pursue_gen.language.rewriting import parts_of
-from pursue_gen.language.syntax import Statement, bare
+from pursue_gen.language.syntax import Statement
+from pursue_gen.language.tokens import bare
+from pursue_gen.language.word import HOLE
 from pursue_gen.language.wording import objective_words
 from pursue_gen.solving.inputs import findings_of
 from pursue_gen.tools.draw.places import positions
@@ -57,8 +59,8 @@ def view(
 def forms() -> List[Dict[str, Any]]:
     """The statements that can be chosen from lists: their words cut at their holes, and what belongs into each hole."""
     found = []
-    for kind, several in FORMS.items():
-        for number, form in enumerate(several):
+    for kind, statement in STATEMENTS.items():
+        for number, form in enumerate(statement.forms):
             if kind in _OWN_FORMS:
                 continue
             kinds = {"=": "example", "": "name"}

@@ -9,11 +9,12 @@ from typing import Dict, FrozenSet, Iterator, List, Optional, Tuple
 from lark import Token
 
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.forms import FORMS, HOLE, MEANINGS
-from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES
+from pursue_gen.language.kinds import DECLARED, KEYWORDS, MAY_BE_NAMES, MEANINGS, STATEMENTS
 from pursue_gen.language.occurrences import SUBJECTS, are_names, condition_start, kinds_behind
 from pursue_gen.language.poses import robots_in
-from pursue_gen.language.syntax import DECLARED, accepts, start_of, statements_of, tokens_of
+from pursue_gen.language.syntax import accepts, statements_of, tokens_of
+from pursue_gen.language.tokens import start_of
+from pursue_gen.language.word import HOLE
 
 _SIGNS = {"COLON": ":", "COMMA": ",", "LPAR": "(", "RPAR": ")"}
 _POSE = "//[0, 0, 0, 0, 0, 0, 1]"
@@ -192,8 +193,8 @@ def _words(place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
 def _statements(document: Draft, place: _Place) -> List[Completion]:
     """Whole statements, with choices of names where names belong."""
     items = []
-    for token, forms in FORMS.items():
-        for form in forms:
+    for token, statement in STATEMENTS.items():
+        for form in statement.forms:
             label = f"{KEYWORDS[token]} … {form.title}"
             insert = fill_in(form.words, {kind: list(names) for kind, names in document.declared.items()})
             span = (place.start, place.end)

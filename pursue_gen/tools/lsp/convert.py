@@ -8,7 +8,7 @@ from lsprotocol import types as lsp
 
 from pursue_gen.diagnostics import Diagnostic, Severity
 from pursue_gen.language.document import Edit
-from pursue_gen.language.messages import KEYWORDS
+from pursue_gen.language.kinds import KEYWORDS
 from pursue_gen.language.occurrences import Occurrence
 from pursue_gen.tools.lsp.completion import Completion
 from pursue_gen.tools.lsp.fixes import Fix

@@ -10,11 +10,12 @@ from pursue_gen.diagnostics import Diagnostic, PursueError
 from pursue_gen.language.behaviour import destinations_from
 from pursue_gen.language.document import Edit, behind, written
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.messages import MAY_BE_NAMES, RESERVED
+from pursue_gen.language.kinds import MAY_BE_NAMES, RESERVED
 from pursue_gen.language.navigation import rename
 from pursue_gen.language.occurrences import Occurrence
 from pursue_gen.language.poses import robots_in
-from pursue_gen.language.syntax import Statement, bare, end_of, start_of
+from pursue_gen.language.syntax import Statement
+from pursue_gen.language.tokens import bare, end_of, start_of
 from pursue_gen.language.usable import proposal, well_formed
 from pursue_gen.tools.lsp.fixes_syntax import Proposals
 from pursue_gen.tools.lsp.statements import ordered

@@ -8,7 +8,8 @@ from pursue_gen.language.checks import MOST_TIMES
 from pursue_gen.language.document import Edit, behind, written
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.numbers import exact, read_number
-from pursue_gen.language.syntax import Statement, bare, start_of
+from pursue_gen.language.syntax import Statement
+from pursue_gen.language.tokens import bare, start_of
 from pursue_gen.tools.lsp.fixes_syntax import Proposals
 
 

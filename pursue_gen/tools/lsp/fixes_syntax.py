@@ -10,8 +10,10 @@ from lark import Token
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.document import Edit, behind, written
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.messages import KEYWORDS, QUOTES, RESERVED, name_meant
-from pursue_gen.language.syntax import DECLARED, Statement, accepts, bare, end_of, start_of
+from pursue_gen.language.kinds import DECLARED, KEYWORDS, RESERVED
+from pursue_gen.language.messages import QUOTES, name_meant
+from pursue_gen.language.syntax import Statement, accepts
+from pursue_gen.language.tokens import bare, end_of, start_of
 from pursue_gen.language.usable import proposal
 
 Proposals = Iterator[Tuple[str, Tuple[Edit, ...]]]

@@ -11,12 +11,10 @@ from pursue_gen.language.batteries import MOST_CAPACITY, levels
 from pursue_gen.language.behaviour import predecessors
 from pursue_gen.language.conditions import condition_words, names_in
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.forms import MEANINGS
+from pursue_gen.language.kinds import KEYWORDS, MEANINGS, STATEMENTS
 from pursue_gen.language.labels import in_markdown, markdown
-from pursue_gen.language.messages import FORMS, KEYWORDS
 from pursue_gen.language.names import refs_of
 from pursue_gen.language.numbers import Number, exact, read_number
-from pursue_gen.language.parser import MOST
 from pursue_gen.language.scenario import (
     Agent,
     Both,
@@ -32,7 +30,9 @@ from pursue_gen.language.scenario import (
     State,
     Window,
 )
-from pursue_gen.language.syntax import Statement, start_of
+from pursue_gen.language.syntax import Statement
+from pursue_gen.language.tokens import start_of
+from pursue_gen.language.tree_reader import MOST
 from pursue_gen.language.wording import battery_words, size_words
 
 _MOST_LINES = 12
@@ -61,7 +61,7 @@ def hover(document: Draft, offset: int) -> Optional[Hover]:
         return None
     start = start_of(token)
     if token.type in KEYWORDS:
-        form = f"\n\n```pursue\n{FORMS[token.type]}\n```" if token.type in FORMS else ""
+        form = f"\n\n```pursue\n{STATEMENTS[token.type].form}\n```" if token.type in STATEMENTS else ""
         return Hover(f"**{token}**: {MEANINGS[token.type]}{form}", start, start + len(token))
     number = read_number(token) if token.type == "NUMBER" else None
     if number is not None and part is not None and number <= MOST:

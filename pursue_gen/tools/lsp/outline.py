@@ -6,10 +6,9 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Dict, List, Tuple
 
-from pursue_gen.language.document import section_of
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.messages import KEYWORDS
-from pursue_gen.language.syntax import bare, end_of, start_of
+from pursue_gen.language.kinds import KEYWORDS, section_of
+from pursue_gen.language.tokens import bare, end_of, start_of
 
 
 @dataclass(frozen=True)

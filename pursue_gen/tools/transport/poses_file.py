@@ -10,9 +10,9 @@ from typing import Any, Dict, List, Mapping, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.files import compose_yaml, read_text, span_of
-from pursue_gen.language.messages import shown
 from pursue_gen.language.scenario import Poi, Pose, Ref, Scenario, Spot
 from pursue_gen.language.similar import closest
+from pursue_gen.language.tokens import shown
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _FORM = "write NAME: [x, y, z, qx, qy, qz, qw]: metres on the map, and a unit quaternion; 0, 0, 0, 1 looks along x"

@@ -18,10 +18,10 @@ from pursue_gen.language.checks import check
 from pursue_gen.language.conditions import At, Condition, Doing, Not, OnWay, Who
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.formatter import format_text
-from pursue_gen.language.forms import FORMS, HOLE, MEANINGS
-from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES
+from pursue_gen.language.kinds import KEYWORDS, MAY_BE_NAMES, MEANINGS, STATEMENTS
 from pursue_gen.language.occurrences import occurrences
 from pursue_gen.language.scenario import Ref, Scenario
+from pursue_gen.language.word import HOLE
 from pursue_gen.tga.assumptions import _KEPT
 from pursue_runtime.observer.assumptions import breach
 from pursue_runtime.words import Word
@@ -99,7 +99,7 @@ def test_it_names_what_editors_find_in_its_text(kind: Type[Assumption], data: st
 
 @each_kind
 def test_its_form_and_its_example_are_of_the_kind(kind: Type[Assumption]) -> None:
-    assert (kind.title, kind.form()) in [(form.title, form.words) for form in FORMS["ASSUME"]]
+    assert (kind.title, kind.form()) in [(form.title, form.words) for form in STATEMENTS["ASSUME"].forms]
     fillings = {"agent": "guest", "event": "call", "POI": "hall"}
     filled = HOLE.sub(lambda hole: hole[2] if hole[1] else fillings[hole[2]], kind.form())
     for text in (filled, kind.filled(kind.example.__getitem__)):

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.formatter import format_text
-from pursue_gen.language.forms import FORMS
+from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.parser import parse
 from pursue_gen.language.syntax import COMMENTS
 from pursue_gen.tools.draw.operations import change
@@ -230,10 +230,12 @@ def test_what_makes_no_sense_is_refused_with_a_reason(operation: Any) -> None:
     assert caught.value.diagnostics[0].message
 
 
-@pytest.mark.parametrize(("kind", "form"), [(kind, k) for kind, forms in FORMS.items() for k in range(len(forms))])
+@pytest.mark.parametrize(
+    ("kind", "form"), [(token, k) for token, kind in STATEMENTS.items() for k in range(len(kind.forms))]
+)
 def test_every_form_can_be_filled(kind: str, form: int) -> None:
     given_ = {"POI": "room", "event": "fetch", "agent": "nurse", "state": "dark"}
-    holes = re.findall(r"\{(=?)([^}]*)\}", FORMS[kind][form].words)
+    holes = re.findall(r"\{(=?)([^}]*)\}", STATEMENTS[kind].forms[form].words)
     values = [(what if what.isdigit() else f"{what}9") if example else given_[what] for example, what in holes]
     text = done(COMMENTED, "add form", kind=kind, form=form, values=values)
     assert len(Draft(text).statements) == len(Draft(COMMENTED).statements) + 1

@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 
 from pursue_gen.language.document import Edit, edited
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.forms import FORMS, MEANINGS
-from pursue_gen.language.messages import KEYWORDS
+from pursue_gen.language.kinds import KEYWORDS, MEANINGS, STATEMENTS
 from pursue_gen.language.parser import read
 from pursue_gen.language.syntax import COMMENTS, accepts
 from pursue_gen.tools.lsp.completion import complete, fill_in
@@ -109,15 +108,15 @@ def test_a_robots_pose_begins_with_that_of_the_place() -> None:
     ("line", "words"),
     [
         ("connect a |", ["and"]),
-        ('event "new" |', ["location", "duration", "at_most", "collaborative", "label", "only_if"]),
-        ('event "new" collaborative loc|', ["location", "duration", "at_most", "together", "only_if"]),
+        ('event "new" |', ["label", "collaborative", "location", "duration", "at_most", "only_if"]),
+        ('event "new" collaborative loc|', ["together", "location", "duration", "at_most", "only_if"]),
         ('event "new" collaborative together |', ["location", "duration", "at_most", "only_if"]),
-        ('agent "new" |', ["location", "label", "human", "controllable", "mobile", *SIZE]),
+        ('agent "new" |', ["label", "location", "human", "controllable", "mobile", *SIZE]),
         ('agent "new" label "a" |', ["location", "human", "controllable", "mobile", *SIZE]),
         ('agent "new" label |', []),
         ('agent "new" location a |', ["can_do", "reacts_to"]),
         ('state "new": initially |', ["true", "false"]),
-        ("objective: |", ["patrol", "if", "avoid", "always"]),
+        ("objective: |", ["if", "avoid", "always", "patrol"]),
         ("objective: patrol a, b |", ["in", "every", "by"]),
         ("objective: patrol a, b in |", ["order"]),
         ('rule "new": work |', ["and", "before", "or"]),
@@ -140,7 +139,7 @@ def test_signs_and_values() -> None:
 
 def test_statements_begin_at_the_beginning_and_behind_a_complete_one() -> None:
     for text in ("|", "po|", 'poi "a"\n|', 'poi "a" |', "connect a and\n|"):
-        assert len(labels(text, "statement")) == sum(len(forms) for forms in FORMS.values())
+        assert len(labels(text, "statement")) == sum(len(kind.forms) for kind in STATEMENTS.values())
     assert labels("connect a and |", "statement") == []
 
 
@@ -240,8 +239,8 @@ def expanded(snippet: str) -> str:
 
 def test_statements_to_fill_in_are_well_formed() -> None:
     names = {kind: list(names) for kind, names in Draft.of(SMALL, "x.pur").declared.items()}
-    for token, forms in FORMS.items():
-        for form in forms:
+    for token, statement in STATEMENTS.items():
+        for form in statement.forms:
             for text in (fill_in(form.words, {}, plain=True), expanded(fill_in(form.words, names))):
                 assert read(text, "x.pur").diagnostics == (), text
                 assert text.startswith(KEYWORDS[token])

@@ -11,7 +11,7 @@ from typing import Any, Dict, Iterator, List, Set, Tuple
 import pytest
 
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.messages import FORMS, KEYWORDS
+from pursue_gen.language.kinds import KEYWORDS, STATEMENTS
 from pursue_gen.language.parser import read
 from pursue_gen.language.syntax import grammar_text
 
@@ -21,7 +21,7 @@ from .test_completion import expanded
 VSCODE = ROOT / "editors" / "vscode"
 VIM = ROOT / "editors" / "vim"
 CONSTANTS = {"true", "false", "is_true", "is_false"}
-STATEMENTS = {KEYWORDS[kind] for kind in FORMS}
+BEGIN = {KEYWORDS[kind] for kind in STATEMENTS}
 
 
 def grammar_words() -> Set[str]:
@@ -56,9 +56,9 @@ def words_of(rule: str) -> Set[str]:
 
 
 def test_textmate_has_every_word() -> None:
-    assert words_of("statement") == STATEMENTS
+    assert words_of("statement") == BEGIN
     assert words_of("constant") == CONSTANTS
-    assert words_of("keyword") == WORDS - STATEMENTS - CONSTANTS
+    assert words_of("keyword") == WORDS - BEGIN - CONSTANTS
 
 
 def rules() -> Iterator[Tuple[str, str]]:
@@ -103,7 +103,7 @@ def scope_of(kind: str) -> str:
         return SCOPES[kind]
     if KEYWORDS[kind] in CONSTANTS:
         return "constant.language.pursue"
-    return "keyword.control.pursue" if kind in FORMS else "keyword.other.pursue"
+    return "keyword.control.pursue" if kind in STATEMENTS else "keyword.other.pursue"
 
 
 @pytest.mark.parametrize("name", sorted(SCENARIOS))
@@ -160,9 +160,9 @@ def test_vim_has_every_word() -> None:
     groups: Dict[str, Set[str]] = {}
     for group, words in re.findall(r"^syntax keyword (\w+) (.*)$", text, re.M):
         groups.setdefault(group, set()).update(words.split())
-    assert groups["pursueStatement"] == STATEMENTS
+    assert groups["pursueStatement"] == BEGIN
     assert groups["pursueConstant"] == CONSTANTS
-    assert groups["pursueKeyword"] == WORDS - STATEMENTS - CONSTANTS
+    assert groups["pursueKeyword"] == WORDS - BEGIN - CONSTANTS
 
 
 def test_vim_indents_by_words_of_the_language() -> None:
@@ -170,8 +170,8 @@ def test_vim_indents_by_words_of_the_language() -> None:
     opens = re.search(r"let s:statement = .*", text)
     goes_on = re.search(r"let s:goes_on = [\s\S]*?\n\n", text)
     assert opens is not None and goes_on is not None
-    assert set(re.findall(r"[a-zA-Z_]{2,}", opens.group().split("=", 1)[1])) == STATEMENTS
-    assert set(re.findall(r"[a-z_]{2,}", goes_on.group().split("=", 1)[1])) <= WORDS - STATEMENTS
+    assert set(re.findall(r"[a-zA-Z_]{2,}", opens.group().split("=", 1)[1])) == BEGIN
+    assert set(re.findall(r"[a-z_]{2,}", goes_on.group().split("=", 1)[1])) <= WORDS - BEGIN
 
 
 def test_vim_knows_the_file_names() -> None:
@@ -190,7 +190,7 @@ def token_types(text: str) -> List[Tuple[str, str]]:
 
 def type_of(kind: str, value: str) -> str:
     if kind in KEYWORDS:
-        return "Keyword.Declaration" if kind in FORMS else "Keyword.Constant" if value in CONSTANTS else "Keyword"
+        return "Keyword.Declaration" if kind in STATEMENTS else "Keyword.Constant" if value in CONSTANTS else "Keyword"
     names = {"NAME": "Literal.String", "POSE": "Comment.Special", "LINE_COMMENT": "Comment.Single", "WORD": "Name"}
     number = f"Literal.Number.{'Float' if '.' in value else 'Integer'}"
     more = {"BLOCK_COMMENT": "Comment.Multiline", "TAIL": "Comment.Preproc", "NUMBER": number}

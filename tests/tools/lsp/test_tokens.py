@@ -10,11 +10,12 @@ from hypothesis import strategies as st
 from lark import Token
 
 from pursue_gen.language.draft import Draft
+from pursue_gen.language.kinds import DECLARED
 from pursue_gen.language.names import KINDS
 from pursue_gen.language.occurrences import kinds_behind
 from pursue_gen.language.parser import parse
 from pursue_gen.language.scenario import Ref, Scenario
-from pursue_gen.language.syntax import DECLARED, accepts
+from pursue_gen.language.syntax import accepts
 
 from .scenarios import SCENARIOS, SMALL
 

@@ -10,7 +10,7 @@ from typing import Dict, Set, Tuple
 import pytest
 
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.messages import FORMS, KEYWORDS
+from pursue_gen.language.kinds import KEYWORDS, STATEMENTS
 
 from .scenarios import ROOT, SCENARIOS
 
@@ -64,7 +64,7 @@ def expected(text: str) -> Set[Tuple[int, int, str]]:
             "pursueConstant"
             if token.type in CONSTANTS
             else "pursueStatement"
-            if token.type in FORMS
+            if token.type in STATEMENTS
             else "pursueKeyword"
         )
         groups: Dict[str, str] = {**GROUPS, **{kind: word for kind in KEYWORDS}}
