@@ -1,4 +1,5 @@
-"""How long places wait on a tour, also those that its robot only passes; and tours on which some come more often."""
+"""How long places wait on a tour, those that the robot only passes included; tours that visit some places more
+often."""
 
 from __future__ import annotations
 
