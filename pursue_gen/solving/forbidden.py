@@ -72,7 +72,7 @@ def _words(scenario: Scenario, kept: _Deeds, lost: _Deeds) -> str:
 
 def _possible(scenario: Scenario, assumed: Tuple[Assumption, ...], search: _Search) -> Optional[_Deeds]:
     """All edges that agents may ever take under the assumption, or more than these; None: too many to look at."""
-    network = translate(replace(scenario, safety=(), reach=(), assumptions=assumed))  # objectives keep nobody from it
+    network = translate(replace(scenario, safety=(), reach=(), assumptions=assumed))  # objectives forbid no move
     if sum(len(automaton.edges) for automaton in network.automata) > _MOST_EDGES:
         return None
     anywhere = network.automata[0].name, network.automata[0].initial  # a game has an objective

@@ -46,7 +46,7 @@ def tour_of(walker: Walker, patrol: Patrol, mine: Round) -> Optional[Tour]:
     back = walker.stops([places[-1], places[0]])
     if not back:
         return Tour(walker.automaton.name, tuple(stops), len(stops))
-    if places[0] == start:  # where it waits at first it does not in each round
+    if places[0] == start:  # the wait at the start is not repeated in each round
         return Tour(walker.automaton.name, (*stops, *back), 1)
     return Tour(walker.automaton.name, (*stops, *back[:-1]), len(walker.stops([start, places[0]])))
 

@@ -137,7 +137,7 @@ class _Rounds:
             if all(self._play.now[name] == place for name, place in self._goal):
                 return self._commands
             deeds = self._deeds()
-            # All at once, or where that is too much one after the other: who is done may make way.
+            # All at once; where no moves are found, one after the other: a robot that is done may make way.
             some = [deeds, *({name: edge} for name, edge in deeds.items() if len(deeds) > 1)]
             if not any(self._do(each) for each in some):
                 return None
