@@ -1,13 +1,13 @@
-"""What a share keeps though its blocks do not name it: its commands hold wherever that is.
+"""What a share keeps though its blocks do not name it: automata on whose location its commands do not depend.
 
-Such an automaton is looked at alone, beside those that the blocks name, in a game in which each block stands once for
-each of its locations. The others of that kind are hidden there, and each is looked at in its turn: so a round of many
-places takes as many small games, not one of all of them.
+Each such automaton is looked at alone, beside those that the blocks name, in a game in which each block is repeated for
+each of its locations. The others of that kind are hidden there and have games of their own, so a round of many places
+takes as many small games, and not one of all of them.
 
-Nothing makes a command stale of which the strategy does not speak: what changes the automaton alone leaves a command on
-its way. In the game it is given anew there, and may then come as late again, or nothing says what to do, which fails.
-For that no other advice may follow in a block where a command is due: it has one command at most, and waits only before
-that, by a clock that the automaton does not reset.
+A command is not made stale by what the strategy does not name: if only the automaton changes, a command on its way
+stays on its way. In the game apart it is given anew, and may then be late once more; if nothing tells what to do there,
+that game fails. For that, no other advice may follow in a block where a command is due: the block has at most one
+command, and waits only before it, by a clock that the automaton does not reset.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def games_apart(share: StagePart, names: Sequence[str]) -> Iterator[StagePart]:
 
 
 def _why_not_apart(blocks: Sequence[Block], automata: Sequence[Automaton]) -> str:
-    """Why commands of these blocks may not outlast what one of the automata does; "" if they do."""
+    """Why a move of one of these automata may end a command of the blocks; "" if it cannot."""
     own = {clock for automaton in automata for clock in automaton.clocks}
     for block in blocks:
         due = [zone for command in block.commands for zone in command.zones]

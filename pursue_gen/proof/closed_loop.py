@@ -26,7 +26,7 @@ Entry = Tuple[State, Dbm]
 
 
 class ClosedLoop:
-    """Network and strategy in one scale, and what has been learnt of the strategy's use."""
+    """Network and strategy in one time scale; it records which zones of the strategy are used."""
 
     def __init__(
         self,

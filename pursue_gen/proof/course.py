@@ -1,10 +1,10 @@
-"""The one course of a play in which nothing is chosen: its events, and which of them come before which.
+"""The course of a play without choices: its events, and which of them come before which.
 
-Robots that pass places in an order do the same things whatever the delays are; only the order in which robots that do
-not wait for each other do them differs. Then all plays are told by one set of events and a partial order. Every
-automaton and every variable has a chain of states, each begun by an event and ended by the next one of its own. Two
-states can be so at the same time if and only if neither ends before the other begins, and several if each two can
-(Winskel, "Event structures", 1987; Nielsen, Plotkin, Winskel, "Petri nets, event structures and domains", 1981).
+Robots that pass places in an order do the same things whatever the delays are; only robots that do not wait for each
+other may do them in another order. Then one set of events with a partial order describes all plays. Every automaton and
+every variable has a chain of states, each begun by an event and ended by the next one of the chain. Two states can hold
+at the same time if and only if neither ends before the other begins, and several if each two of them can (Winskel,
+"Event structures", 1987; Nielsen, Plotkin, Winskel, "Petri nets, event structures and domains", 1981).
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class Course:
             self._begun[name].append(number)
 
     def stays(self, name: str, value: Value) -> Sequence[int]:
-        """The numbers of the states in which it is so."""
+        """The numbers of the states of this automaton or variable with this value."""
         return self._where.get((name, value), ())
 
     def begin(self, stay: Stay) -> int:
@@ -95,7 +95,7 @@ class Course:
         return one == START or (other != START and bool(self._down[other] >> one & 1))
 
     def may_meet(self, one: Stay, other: Stay) -> bool:
-        """True if two states can be so at the same time."""
+        """True if the two states can hold at the same time."""
         if one[0] == other[0]:
             return one[1] == other[1]
         end, other_end = self.end(one), self.end(other)
@@ -104,7 +104,7 @@ class Course:
         return other_end is None or not self.is_before(other_end, self.begin(one))
 
     def may_all_meet(self, stay: Stay, others: Iterable[Stay]) -> bool:
-        """True if a state can be so together with each of the others."""
+        """True if the state can hold together with each of the others."""
         return all(self.may_meet(stay, other) for other in others)
 
     def tested(self, guard: Guard) -> List[List[Stay]]:
@@ -115,7 +115,7 @@ class Course:
         ]
 
     def meetings(self, choices: Sequence[Sequence[Stay]], known: Tuple[Stay, ...] = ()) -> Iterator[Tuple[Stay, ...]]:
-        """All ways to take one of each of the choices so that they, and what is known, can be so at the same time."""
+        """All choices of one state of each set so that these, and what is known, can hold at the same time."""
         if not choices:
             yield known
             return

@@ -125,7 +125,7 @@ def pass_time(
     waiting: List[Dbm] = []
     used: List[ZoneKey] = []
     for piece in sorted(pieces, key=_lateness):
-        # What is met on the way from another piece was followed with that.
+        # Points that were met on the way from another piece were followed with that piece.
         if not any(zone.includes(piece) for zone in waiting):
             waiting += _wait(piece, situation, advice, rules, decided)
     for zone, key in advice.wait:

@@ -251,7 +251,7 @@ class _CommandedSearch:
                 raise Fault(f"{name} is in {course.now(name)} at the end, not in {place}")
 
     def _is_sure(self, stay: Stay, named: Mapping[str, Value]) -> bool:
-        """True if all that is named is so as long as this state lasts."""
+        """True if all states that the block names hold as long as this state lasts."""
         course = self.course
         return all(
             value == wanted or not course.may_meet(stay, (name, k))
@@ -260,7 +260,7 @@ class _CommandedSearch:
         )
 
     def _is_open(self, met: Sequence[Stay]) -> bool:
-        """True if the goal need not be reached yet while these states are so."""
+        """True if the goal may be still to be reached while these states hold."""
         course = self.course
         return any(
             value != place and course.may_all_meet((name, k), met)

@@ -236,7 +236,7 @@ def _drop(place: _Place, action: Action) -> None:
     parts = place.parts[action]
     for k in reversed(range(len(parts))):
         zone, rest = parts[k].zone, [other.zone for n, other in enumerate(parts) if n != k]
-        # A command is decided before time leaves the zone in which it was met: only a zone in one other is idle.
+        # A command is decided before time leaves the zone in which it was met: a zone may go if one other covers it.
         idle = _covered(zone, rest) if action == WAIT else any(other.includes(zone) for other in rest)
         if idle:
             del parts[k]

@@ -93,10 +93,8 @@ def moved(known: Known, alive: Network) -> Known:
 
 
 def after_part(known: Known, part: Network, ends: Sequence[State], idle: Optional[Network]) -> Known:
-    """What is known after a part of a stage that ended in one of the states; `known`: of all that it does not name.
-
-    `idle`: what could happen from then on until the stage ended; None: it ended at once.
-    """
+    """What is known after a part of a stage that ended in one of the states; `known`: about all that the part does not
+    name. `idle`: what could happen between the end of the part and that of the stage; None: they end together."""
     spots, values = dict(known.spots), dict(known.values)
     index = {name: k for k, (name, _) in enumerate(part.variables)}
     for k, automaton in enumerate(part.automata):

@@ -59,7 +59,7 @@ def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iter
         if following is None:
             yield StagePart(stage, network, objective, strategy, (), "it may begin in too many states")
             return
-        # That nobody in a part stops time until it has ended is shown there.
+        # The proof of each part shows that its agents do not stop time before it ends.
         busy = {name for own in blocks.values() for name in _names(own[0])[0]}
         resting = {**extent.places, **{name: following.extent.places[name] for name in busy}}
         for place in milestones:

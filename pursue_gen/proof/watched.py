@@ -1,5 +1,6 @@
-"""That who keeps a watcher keeps its objective: whenever the objective's automaton is at risk the watcher's is, not
-shorter, and with no longer a deadline. All plays are looked at, whatever the clocks are."""
+"""Proof that a watcher can stand for its objective: whenever the objective's automaton waits with a deadline, so does
+the watcher's, with a clock that is at least as large and a deadline that is no longer. All plays are looked at,
+whatever the clocks are."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ STATES = 2_000
 
 
 def told(worst: Fraction, promise: StatedObjective) -> Number:
-    """The worst time of a promise in tenths that hold, and no later than its limit."""
+    """The worst-case time of a promise, rounded up to tenths, but never above its limit."""
     return min(tenths_above(worst), promise.known_limit)
 
 
@@ -41,7 +41,7 @@ class Answer:
 
 
 def answers(scenario: Scenario, won: Solution, limits: Limits = NO_LIMITS, states: int = STATES) -> List[Answer]:
-    """Those of the promises with a deadline whose time a fixed amount of work tells, in the order of the scenario."""
+    """The worst-case times of promises with a deadline, in order, as far as a fixed amount of work finds them."""
     took = answer_times(won.network, won.objective, won.strategy, won.reaction, states, limits)
     named = ((names.safety_objective(k), each) for k, each in enumerate(scenario.safety))
     return [Answer(each, took[name]) for name, each in named if name in took and each.limit is not None]

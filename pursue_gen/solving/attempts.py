@@ -1,6 +1,6 @@
-"""Several promises at once: ways to win or to lose them are tried one after the other, then again with more work.
+"""Several promises at once: methods that find a win, or a loss, are tried in turn, then again with more work.
 
-What is decided at all is decided by little work as a rule, but nobody knows which way it is.
+Most games that any method decides are decided with little work, but nobody knows beforehand by which method.
 """
 
 from __future__ import annotations
@@ -24,10 +24,13 @@ from pursue_gen.tga.network import Network, Objective
 
 @dataclass(frozen=True)
 class _Attempt:
-    """How hard shares are looked for, whether promises are that are lost alone or where somebody stays, and the work
-    for policies, for promises that one robot cannot keep together (for all games, and for one), for those that robots
-    cannot keep as they have to stay near others (the same), and whether one or two promises are looked for that are
-    lost. 0, (): that is not tried."""
+    """What one round of attempts tries, and with how much work; 0, False or () leaves a method out.
+
+    `shares`: efforts of the search for shares. `alone`: promises that are lost alone, or because somebody stays at a
+    place. `policy`: work for simple policies. `one_robot`: work for promises that one robot cannot keep together, of
+    all games and of each. `pinned`: the same for robots that have to stay near others. `lost`: one or two promises that
+    are lost.
+    """
 
     shares: Sequence[Effort] = ()
     alone: bool = False

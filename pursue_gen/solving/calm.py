@@ -1,9 +1,9 @@
-"""A strategy for a safety objective without moves that no promise needs, proven like any other.
+"""A strategy for a safety objective without commands that no promise needs, proven like any other.
 
 On a patrol robots wait until a place is due, as late as is won with little work: by a simple policy (see
 `Engine.guess`), else in a game in which they set off only for what is due (see `due_moves`). Commands that are given
-while nothing is owed are left out, all of them if the strategy wins without; else those of some robots, or some of
-each. The checker has the last word: where it refuses, the strategy stays as it is.
+while no deadline runs are left out: all of them if the strategy still wins, else those of some robots, or half of one
+robot's. Each result has to pass the checker; otherwise the strategy stays as it is.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ symbolic states each. Measured on EB4."""
 
 @dataclass(frozen=True)
 class _Game:
-    """A share, or the game itself: its number, what is played in it, by which strategy, and what is for patrols."""
+    """A game to improve: its share's `number` (None: the whole game), its strategy, its automata that are `patrols`."""
 
     number: Optional[int]
     network: Network
@@ -130,8 +130,8 @@ _Given = Tuple[DiscreteState, Tuple[Move, ...]]
 
 
 def _owed(game: _Game, reaction: Fraction, budget: Budget, options: SolveOptions) -> Optional[Strategy]:
-    """The strategy without commands that are given while nothing is owed, as far as it wins without them; None where
-    all are needed."""
+    """The strategy without commands that are given while no deadline runs, as far as it wins without them; None where
+    all of them are needed."""
     idle = _idle(game)
     found: Optional[Strategy] = None
     groups, looks = [idle] if idle else [], 0
@@ -148,14 +148,14 @@ def _owed(game: _Game, reaction: Fraction, budget: Budget, options: SolveOptions
 
 
 def _idle(game: _Game) -> List[_Given]:
-    """The commands that are given where no promise waits for anything."""
+    """The commands that are given while no deadline runs."""
     owed = {(name, AT_RISK) for name, _ in game.objective.bad}
     blocks = (block for block in game.strategy.blocks if owed.isdisjoint(block.state.locations))
     return [(block.state, command.moves) for block in blocks for command in block.commands]
 
 
 def _smaller(some: Sequence[_Given]) -> List[List[_Given]]:
-    """The commands of each robot; of one robot the first and the second half of them."""
+    """The commands, split by robot; those of a single robot in two halves."""
     robots: Dict[str, List[_Given]] = {}
     for given in some:
         robots.setdefault(given[1][0].automaton, []).append(given)
@@ -166,7 +166,7 @@ def _smaller(some: Sequence[_Given]) -> List[List[_Given]]:
 
 
 def _without(strategy: Strategy, gone: Set[_Given]) -> Strategy:
-    """The strategy that waits where it gives these commands."""
+    """The strategy that waits where it gave these commands."""
     return replace(strategy, blocks=tuple(_waiting(block, gone) for block in strategy.blocks))
 
 

@@ -85,7 +85,7 @@ def _hears(automaton: Automaton, channels: AbstractSet[str]) -> bool:
 
 
 def _is_its_own(edge: Edge) -> bool:
-    """True if nobody can keep the agent from the edge, and it need not be in time for it."""
+    """True if the agent can always take the edge: no other agent can prevent it, and it has no latest time."""
     late = all(bound.op in (">", ">=") for bound in edge.guard.clocks)
     return late and not edge.guard.integers and (edge.sync is None or edge.sync.sends)
 
@@ -122,7 +122,7 @@ def _can_be_kept(network: Network, bad: Sequence[Place], arrival: Edge, requests
 
 
 def _asked(watching: Sequence[Automaton], here: _Places, requests: AbstractSet[str]) -> _Places:
-    """Where the automata are when those that begin to wait with a request, whatever else holds, have heard it."""
+    """Where the automata are after hearing a request, of those that begin to wait at it whatever the variables are."""
     found = []
     for automaton, place in zip(watching, here):
         hearing = (_hearing([e for e in automaton.edges if e.source == place], channel) for channel in requests)
@@ -140,7 +140,7 @@ def _after(watching: Sequence[Automaton], here: _Places, values: _Valuation, arr
     options: List[List[str]] = []
     for automaton, place in zip(watching, here):
         hearing = _hearing([e for e in automaton.edges if e.source == place], arrival.sync.channel)
-        # What such an edge asks about who arrives is asked before the arrival: it may be so or not.
+        # Its tests of what the arrival sets were made before the arrival, so they may have held or not.
         sure = [e for e in hearing if moved.isdisjoint(t.variable for clause in e.guard.integers for t in clause)]
         taken = [e.target for e in hearing if e not in sure or _holds(e.guard, values)]
         options.append(taken if any(e.target in taken and _holds(e.guard, values) for e in sure) else [place, *taken])
@@ -148,10 +148,10 @@ def _after(watching: Sequence[Automaton], here: _Places, values: _Valuation, arr
 
 
 class _Others:
-    """What holds beside a stay: all values of the variables that those who watch ask about, one of each that they
-    cannot tell apart. More than `_MOST` are `too_many`, and then not made.
+    """All values of the variables that those who watch ask about, while somebody stays at a place: one of each set of
+    values that they cannot tell apart. `too_many`: there are more than `_MOST`, and they were not made.
 
-    `sending`: of each channel what is set where somebody sends on it, but for who stays.
+    `sending`: for each channel, what is assigned where somebody sends on it, other than whoever stays.
     """
 
     def __init__(self, network: Network, watching: Sequence[Automaton], arrival: Edge) -> None:

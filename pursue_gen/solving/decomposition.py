@@ -62,7 +62,7 @@ def won_by_some(
 
 
 def has_parts(network: Network, objective: Objective) -> bool:
-    """False where `won_by_some` has nothing to try: one robot has one thing to do."""
+    """False where `won_by_some` has nothing to try: there is one robot, and one subgoal."""
     robots = commanded_agents(network)
     if len(robots) != 1 or len(objective.goal) != 1:
         return True
@@ -77,8 +77,12 @@ def works_in_parallel(network: Network, goal: Place) -> bool:
 
 @dataclass(frozen=True)
 class _Subtask:
-    """A part of a stage: where it ends, who can bring it there, what was reached before, and who has something to end
-    that no other part ends. `goal` None: the whole game, of an objective without a goal or with several locations."""
+    """A part of a stage: the game in which the agents `doers` come to `goal` (None: the whole game, of an objective
+    without a goal or with several locations).
+
+    `milestones`: what was reached in the stages before. `ending`: robots of no other part whose movement or action is
+    still going on, and has to be ended here.
+    """
 
     goal: Optional[Place]
     doers: FrozenSet[str]
@@ -121,7 +125,7 @@ class _StagesSearch:
         return None
 
     def _orders(self, first: Sequence[Subgoal], goals: Sequence[Subgoal]) -> Iterator[List[List[Subgoal]]]:
-        """The orders in which subgoals may be met; what makes impossible what is to be avoided comes first."""
+        """The orders in which subgoals may be met. Subgoals that rule out what is to be avoided come first."""
         before = [[goal] for goal in first]
         one_by_one = [[goal] for goal in goals]
         together = _grouped(goals)
@@ -135,7 +139,8 @@ class _StagesSearch:
             yield one_by_one
 
     def _in_stages(self, stages: Sequence[Sequence[Subgoal]]) -> Optional[Strategy]:
-        """A strategy that meets the subgoals of each stage at the same time, but for those that are met on the way."""
+        """A strategy that meets the subgoals stage by stage; those that are met when their stage begins are left
+        out."""
         known = at_start(self._network)
         milestones: List[Place] = []
         blocks: List[Block] = []
@@ -168,7 +173,7 @@ class _StagesSearch:
         return strategy if report.ok else None
 
     def _under_way(self, known: Known) -> FrozenSet[str]:
-        """The robots that may be under way where only the controller can end it."""
+        """The robots that may be in the middle of a movement or action whose end the controller commands."""
         return frozenset(
             automaton.name
             for automaton in self._network.automata
@@ -186,7 +191,7 @@ class _StagesSearch:
         return None
 
     def _teams(self, part: _Subtask, known: Known) -> Iterator[FrozenSet[str]]:
-        """The teams to try, the smallest first: some of those who can do it, and all who guard against what is bad."""
+        """The teams to try, the smallest first: some of the `doers`, and all robots that the safety part depends on."""
         guards: FrozenSet[str] = frozenset()
         alive, extent = self._alive(part, self._robots, known)
         wanted = self._objective if part.goal is None else stage_objective(self._objective, part.goal, extent)
@@ -203,7 +208,7 @@ class _StagesSearch:
         yield from (team for team in teams if not (is_only and team.issuperset(self._robots)))
 
     def _with_team(self, part: _Subtask, team: Collection[str], known: Known) -> Optional[List[Block]]:
-        """The same with this team; None where it does not win."""
+        """The blocks of the part for this team; None where it does not win with little work."""
         alive, extent = self._alive(part, team, known)
         wanted = self._objective
         owner = None if part.goal is None else owner_of(self._network, part.goal[0])
@@ -242,9 +247,10 @@ class _StagesSearch:
         return live(self._network, self._allowed(part, team), known.extent)
 
     def _allowed(self, part: _Subtask, team: Collection[str]) -> Commanded:
-        """What may be commanded in a stage: what the team does, but for what undoes a milestone or is for another one.
+        """What may be commanded in a stage: the commands of the team, except those that undo a milestone or meet
+        another subgoal.
 
-        The commands of objectives come last.
+        Commands of objectives are allowed in the last stage only.
         """
         undoing: Set[str] = set()
         fixed: Dict[str, int] = {}

@@ -1,10 +1,9 @@
-"""Games in which robots set off only for what is due: where a promise waits for its answer, or a place of a patrol for
-its next visit.
+"""Games in which robots set off only for what is due: a promise that waits for its answer, or a place of a patrol whose
+next visit is near.
 
-A robot then goes nowhere while nothing is due. On a patrol it sets off for a place when the time that is left until the
-visit is that of the way there, and a reserve; and each of its ways brings it nearer to a place that is due. Moves are
-only taken from the controller, so a strategy for such a game is one for the game itself, in whose names `in_names_of`
-puts it.
+While nothing is due, no robot sets off. On a patrol it sets off when the time left until the visit is that of the way
+there plus a reserve, and only on ways that bring it nearer to a place that is due. Only moves of the controller are
+taken away, so a strategy for such a game is one for the game itself, in whose names `in_names_of` puts it.
 """
 
 from __future__ import annotations
@@ -128,7 +127,7 @@ def only_due(
 
 
 def _telling(name: str, edge: Edge) -> Edge:
-    """The edge of a promise's automaton, with the variable that is 1 while its deadline is running."""
+    """A promise's edge that also sets the variable that is 1 while the promise's deadline is running."""
     if AT_RISK not in (edge.source, edge.target) or edge.source == edge.target:
         return edge
     return replace(edge, assign=(*edge.assign, (Role.DUE(name), int(edge.target == AT_RISK))))

@@ -1,10 +1,10 @@
-"""Duties: what robots have to stay near, as the environment may make it urgent at any moment.
+"""Duties: places that some robot must be able to reach in time, because the environment can require it at any moment.
 
 A duty of a promise is what some robot must do within a time from a moment that the environment chooses: an answer to
-somebody who may call, or to be at a place before a person who walks there. A robot covers the duty from where it can be
-in time at worst: whatever it does takes as long as it may. Otherwise robots are better off here than they are: they
-know at once what is wanted of them, and need no rest before they set off. So where the duties cannot all be covered,
-something is lost.
+somebody who may call, or to be at a place before a person who walks there. A robot covers the duty from where it is in
+time in the worst case, each movement and action taking as long as it may. In all else robots are better off here than
+in the game: they know at once what is required, and need no rest before they set off. So where the duties cannot all be
+covered, something is lost.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ _NOW = "now"
 
 @dataclass(frozen=True)
 class Duty:
-    """Of a promise: who has to be how near. `times`: of each robot, from each of its locations, how long it takes at
-    least in the worst case; `within`: how long it may take; `ends`: the channels of what does it."""
+    """A promise's requirement that some robot is near. `times`: for each robot, from each of its locations, how long it
+    takes at least in the worst case; `within`: how long it may take; `ends`: the channels of what meets it."""
 
     promise: Place
     within: Number
@@ -81,7 +81,7 @@ def at_home(network: Network) -> Dict[str, str]:
 
 
 def begins(automaton: Automaton, channels: AbstractSet[str]) -> List[Edge]:
-    """The commands by which a robot begins what ends with one of these."""
+    """The commands by which a robot begins a movement or action that ends on one of these channels."""
     doing = {e.source for e in automaton.edges if e.sync is not None and e.sync.sends and e.sync.channel in channels}
     return [edge for edge in automaton.edges if edge.target in doing and edge.source not in doing]
 
@@ -212,8 +212,8 @@ def _after(automaton: Automaton, place: str, channel: str) -> List[str]:
 
 @dataclass(frozen=True)
 class _Presence:
-    """Somebody may come to a place, and a robot has to be there then, or soon after. `walks`: of somebody, how soon it
-    comes from where it stands, and the duty."""
+    """Somebody may come to a place, and a robot has to be there by then, or soon after. `walks`: for each person, how
+    soon it comes from where it stands, and the duty that follows."""
 
     walks: Sequence[Tuple[str, Mapping[str, Number], Duty]]
 

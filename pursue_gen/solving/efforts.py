@@ -7,15 +7,16 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Effort:
-    """How hard shares are looked for: `work` for all games of groups, `game` for one of them, which has at most so many
-    discrete `states` and `clocks` (of more, zones cost more than is counted). `thorough`: games that are not won with
-    some hidden are played with all of them as well; `free`: they are played without the pauses of the environment;
-    `joins`: groups that cannot be played beside each other are joined; `nobody`: what never happens while all stand
-    still may be nobody's task, until what others are commanded shows that somebody has to see to it. `few`: only half
-    as many robots as promises keep them all, by a policy, where all robots can; `pairs`: what has no deadline may be
-    two robots' task also where one can see to it, as that one may be needed elsewhere once the other is there;
-    `varied`: ways in which few promises go to another than the first choice come first (limited discrepancy search,
-    Harvey and Ginsberg 1995).
+    """How much work the search for shares may spend, and what it tries.
+
+    `work`: for all games of groups; `game`: for one of them, which has at most so many discrete `states` and `clocks`
+    (with more clocks a zone costs more than is counted). `thorough`: a group's game that is not won with others hidden
+    is played with everybody as well. `free`: the environment's pauses are left out. `joins`: groups that cannot be
+    played beside each other are joined. `nobody`: a promise that holds while all robots stand still is given to nobody,
+    until other robots' commands show that somebody has to keep it. `few`: half as many robots as promises keep all of
+    them, by a policy. `pairs`: a promise without a deadline may be given to two robots though one can keep it.
+    `varied`: ways in which few promises go to another team than their first choice come first (limited discrepancy
+    search, Harvey and Ginsberg 1995).
     """
 
     work: int

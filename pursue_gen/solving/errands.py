@@ -1,8 +1,8 @@
-"""Errands that keep a robot from its patrol for too long, whoever else there is.
+"""Errands: something that a robot may be asked to do, and that keeps it from its patrol for too long.
 
-Nobody but this robot visits a place of the patrol, and it cannot go from there to where it does what somebody may ask
-for, do it, and be back within the period where everything takes as long as it may. Somebody who asks for it when the
-place has been visited once is not answered in time, or the place not visited. No game is played for that.
+Nobody but this robot visits a place of the patrol. In the worst case it cannot leave the place, do what somebody may
+ask for, and be back within the period. So if somebody asks when the place has just been visited, either the answer or
+the next visit comes too late. No game is played to find that out.
 """
 
 from __future__ import annotations
@@ -21,8 +21,7 @@ _Patrols = Sequence[Tuple[str, Duty]]
 
 
 def excluded_by_an_errand(network: Network, objective: Objective) -> Tuple[Objective, ...]:
-    """Promises, places to be avoided, that cannot all be kept as who does something comes back too late; () where none
-    are found."""
+    """Promises, places to be avoided, that cannot all be kept because of an errand; () where none are found."""
     robots = commanded_agents(network)
     ends = (edge for name in robots for edge in network.automaton(name).edges if edge.is_end)
     if objective.reaches or any(edge.controllable for edge in ends):
@@ -42,7 +41,7 @@ def excluded_by_an_errand(network: Network, objective: Objective) -> Tuple[Objec
 
 
 def _missed(robot: Automaton, begin: Edge, visits: _Patrols) -> Optional[Duty]:
-    """A visit that the robot misses whenever it begins this; None: there is none."""
+    """A visit that the robot cannot make in time after it has begun this; None: there is none."""
     for name, duty in visits:
         if name == robot.name:
             (place,) = duty.visits[name]

@@ -1,8 +1,8 @@
-"""Events that can never happen because of what is assumed.
+"""Events that can never happen because of an assumption.
 
-What can happen is looked for without clocks, so whatever is found never to happen never does. Where there are few
-discrete states, all of them are looked at. Where there are many, automata and variables keep what they have been beside
-what they become (delete relaxation, Hoffmann and Nebel 2001), which takes little time and finds less.
+Clocks are left out of the search, which makes more possible: what it finds impossible is impossible. Where there are
+few discrete states, all of them are explored. Where there are many, automata and variables keep their earlier values
+beside the new ones (delete relaxation, Hoffmann and Nebel 2001), which is quick and finds fewer such events.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _Deeds = Set[Tuple[str, str]]
 
 
 def check_forbidden(scenario: Scenario) -> Iterator[Diagnostic]:
-    """A warning for each assumption with which events never happen that can happen without any."""
+    """A warning for each assumption that rules out events which are possible without any assumption."""
     if not scenario.assumptions:
         return
     for search in (_by_states, _relaxed):
@@ -58,7 +58,7 @@ def _findings(scenario: Scenario, usual: _Deeds, kept: _Deeds, search: _Search) 
 
 
 def _words(scenario: Scenario, kept: _Deeds, lost: _Deeds) -> str:
-    """Which events never happen any more, and which agents can do none of theirs; "" where there are no such."""
+    """Which events are impossible, and which agents have no possible event left; "" where there are none."""
     gone = {event for _, event in lost} - {event for _, event in kept}
     idle = {agent for agent, _ in lost} - {agent for agent, _ in kept}
     events = [event.name for event in scenario.events if event.name in gone]
@@ -70,8 +70,8 @@ def _words(scenario: Scenario, kept: _Deeds, lost: _Deeds) -> str:
 
 
 def _possible(scenario: Scenario, assumed: Tuple[Assumption, ...], search: _Search) -> Optional[_Deeds]:
-    """All that agents can ever do where this is assumed, or more; None: that would take too long."""
-    network = translate(replace(scenario, safety=(), reach=(), assumptions=assumed))  # objectives keep nobody from it
+    """All edges that agents may ever take under the assumption, or more than these; None: too many to look at."""
+    network = translate(replace(scenario, safety=(), reach=(), assumptions=assumed))  # objectives forbid no move
     if sum(len(automaton.edges) for automaton in network.automata) > _MOST_EDGES:
         return None
     anywhere = network.automata[0].name, network.automata[0].initial  # a game has an objective

@@ -1,7 +1,8 @@
-"""Games in which the controller may do more, or the environment less: what is lost there is lost.
+"""Games that are easier for the controller than the real one: what is lost there is lost.
 
-A rule says when something may begin. Where only the controller begins it, and what is wanted does not hear of it, a
-game without the rule is no harder for the controller, and often much smaller: who does such things matters no more.
+The controller may do more, or the environment less. A rule, for example, says when something may begin. Where only the
+controller begins it, and the objective does not depend on it, a game without the rule is no harder for the controller,
+and often much smaller: agents that take part only because of the rule no longer matter.
 """
 
 from __future__ import annotations
@@ -24,8 +25,8 @@ Measured on large lab 7 and lab 21."""
 
 
 def without_turns(game: Network, watching: Collection[str]) -> Network:
-    """The network without the rules that name nothing that these automata hear of, and that only say when the
-    controller may begin something; the network itself where there are none."""
+    """The network without the rules that only restrict when the controller may begin something, and on which these
+    automata do not depend; the network itself where there are none."""
     heard = {channel for name in watching for channel in _channels(game.automaton(name))}
     rules = [each for each in game.automata if each.name not in watching and _is_rule(each)]
     testing: Dict[str, List[Tuple[Automaton, Edge]]] = {}
@@ -194,7 +195,7 @@ def _way(automaton: Automaton, to: Test) -> Tuple[Edge, ...]:
 
 
 def _is_rule(automaton: Automaton) -> bool:
-    """True if it only listens, tests nothing, and says in one variable where it is."""
+    """True if the automaton only receives, tests nothing, and has one variable that says where it is."""
     listens = all(edge.sync is not None and not edge.sync.sends for edge in automaton.edges)
     tests = any(edge.guard.integers or edge.guard.clocks for edge in automaton.edges)
     bounded = any(place.invariant for place in automaton.locations)
@@ -202,8 +203,8 @@ def _is_rule(automaton: Automaton) -> bool:
 
 
 def _binds_commands_alone(rule: Automaton, testing: Sequence[Tuple[Automaton, Edge]]) -> bool:
-    """True if its variable is tested, by these edges, where the controller begins something, and at the ends of that:
-    then it is always the turn of such an end, which has no more freedom without the rule."""
+    """True if the rule's variable is tested, by these edges, only where the controller begins something, and at the
+    ends of that, at which it is then always true: an end is no freer without the rule."""
     for automaton, edge in testing:
         if _is_command(edge):
             continue
@@ -216,7 +217,7 @@ def _binds_commands_alone(rule: Automaton, testing: Sequence[Tuple[Automaton, Ed
 
 
 def _is_followed(rule: Automaton, begin: Edge, ending: str, end: Edge) -> bool:
-    """True if the rule takes part in the begin, and is where the end has its turn from then on until it comes."""
+    """True if the rule takes part in the begin, and from then on stays where it allows the end."""
     if begin.sync is None:
         return False
     channel = begin.sync.channel

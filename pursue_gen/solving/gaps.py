@@ -1,4 +1,5 @@
-"""How long places wait on a tour, also those that its robot only passes; and tours on which some come more often."""
+"""How long places wait on a tour, those that the robot only passes included; tours that visit some places more
+often."""
 
 from __future__ import annotations
 
@@ -45,7 +46,7 @@ def tour_of(walker: Walker, patrol: Patrol, mine: Round) -> Optional[Tour]:
     back = walker.stops([places[-1], places[0]])
     if not back:
         return Tour(walker.automaton.name, tuple(stops), len(stops))
-    if places[0] == start:  # where it waits at first it does not in each round
+    if places[0] == start:  # the wait at the start is not repeated in each round
         return Tour(walker.automaton.name, (*stops, *back), 1)
     return Tour(walker.automaton.name, (*stops, *back[:-1]), len(walker.stops([start, places[0]])))
 

@@ -86,7 +86,7 @@ def avoided(bad: Sequence[Place], watchers: Sequence[Watcher]) -> Tuple[Place, .
 
 
 def _decisive(network: Network, game: Network) -> Iterator[str]:
-    """The variables that the game does not have, and whose tests cannot be left out."""
+    """The tests that cannot be left out, of variables that the game does not have: their variables."""
     for automaton in game.automata:
         if automaton.name != HIDDEN:
             whole, known = network.automaton(automaton.name), set(automaton.edges)

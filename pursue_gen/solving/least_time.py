@@ -155,7 +155,7 @@ class _LeastTimeSearch:
             if won:
                 self.high = at
             else:
-                floor = at + 1  # not lost for sure, if nobody knows; but what is larger is won sooner
+                floor = at + 1  # perhaps not decided: then nothing is lost for sure, but larger ones are decided sooner
                 self.low = self.low if won is None else floor
             leap = 2 * max(leap, self._unit) if self.high is None or near else self.high
 

@@ -113,7 +113,7 @@ def _won(game: Network, wanted: Objective, reaction: Fraction, budget: Budget, s
 
 
 def _games(game: Network, wanted: Objective) -> Sequence[Network]:
-    """Games that are no harder for the controller, those that are likely to be small first, and the game itself."""
+    """Games of these promises that are no harder for the controller, small ones first, then the game itself."""
     freer = without_turns(game, watched(wanted))
     found = []
     for some in (freer, game):
@@ -124,8 +124,8 @@ def _games(game: Network, wanted: Objective) -> Sequence[Network]:
 
 
 def only_promises(network: Network, objective: Objective, wanted: Objective) -> Network:
-    """The network without the automata of what else the objective asks for: these only watch, and time stops where
-    they are broken."""
+    """The network without the automata of other parts of the objective. These only watch, and stop time where they are
+    broken."""
     kept = {name for name, _ in (*wanted.goal, *wanted.bad)}
     others = {name for name, _ in (*objective.goal, *objective.bad)} - kept
     names = {each.name for each in network.automata if each.name not in others or not _only_watches(each)}

@@ -1,6 +1,8 @@
-"""Promises that only one robot can keep, and that it cannot keep together: their game is small, as no other robot is in
-it. With fewer promises the controller has less to do, so a loss of these is a loss of all. What several robots are to
-avoid, each of them has to avoid for its part."""
+"""Promises that only one robot can keep, and that it cannot keep together: a small game, without the other robots.
+
+With fewer promises the controller has less to do, so if these are lost, all are. What several robots are to avoid each
+of them has to avoid itself.
+"""
 
 from __future__ import annotations
 
@@ -114,7 +116,7 @@ def _able(network: Network, objective: Objective, place: Place) -> Tuple[str, ..
 
 
 def _game(network: Network, objective: Objective, wanted: Objective) -> Network:
-    """The game of these promises, in which nobody asks for anything else, and turns of other things are no matter."""
+    """The game of these promises, in which agents ask for nothing else, and rules about other things are left out."""
     game = only_promises(network, objective, wanted)
     watching = watched(wanted)
     return cone_of_influence(without_turns(asking_only(game, watching), watching), wanted)

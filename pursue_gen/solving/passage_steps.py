@@ -168,15 +168,14 @@ class _Blocks:
         return named
 
     def _changed_between(self, one: int, other: int) -> Set[str]:
-        """An automaton or a variable that is otherwise before the second step, by what the sender has done; nothing
-        where there is none."""
+        """An automaton or a variable that the sender changes between the two steps; nothing where there is none."""
         sender, before, after = self._steps[one].sender, self._steps[one].before, self._steps[other].before
         own = (step for step in self._steps[one:other] if step.sender == sender)
         concerned = (name for step in own for name in step.concerned if name not in self._passages)
         return set(next(([name] for name in concerned if name != sender and before[name] != after[name]), ()))
 
     def _held(self, step: Step) -> List[str]:
-        """The orders of passage that say for which visit its sender is where it is."""
+        """The orders of passage that tell which visit it is that the sender makes where it is."""
         return [each.name for each in self._at.get(step.edge.source, ()) if step.sender in each.robots]
 
     def _state(self, named: Iterable[str], values: Mapping[str, Value]) -> DiscreteState:

@@ -1,9 +1,10 @@
-"""Robots that must never be at one place, and have to be at several to reach the goal: orders of passage.
+"""Robots that must never be at one place together, and have to be at several places to reach the goal: orders of
+passage.
 
-In rounds: what has to be done next, and where, comes from a relaxed plan (`synthesis.relaxed`), as if nobody
-was in anybody's way; `routes` brings the robots there. What comes out is one play. The strategy that does the same in
-each play (`passage_steps`) lets robots that do not meet move at the same time. Where it is proven it wins; where
-nothing is found, nothing is known.
+It works in rounds: a relaxed plan (`synthesis.relaxed`) that ignores who is in whose way says what has to be done next,
+and where; `routes` brings the robots there. The result is one play. `passage_steps` makes a strategy that does the same
+in each play, and lets robots that do not meet move at the same time. Where it is proven it wins; where none is found,
+nothing is known.
 """
 
 from __future__ import annotations
@@ -136,7 +137,7 @@ class _Rounds:
             if all(self._play.now[name] == place for name, place in self._goal):
                 return self._commands
             deeds = self._deeds()
-            # All at once, or where that is too much one after the other: who is done may make way.
+            # All at once; where no moves are found, one after the other: a robot that is done may make way.
             some = [deeds, *({name: edge} for name, edge in deeds.items() if len(deeds) > 1)]
             if not any(self._do(each) for each in some):
                 return None
@@ -177,7 +178,7 @@ class _Rounds:
         return found
 
     def _is_heard(self, edge: Edge, plan: Sequence[Tuple[str, Edge]]) -> bool:
-        """False for an event that the plan needs because somebody receives it, or its end, who is not there yet."""
+        """False for an event if its receivers in the plan, or those of its end, are not there yet."""
         ends = [e.sync for e in self._ends.get(edge.target, ()) if e.sync is not None]
         channels = {sync.channel for sync in (edge.sync, *ends) if sync is not None}
         receiving = [(n, e) for n, e in plan if e.sync is not None and not e.sync.sends and e.sync.channel in channels]

@@ -95,7 +95,7 @@ def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAU
         if won:
             high, known = probe, True
         else:
-            floor = probe + 1  # not lost for sure, if nobody knows; but what is longer is won sooner
+            floor = probe + 1  # perhaps not decided: then nothing is lost for sure, but longer ones are decided sooner
             low = low if won is None else floor
         probe = (floor + high) // 2 if known else min(2 * probe, high)
     return with_period(scenario, high, low)

@@ -1,9 +1,9 @@
-"""Robots that others need where they are: what they cannot begin without leaving duties that nobody else covers.
+"""Robots that have to stay near their duties: what they cannot begin without leaving duties that no other robot covers.
 
-A person goes to a place and stays there, or all stay where they are. Where the duties of that (see `duties`) cannot all
-be covered while a robot does something, nobody who is to win begins that, and a game in which it is not begun is no
-harder. Nor does another robot begin what must not be where a robot is that cannot leave its place. What is left for
-some robot alone is then lost as in `one_robot`.
+A person goes to a place and stays there, or all stay where they are. Where the duties that follow (see `duties`) cannot
+all be covered while a robot does something, no winning strategy begins that, so a game in which it cannot be begun is
+no harder. Nor does another robot begin what must not happen where a robot is that cannot leave its place. What is left
+is lost for some robot alone, as in `one_robot`.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ _Pins = Dict[Tuple[str, Edge], Tuple[Duty, ...]]
 def lost_to_pins(
     network: Network, objective: Objective, reaction: Fraction, options: SolveOptions, work: Sequence[int]
 ) -> Tuple[Objective, ...]:
-    """Promises, places to be avoided, that are lost as robots have to stay near others; () where so much work for all
-    games of one robot, and for one of them, finds none."""
+    """Promises, places to be avoided, that are lost because robots have to stay near their duties; () where none are
+    found with so much work for all games of one robot, and for one of them."""
     robots = commanded_agents(network)
     ends = (edge for name in robots for edge in network.automaton(name).edges if edge.is_end)
     if objective.reaches or any(edge.controllable for edge in ends):
@@ -66,8 +66,8 @@ def lost_to_pins(
 
 
 def _game(network: Network, standing: Standing, stay: Optional[Edge], pins: AbstractSet[Tuple[str, Edge]]) -> Network:
-    """The network in which nobody whom nobody controls walks, and robots do not begin what they cannot; where somebody
-    has come to stay there are no turns of rules, either, as nobody knows whose turn it is then."""
+    """The network in which people do not walk and robots do not begin what they cannot. Where somebody has come to
+    stay, rules are left out, too: nobody knows whose turn it is then."""
     automata = []
     for each in network.automata:
         edges = tuple(edge for edge in each.edges if (each.name, edge) not in pins)
@@ -128,7 +128,7 @@ def _pins(network: Network, duties: Sequence[Duty], everywhere: Dict[str, List[s
 def _kept_away(
     network: Network, objective: Objective, duties: Sequence[Duty], everywhere: Dict[str, List[str]]
 ) -> _Pins:
-    """What robots cannot begin as it must not be where another one begins, which can never leave."""
+    """What robots cannot begin because it must not happen while another one is where it can never leave."""
     channels = frozenset(channel for duty in duties for channel in duty.ends)
     found: _Pins = {}
     for robot, duty in product(everywhere, duties):
@@ -144,7 +144,7 @@ def _kept_away(
 
 
 def _is_left(duty: Duty, robot: Automaton, begin: Edge) -> bool:
-    """True if a robot that begins something neither sees to the duty by that nor covers it meanwhile."""
+    """True if a robot that begins this neither meets the duty by it nor covers the duty meanwhile."""
     return duty.ends.isdisjoint(_ended(robot, begin)) and not duty.covered_from(robot.name, begin.target)
 
 
@@ -186,7 +186,7 @@ def _is_taken(edge: Edge, known: Mapping[str, AbstractSet[int]]) -> bool:
 
 
 def _fewest(duties: Sequence[Duty], robots: Dict[str, List[str]]) -> Tuple[Duty, ...]:
-    """Some of the duties that cannot all be covered either, none of which can be left out."""
+    """Some of these duties that cannot all be covered either; without any one of them the others could."""
     left = tuple(duties)
     for duty in duties:
         fewer = tuple(each for each in left if each is not duty)

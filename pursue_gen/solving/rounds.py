@@ -288,7 +288,8 @@ class _RoundsSearch:
         return some
 
     def _given_away(self, some: Sequence[Round], costs: Sequence[RoundCost], worst: int) -> Optional[Dict[int, Round]]:
-        """The change of two rounds that makes the longer of them shortest, if it is shorter than now."""
+        """The change that gives visits of the worst round away so that the longer of two rounds is shortest, if one
+        helps."""
         best: Tuple[RoundCost, Optional[Dict[int, Round]]] = (costs[worst], None)
         mine = some[worst]
         for at, end in ((at, at + size) for size in _GIVEN for at in range(len(mine) + 1 - size)):

@@ -1,9 +1,10 @@
-"""Quick strategies in the order of time: with all moves, what is nearer to the goal in time is won first.
+"""Quick strategies in the order of time: with all moves allowed, positions are won in the order of their time to the
+goal.
 
-The game without a reaction delay is solved so, which is little work. Its strategy says which moves are needed, and how
-soon the goal may come; with those moves alone the game with the delay is small as well, and with some delay to spare it
-is tried first. In the order of time robots do more at the same time, so that strategies have more cases. So a game with
-a deadline a little later is tried before, which begins with few moves and may have a smaller strategy.
+First the game without a reaction delay is solved so, which is little work. Its strategy says which moves are needed,
+and how soon the goal may be reached. With those moves alone the game with the delay is small as well; it is tried first
+with twice the delay. Strategies in the order of time do more at the same time, and so have more cases. Therefore a game
+with a slightly later deadline is tried before, which begins with few moves and may have a smaller strategy.
 """
 
 from __future__ import annotations

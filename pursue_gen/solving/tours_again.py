@@ -163,8 +163,8 @@ def _stop(network: Network, walker: Optional[Walker], tour: Tour) -> Optional[in
 def _stays(
     network: Network, patrol: Patrol, some: _Round, reaction: Fraction, now: Now
 ) -> Optional[Mapping[int, Fraction]]:
-    """How much longer than it has to the robot stays at the stop where it has been everywhere; None where it comes too
-    late to a place even if it stays nowhere."""
+    """How much longer than it has to the robot stays at the stop after which it has been everywhere; None where it is
+    too late for a place even if it never stays longer."""
     tour, places = some.tour, [duty.visits[some.tour.robot][0] for duty in some.duties]
     everywhere = max(tour.stops.index(place) for place in places)
     course, again = _course(network, some, patrol.late, now), list(onward(some.walker, tour, tour.again, patrol.late))

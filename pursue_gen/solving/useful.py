@@ -1,4 +1,4 @@
-"""What some agents can do towards a promise: the moves that may change what it watches, and what these need."""
+"""Which moves of some agents may help a promise: those that may change what it watches, and what these need."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ from pursue_gen.tga.network import Automaton, Edge, Network
 
 def useful(network: Network, team: AbstractSet[str], places: Iterable[Place]) -> Set[Tuple[str, Edge]]:
     """The edges of these agents that may matter for whether the places are reached, each with its agent's name, and all
-    of the automata that are no agents. Whoever leaves out the others may miss a win, but plays by the rules."""
+    edges of automata that are no agents.
+
+    Leaving out the other edges can miss a win, but what it finds is a strategy of the real game.
+    """
     watching = {name for name, _ in places}
     others = [a for a in network.automata if not is_agent(a)]
     search = _UseSearch([a for a in network.automata if a.name in team], others)

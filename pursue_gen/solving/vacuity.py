@@ -20,7 +20,7 @@ _WORK = 3_000_000
 
 
 def check_assumed_alone(scenario: Scenario) -> Iterator[Diagnostic]:
-    """A warning for each objective that holds with idle robots because of what is assumed, and not without that."""
+    """A warning for each objective that idle robots keep under the assumptions, and not without them."""
     if not scenario.assumptions:
         return
     budget = Budget(Limits(work=_WORK, memory=careful_memory()))

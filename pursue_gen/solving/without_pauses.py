@@ -1,9 +1,9 @@
-"""Games against an environment that takes no pauses: where agents may call at any time, they are far smaller.
+"""Games without the pauses of the environment: where agents may call at any time, games are far smaller.
 
-Whoever may call again a time unit after his last call has a clock that only keeps him from calling (`tga.pauses`). A
-strategy may win without relying on it: it is solved and proven for agents that call as often as they like. A call that
-changes nothing then is no move, and makes no command stale. Where that does not win, nothing is known. The other way
-round, what the environment wins with a single call of each agent is lost.
+An agent that pauses a time unit after each call has a clock that only keeps it from calling (`tga.pauses`). A strategy
+may win without relying on it: it is solved and proven for agents that call as often as they like. There a call that
+changes nothing is no move, and makes no command stale. Where that game is not won, nothing is known. Conversely, what
+the environment wins with a single call of each agent is lost.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def won_without_pauses(
 
 
 def lost_to_few_calls(game: Network, objective: Objective, reaction: Fraction, options: SolveOptions) -> bool:
-    """True if the environment wins already where each agent that rests calls once at most; False: nothing is known."""
+    """True if the environment wins even if each agent with pauses calls once at most; False: nothing is known."""
     if not pauses(game):
         return False
     verdict = verdict_with(acting_at_most(game, objective, 1), objective, reaction, _FEW, options)

@@ -1,4 +1,4 @@
-"""Limits on time and memory that end whatever is done, also where nothing is searched and so nobody checks them."""
+"""Limits on time and memory that end any work, also work that does not check them itself."""
 
 from __future__ import annotations
 

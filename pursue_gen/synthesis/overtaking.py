@@ -115,7 +115,7 @@ def shortened(pieces: Sequence[Piece], ranks: Sequence[int], late: int) -> List[
 def _next(
     pieces: Sequence[Piece], ranks: Sequence[int], zone: Dbm, rank: int, late: int
 ) -> Tuple[Federation, Federation]:
-    """The other zones that time may reach from this one within a flight: those that rank no higher, and the others."""
+    """The other zones that time may reach before a command takes effect: those with no higher rank, and the others."""
     soon = zone.up_within(late)
     near: List[Dbm] = []
     higher: List[Dbm] = []

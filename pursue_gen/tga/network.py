@@ -144,8 +144,8 @@ class Location:
 class Automaton:
     """One automaton (an agent, a rule, the states or an objective).
 
-    `home` is where it is when nothing has begun, "" for the initial location: a network may start in the middle of a
-    play, and searches like to know. It changes no verdict.
+    `home` is its location before anything has begun, "" for the initial one: a network may start in the middle of a
+    play. It only guides searches, and changes no verdict.
     """
 
     name: str
