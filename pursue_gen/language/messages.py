@@ -38,32 +38,23 @@ FORMS: Dict[str, str] = {
 
 STATEMENTS = frozenset(FORMS) | {"TAIL"}
 
-_ASSUMED = {word.upper(): word for kind in ASSUMPTIONS.values() for word in kind.meanings}
+_ASSUMED = " ".join(word for kind in ASSUMPTIONS.values() for word in kind.meanings)
+_WORDS = f"""
+poi connect event rule state stateDependency agent objective reach_objective travel from to takes and distance one_way
+location duration at_most times collaborative together for each patrol in order every by label before or initially true
+false true_if false_if only_if is_true is_false human controllable mobile can_do reacts_to if then within avoid
+never_with do after assume {_ASSUMED} at not always on_way doing any no robot optional battery capacity uses per unit
+recharges radius tolerance inflation
+"""
+_NAMES = f"""
+human together one_way travel to takes at_most times at {_ASSUMED} on_way doing any no robot always each patrol order
+every by optional label battery capacity uses per unit recharges radius tolerance inflation
+"""
 
-KEYWORDS: Dict[str, str] = {
-    "POI": "poi", "CONNECT": "connect", "EVENT": "event", "RULE": "rule", "STATE": "state",
-    "STATEDEPENDENCY": "stateDependency", "AGENT": "agent", "OBJECTIVE": "objective",
-    "REACH_OBJECTIVE": "reach_objective", "TRAVEL": "travel", "FROM": "from", "TO": "to", "TAKES": "takes",
-    "AND": "and", "DISTANCE": "distance", "ONE_WAY": "one_way", "LOCATION": "location", "DURATION": "duration",
-    "AT_MOST": "at_most", "TIMES": "times", "COLLABORATIVE": "collaborative", "TOGETHER": "together", "FOR": "for",
-    "EACH": "each", "PATROL": "patrol", "IN": "in", "ORDER": "order", "EVERY": "every", "BY": "by", "LABEL": "label",
-    "BEFORE": "before", "OR": "or",
-    "INITIALLY": "initially", "TRUE": "true", "FALSE": "false", "TRUE_IF": "true_if", "FALSE_IF": "false_if",
-    "ONLY_IF": "only_if", "IS_TRUE": "is_true", "IS_FALSE": "is_false", "HUMAN": "human",
-    "CONTROLLABLE": "controllable", "MOBILE": "mobile", "CAN_DO": "can_do", "REACTS_TO": "reacts_to", "IF": "if",
-    "THEN": "then", "WITHIN": "within", "AVOID": "avoid", "NEVER_WITH": "never_with", "DO": "do", "AFTER": "after",
-    "ASSUME": "assume", **_ASSUMED, "AT": "at", "NOT": "not", "ALWAYS": "always", "ON_WAY": "on_way", "DOING": "doing",
-    "ANY": "any", "NO": "no", "ROBOT": "robot", "OPTIONAL": "optional", "BATTERY": "battery", "CAPACITY": "capacity",
-    "USES": "uses", "PER": "per", "UNIT": "unit", "RECHARGES": "recharges", "RADIUS": "radius",
-    "TOLERANCE": "tolerance", "INFLATION": "inflation",
-}  # fmt: skip
+KEYWORDS: Dict[str, str] = {word.upper(): word for word in _WORDS.split()}
 """The words of the language, by token."""
 
-_NAMES = """
-HUMAN TOGETHER ONE_WAY TRAVEL TO TAKES AT_MOST TIMES AT ON_WAY DOING ANY NO ROBOT ALWAYS EACH PATROL ORDER EVERY BY
-OPTIONAL LABEL BATTERY CAPACITY USES PER UNIT RECHARGES RADIUS TOLERANCE INFLATION
-"""
-MAY_BE_NAMES: Dict[str, str] = {token: KEYWORDS[token] for token in (*_NAMES.split(), *_ASSUMED)}
+MAY_BE_NAMES: Dict[str, str] = {word.upper(): word for word in _NAMES.split()}
 """Those of them that scenarios may use as names, by token: `human` is an agent of published scenarios, and the others
 are younger than many scenarios."""
 
