@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import AbstractSet, Callable, Iterator, Optional, Set, Tuple
+from functools import partial
+from operator import attrgetter
+from typing import AbstractSet, Any, Callable, Iterator, Optional, Set, Tuple
 
 from pursue_gen.language.conditions import condition_text, names_in
 from pursue_gen.language.scenario import (
@@ -32,18 +34,21 @@ class Part:
 def without_each(scenario: Scenario, objectives: bool = True) -> Iterator[Tuple[Part, Scenario]]:
     """The parts that the scenario can do without, and the scenario without each of them alone; `objectives`: these
     are among them."""
-    found = [Part(agent.name, _agent(agent.name)) for agent in scenario.agents]
-    found += [Part(f"rule {rule.name}", _rule(rule.name)) for rule in scenario.rules]
-    found += [Part(f"at_most of {event.name}", _limit(event.name)) for event in scenario.events if event.at_most]
-    found += [Part(f"the battery of {one.agent.name}", _battery(one.agent.name)) for one in scenario.batteries]
+    found = [Part(agent.name, partial(without_agent, name=agent.name)) for agent in scenario.agents]
+    found += [Part(f"rule {rule.name}", _smaller("rules", rule, "name")) for rule in scenario.rules]
+    limited = (event for event in scenario.events if event.at_most)
+    found += [Part(f"at_most of {event.name}", _smaller("events", event, "name", "at_most")) for event in limited]
+    for one in scenario.batteries:
+        found.append(Part(f"the battery of {one.agent.name}", _smaller("batteries", one, "agent.name")))
     for need in scenario.dependencies:
         value = "true" if need.value else "false"
         name = f"stateDependency {need.event.name} only_if {need.state.name} is_{value}"
-        found.append(Part(name, _dependency(need.event.name, need.state.name)))
+        found.append(Part(name, _smaller("dependencies", need, "event.name state.name")))
     found += [Part(f"only_if {text} on {what}", left_out) for what, text, left_out in without_conditions(scenario)]
     if objectives and len(scenario.statements) > 1:
         for first, *_ in scenario.statements:
-            found.append(Part(f"{first.word} {first.text}{first.words.behind}", _without(first)))
+            name = f"{first.word} {first.text}{first.words.behind}"
+            found.append(Part(name, partial(without_objective, objective=first)))
     for part in found:
         smaller = part.left_out(scenario)
         if smaller is not None:
@@ -89,48 +94,26 @@ def _names(assumption: Assumption, agent: str, gone: AbstractSet[str]) -> bool:
 
 def without_conditions(scenario: Scenario) -> Iterator[Tuple[str, str, Callable[[Scenario], Scenario]]]:
     """For each event or way with `only_if` its name, the condition as a text, and what makes a scenario without it."""
-
-    def free_event(name: str) -> Callable[[Scenario], Scenario]:
-        return lambda whole: replace(
-            whole, events=tuple(replace(e, only_if=None) if e.name == name else e for e in whole.events)
-        )
-
-    def free_way(a: str, b: str) -> Callable[[Scenario], Scenario]:
-        return lambda whole: replace(
-            whole,
-            connections=tuple(replace(c, only_if=None) if (c.a, c.b) == (a, b) else c for c in whole.connections),
-        )
-
     for way in scenario.connections:
         if way.only_if is not None:
-            yield f"the way between {way.a} and {way.b}", condition_text(way.only_if), free_way(way.a, way.b)
+            free = _smaller("connections", way, "a b", "only_if")
+            yield f"the way between {way.a} and {way.b}", condition_text(way.only_if), free
     for event in scenario.events:
         if event.only_if is not None:
-            yield event.name, condition_text(event.only_if), free_event(event.name)
+            yield event.name, condition_text(event.only_if), _smaller("events", event, "name", "only_if")
 
 
-def _agent(name: str) -> Callable[[Scenario], Optional[Scenario]]:
-    return lambda whole: without_agent(whole, name)
+def _smaller(kind: str, part: object, keys: str, field: str = "") -> Callable[[Scenario], Scenario]:
+    """What leaves out the part of this kind that is the same in these keys; with `field` that field of it alone."""
 
+    def smaller(whole: Scenario) -> Scenario:
+        key = attrgetter(*keys.split())
+        parts = [(each, key(each) == key(part)) for each in getattr(whole, kind)]
+        kept = [replace(each, **{field: None}) if same else each for each, same in parts if field or not same]
+        changed: Any = {kind: tuple(kept)}
+        return replace(whole, **changed)
 
-def _rule(name: str) -> Callable[[Scenario], Scenario]:
-    return lambda whole: replace(whole, rules=tuple(rule for rule in whole.rules if rule.name != name))
-
-
-def _battery(name: str) -> Callable[[Scenario], Scenario]:
-    return lambda whole: replace(whole, batteries=tuple(b for b in whole.batteries if b.agent.name != name))
-
-
-def _limit(name: str) -> Callable[[Scenario], Scenario]:
-    return lambda whole: replace(
-        whole, events=tuple(replace(e, at_most=None) if e.name == name else e for e in whole.events)
-    )
-
-
-def _dependency(event: str, state: str) -> Callable[[Scenario], Scenario]:
-    return lambda whole: replace(
-        whole, dependencies=tuple(d for d in whole.dependencies if (d.event.name, d.state.name) != (event, state))
-    )
+    return smaller
 
 
 def without_objective(scenario: Scenario, objective: StatedObjective) -> Optional[Scenario]:
@@ -140,10 +123,6 @@ def without_objective(scenario: Scenario, objective: StatedObjective) -> Optiona
     if all(other.optional for other in kept):
         return None
     return scenario.with_each(lambda each: each if each in kept else None)
-
-
-def _without(objective: StatedObjective) -> Callable[[Scenario], Optional[Scenario]]:
-    return lambda scenario: without_objective(scenario, objective)
 
 
 def _events(scenario: Scenario, agents: Tuple[Agent, ...]) -> Set[str]:

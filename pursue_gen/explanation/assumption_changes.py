@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Iterator, Sequence
 
-from pursue_gen.explanation.number_changes import NumberChange
+from pursue_gen.explanation.number_changes import Repair
 from pursue_gen.language.assumption_checks import setting_of
 from pursue_gen.language.assumptions import KINDS, Assumption
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Scenario
 
 
-def assumption_changes(scenario: Scenario, longest: Number) -> Iterator[NumberChange]:
+def assumption_changes(scenario: Scenario, longest: Number) -> Iterator[Repair]:
     """Assumptions with another number, and those that may be missing; times are up to `longest` time units."""
     for known in scenario.assumptions:
         if known.stronger(longest):
@@ -26,10 +26,10 @@ def assumption_changes(scenario: Scenario, longest: Number) -> Iterator[NumberCh
 
 def _change(
     scenario: Scenario, one: Assumption, values: Sequence[int], label: str, before: Number = 0, instead: str = ""
-) -> NumberChange:
+) -> Repair:
     """One of these numbers in an assumption of the scenario."""
     agent = next(ref.name for kind, ref in one.names() if kind == "agent")
-    return NumberChange(
+    return Repair(
         "assumption", agent, label, before, values, lambda k: scenario.with_instead(one, one.with_number(k)),
         lambda k: f"{one.with_number(k).text}{instead}", one.span,
     )  # fmt: skip

@@ -12,7 +12,8 @@ from fractions import Fraction
 from typing import Dict, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
-from pursue_gen.explanation.repairs import Knob, Variant, knobs
+from pursue_gen.explanation.number_changes import Repair
+from pursue_gen.explanation.repairs import repairs
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
@@ -72,25 +73,25 @@ class Findings:
 
 def findings(scenario: Scenario, rules: Rules, budget: Budget) -> Findings:
     """Tries all that is small, for a scenario that is lost under these rules, within the budget."""
-    tried = list(knobs(scenario, rules))
+    tried = list(repairs(scenario, rules))
     won: Dict[int, _Win] = {}
     lost: Dict[int, str] = {}
     undecided: Dict[int, str] = {}
     # What says most comes first. Long lists come last: they make numbers larger, and larger games.
     for k in sorted(range(len(tried)), key=lambda k: (_turn(tried[k]), len(tried[k].values) > _PROBES[0], k)):
-        knob = tried[k]
-        if knob.what in _IN_IDEAL and any(tried[n].what == "game" for n in lost):
-            lost[k] = knob.say(knob.values[-1])  # the ideal game is easier still
+        repair = tried[k]
+        if repair.what in _IN_IDEAL and any(tried[n].what == "game" for n in lost):
+            lost[k] = repair.say(repair.values[-1])  # the ideal game is easier still
             continue
         try:
-            win = _least(knob, budget)
+            win = _least(repair, scenario, rules, budget)
         except LimitHit:
-            undecided[k] = knob.label
+            undecided[k] = repair.label
             continue
         except PursueError:  # no scenario has that value
             continue
         if win is None:
-            lost[k] = knob.say(knob.values[-1])
+            lost[k] = repair.say(repair.values[-1])
         else:
             won[k] = win
     if any(tried[k].what in _IN_IDEAL for k in won):
@@ -105,9 +106,9 @@ def findings(scenario: Scenario, rules: Rules, budget: Budget) -> Findings:
     )
 
 
-def _turn(knob: Knob) -> int:
+def _turn(repair: Repair) -> int:
     """What is tried before what: who prevents it, then which deadline would do, then how it is played."""
-    return next((turn for turn, some in enumerate(_TURNS) if knob.what in some), len(_TURNS))
+    return next((turn for turn, some in enumerate(_TURNS) if repair.what in some), len(_TURNS))
 
 
 @dataclass(frozen=True)
@@ -119,16 +120,21 @@ class _Win:
     strategy: Strategy
 
 
-def _least(knob: Knob, budget: Budget) -> Optional[_Win]:
+def _least(repair: Repair, scenario: Scenario, rules: Rules, budget: Budget) -> Optional[_Win]:
     """The smallest change that wins, between two that have been tried; None: the largest does not.
 
     At the limits, the smallest that is known. Raises LimitHit when none is.
     """
-    last = len(knob.values) - 1
+
+    def strategy_of(k: int) -> Optional[Strategy]:
+        changed = repair.make(repair.values[k])
+        return _strategy(*((changed, rules) if isinstance(changed, Scenario) else (scenario, changed)), budget)
+
+    last = len(repair.values) - 1
     win: Optional[_Win] = None
     low = -1
     for probe in [p for p in _PROBES if p < last] + [last] if last >= _PROBES[0] else [last]:
-        strategy = _strategy(knob.make(knob.values[probe]), budget)
+        strategy = strategy_of(probe)
         if strategy is not None:
             win = _Win(low, probe, strategy)
             break
@@ -139,7 +145,7 @@ def _least(knob: Knob, budget: Budget) -> Optional[_Win]:
 
     def wins(k: int) -> Optional[bool]:
         with suppress(LimitHit):
-            strategy = _strategy(knob.make(knob.values[k]), budget)
+            strategy = strategy_of(k)
             known.update({} if strategy is None else {k: strategy})
             return strategy is not None
         return None
@@ -148,10 +154,10 @@ def _least(knob: Knob, budget: Budget) -> Optional[_Win]:
     return _Win(low, high, known[high])
 
 
-def _change(knob: Knob, win: _Win) -> Change:
-    value, next_lost = knob.values[win.high], knob.values[win.low] if win.low >= 0 else knob.before
-    least = win.high - win.low == 1
-    return Change(knob.what, knob.name, knob.before, value, knob.say(value), knob.span, next_lost, least)
+def _change(repair: Repair, win: _Win) -> Change:
+    value, next_lost = repair.values[win.high], repair.values[win.low] if win.low >= 0 else repair.before
+    texts, least = (str(repair.before), str(value), repair.say(value)), win.high - win.low == 1
+    return Change(repair.what, repair.name, *texts, repair.span, str(next_lost), least)
 
 
 def _price(change: Change) -> Tuple[int, Fraction]:
@@ -165,8 +171,7 @@ def _price(change: Change) -> Tuple[int, Fraction]:
     return (0, large / small) if small else (1, large)
 
 
-def _strategy(variant: Variant, budget: Budget) -> Optional[Strategy]:
+def _strategy(scenario: Scenario, rules: Rules, budget: Budget) -> Optional[Strategy]:
     """A strategy that wins the changed game, None where it is lost. Raises LimitHit."""
-    scenario, rules = variant
     network = played(translate(scenario), rules)
     return verdict_of(budget, network, scenario_objective(scenario), rules.reaction, _SHARE).strategy

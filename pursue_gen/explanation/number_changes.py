@@ -4,36 +4,39 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import ceil, floor
-from typing import Callable, Iterator, Sequence
+from typing import Any, Callable, Iterator, Optional, Sequence, Union
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.checks import MOST_TIMES
 from pursue_gen.language.numbers import Number, whole_above, whole_below
 from pursue_gen.language.scenario import Battery, Event, Scenario, Travel
+from pursue_gen.solving.rules import Rules
 
 SLOWER = 32
 """How many times slower an agent, or longer an event, is tried. Not measured."""
 
 
 @dataclass(frozen=True)
-class NumberChange:
-    """A number that may be another one of `values`, the smallest change first; times are in time units.
+class Repair:
+    """Something that can be changed, by the steps `values` from the smallest change to the largest: numbers (times in
+    time units), or texts, "" for what is on or off.
 
-    `make` is the scenario with that value, `say` describes it. `what` is latest, earliest, travel,
-    capacity, recharges or times.
+    `what` as in `changes.Change`. `make` is the scenario, or the rules, with that value; `say` describes it.
     """
 
     what: str
     name: str
     label: str
-    before: Number
-    values: Sequence[int]
-    make: Callable[[int], Scenario]
-    say: Callable[[int], str]
-    span: Span
+    before: object
+    values: Sequence[Any]
+    make: Callable[[Any], Union[Scenario, Rules]]
+    say: Callable[[Any], str]
+    span: Optional[Span] = None
+    helps: int = 2
+    """How well a strategy that wins the changed game serves in the game as it is; 0: not at all."""
 
 
-def event_changes(scenario: Scenario, event: Event) -> Iterator[NumberChange]:
+def event_changes(scenario: Scenario, event: Event) -> Iterator[Repair]:
     """An event that ends earlier at the latest; one of the environment that ends later at the earliest."""
     if event.window is None:
         return
@@ -47,18 +50,18 @@ def event_changes(scenario: Scenario, event: Event) -> Iterator[NumberChange]:
 
     doers = [agent for agent in scenario.agents if any(ref.name == name for ref in agent.can_do)]
     if high - low > 1:
-        yield NumberChange(
+        yield Repair(
             "latest", name, f"a {shown} that ends earlier", high, whole_below(high, floor(low) + 1),
             lambda k: make(low, k), lambda k: say(low, k), span,
         )  # fmt: skip
     if high - low > 1 and doers and not any(agent.controllable for agent in doers):
-        yield NumberChange(
+        yield Repair(
             "earliest", name, f"a {shown} that ends later", low, whole_above(low, ceil(high) - 1),
             lambda k: make(k, high), lambda k: say(k, high), span,
         )  # fmt: skip
 
 
-def travel_changes(scenario: Scenario, travel: Travel) -> Iterator[NumberChange]:
+def travel_changes(scenario: Scenario, travel: Travel) -> Iterator[Repair]:
     """A way that an agent takes in less time; one that is not controllable: in more."""
     low, high = travel.window
     name, who, span = travel.agent.name, travel.agent.shown, travel.span
@@ -72,42 +75,42 @@ def travel_changes(scenario: Scenario, travel: Travel) -> Iterator[NumberChange]
 
     if any(agent.controllable for agent in scenario.agents if agent.name == name):
         if high > 1:
-            yield NumberChange(
+            yield Repair(
                 "travel", name, f"{who} going faster from {a} to {b}", high, whole_below(high, 1),
                 lambda k: make(min(low, k - 1), k), lambda k: say(min(low, k - 1), k), span,
             )  # fmt: skip
     else:
-        yield NumberChange(
+        yield Repair(
             "travel", name, f"{who} going slower from {a} to {b}", low, whole_above(low, SLOWER * max(low, 1)),
             lambda k: make(k, max(high, k + 1)), lambda k: say(k, max(high, k + 1)), span,
         )  # fmt: skip
 
 
-def battery_changes(scenario: Scenario, battery: Battery) -> Iterator[NumberChange]:
+def battery_changes(scenario: Scenario, battery: Battery) -> Iterator[Repair]:
     """A battery that holds more, or that is recharged faster."""
     name, before, span = battery.agent.name, battery.capacity, battery.span
 
-    yield NumberChange(
+    yield Repair(
         "capacity", name, f"a larger battery of {name}", before, range(before + 1, 3 * before + 1),
         lambda k: scenario.with_instead(battery, replace(battery, capacity=k)),
         lambda k: f"a battery of {name} with capacity {k} instead of {before}", span,
     )  # fmt: skip
     if battery.dock is not None:
         rate = battery.recharges
-        yield NumberChange(
+        yield Repair(
             "recharges", name, f"a battery of {name} that is recharged faster", rate, whole_above(rate, 4 * rate + 1),
             lambda k: scenario.with_instead(battery, replace(battery, recharges=k)),
             lambda k: f"a battery of {name} that recharges {k} instead of {rate} per unit", span,
         )  # fmt: skip
 
 
-def count_changes(scenario: Scenario, event: Event, most: int) -> Iterator[NumberChange]:
+def count_changes(scenario: Scenario, event: Event, most: int) -> Iterator[Repair]:
     """An event that can happen more often where robots do it, less often where the environment does."""
     doers = [agent for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
     ours = any(agent.controllable for agent in doers)
     values = range(most + 1, min(2 * most + 2, MOST_TIMES) + 1) if ours else range(most - 1, 0, -1)
     if values:
-        yield NumberChange(
+        yield Repair(
             "times", event.name, f"{event.shown} {'more' if ours else 'less'} often", most, values,
             lambda k: scenario.with_instead(event, replace(event, at_most=k)),
             lambda k: f"{event.shown} at_most {k} times instead of {most}", event.span,

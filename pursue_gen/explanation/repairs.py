@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
-from typing import Callable, Iterable, Iterator, Optional, Sequence, Tuple
+from typing import Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import Span, listed
 from pursue_gen.explanation.ablations import without_conditions
 from pursue_gen.explanation.assumption_changes import assumption_changes
 from pursue_gen.explanation.number_changes import (
     SLOWER,
-    NumberChange,
+    Repair,
     battery_changes,
     count_changes,
     event_changes,
@@ -25,160 +25,129 @@ from pursue_gen.tga.counts import counted
 _FINEST = 1000
 """The largest denominator of a reaction that the command line takes."""
 
-Variant = Tuple[Scenario, Rules]
 
-
-@dataclass(frozen=True)
-class Knob:
-    """Something that can be changed, by the steps `values`: texts from the smallest change to the largest."""
-
-    what: str
-    name: str
-    label: str
-    before: str
-    values: Sequence[str]
-    make: Callable[[str], Variant]
-    say: Callable[[str], str]
-    span: Optional[Span] = None
-    helps: int = 0
-    """How well a strategy that wins the changed game serves in the game as it is; 0: not at all."""
-
-
-def knobs(scenario: Scenario, rules: Rules) -> Iterator[Knob]:
+def repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
     """All that can be changed, in the order in which they are worth knowing (and the quick ones first)."""
-    yield from _rules_knobs(scenario, rules)
-    yield from _objective_knobs(scenario, rules)
+    yield from _of_rules(scenario, rules)
+    yield from _of_objectives(scenario)
     for agent in scenario.agents:
-        yield from _agent_knobs(scenario, rules, agent)
+        yield from _of_agent(scenario, agent)
     for event in scenario.events:
-        yield from _duration_knobs(scenario, rules, event)
+        yield from _of_duration(scenario, event)
     for connection in scenario.connections:
-        yield from _distance_knobs(scenario, rules, connection)
+        yield from _of_way(scenario, connection)
     for travel in scenario.travels:
-        yield from _number_knobs(rules, travel_changes(scenario, travel))
+        yield from travel_changes(scenario, travel)
     for battery in scenario.batteries:
-        yield from _number_knobs(rules, battery_changes(scenario, battery))
-    yield from _order_knobs(scenario, rules)
-    yield from _number_knobs(rules, assumption_changes(scenario, 2 * _all_time(scenario)))
+        yield from battery_changes(scenario, battery)
+    yield from _of_orders(scenario)
+    yield from assumption_changes(scenario, 2 * _all_time(scenario))
     for agent in scenario.agents:
-        yield from _control_knobs(scenario, rules, agent)
+        if not agent.controllable and (agent.can_do or agent.mobile is not None):
+            changed = scenario.with_instead(agent, replace(agent, human=True, controllable=True))
+            label = f"{agent.shown} following instructions (human controllable)"
+            yield _switch("control", agent.name, label, "not controllable", changed, agent.span)
 
 
-def _rules_knobs(scenario: Scenario, rules: Rules) -> Iterator[Knob]:
-    ideal = rules.ends == CONTROLLABLE
+def _of_rules(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
     if rules.ends == REPORTED:
-        yield Knob(
+        yield Repair(
             "ends", "", "ends chosen by the plan", REPORTED, (CONTROLLABLE,),
-            lambda value: (scenario, replace(rules, ends=CONTROLLABLE, slack={})),
-            lambda value: "ends chosen by the plan instead of reported by the robots (--ends controllable)",
-            helps=4,
+            lambda value: replace(rules, ends=CONTROLLABLE, slack={}),
+            lambda value: "ends chosen by the plan instead of reported by the robots (--ends controllable)", helps=4,
         )
     if rules.reaction > 0:
-        yield Knob(
+        yield Repair(
             "reaction", "", "a shorter reaction", _decimal(rules.reaction), _reactions(rules.reaction),
-            lambda value: (scenario, replace(rules, reaction=Fraction(value))),
+            lambda value: replace(rules, reaction=Fraction(value)),
             lambda value: f"a reaction of {_decimal(Fraction(value))} instead of {_decimal(rules.reaction)} time units",
             helps=5,
         )
     for agent, late in rules.slack.items():
-        yield _slack_knob(scenario, rules, agent, late)
-    if rules.reaction > 0 and not ideal:
-        yield Knob(
-            "game", "", "ends chosen by the plan and no reaction", "", ("ideal",), lambda value: (scenario, IDEAL),
+        yield _of_slack(rules, agent, scenario.shown(agent), late)
+    if rules.reaction > 0 and rules.ends != CONTROLLABLE:
+        yield Repair(
+            "game", "", "ends chosen by the plan and no reaction", "", ("ideal",), lambda value: IDEAL,
             lambda value: "ends chosen by the plan and no reaction at all, as no real robot plays "
             "(--ends controllable --reaction 0)",
             helps=3,
         )
 
 
-def _slack_knob(scenario: Scenario, rules: Rules, agent: str, late: int) -> Knob:
-    shown = scenario.shown(agent)
-    return _number(
+def _of_slack(rules: Rules, agent: str, shown: str, late: int) -> Repair:
+    return Repair(
         "slack", agent, f"{shown} less late", late, range(late - 1, -1, -1),
-        lambda k: (scenario, replace(rules, slack={**rules.slack, agent: k})),
-        lambda k: f"{shown} late by at most {k} instead of {late}", None, 5,
+        lambda k: replace(rules, slack={**rules.slack, agent: k}),
+        lambda k: f"{shown} late by at most {k} instead of {late}", helps=5,
     )  # fmt: skip
 
 
-def _objective_knobs(scenario: Scenario, rules: Rules) -> Iterator[Knob]:
+def _of_objectives(scenario: Scenario) -> Iterator[Repair]:
     for safety in scenario.safety:
-        yield from _limit_knobs(scenario, rules, safety)
+        yield from _of_limit(scenario, safety)
     for reach in scenario.reach:
         if reach.after > 0:
-            yield _after_knob(scenario, rules, reach)
-        yield from _limit_knobs(scenario, rules, reach)
+            yield _earlier(scenario, reach)
+        yield from _of_limit(scenario, reach)
 
 
-def _limit_knobs(scenario: Scenario, rules: Rules, objective: StatedObjective) -> Iterator[Knob]:
+def _of_limit(scenario: Scenario, objective: StatedObjective) -> Iterator[Repair]:
     """A larger limit for all objectives of the statement that begins with this one."""
     before, statement = objective.limit, objective.statement(scenario.objectives)
     if before is None or statement.objectives[0] is not objective:
         return
     together, _, change, about, label, begins, ends = statement
-    yield _number(
+    yield Repair(
         change, about, label, before, whole_above(before, before + max(before, 2 * _all_time(scenario))),
-        lambda k: (scenario.with_each(lambda each: each.with_limit(k) if each in together else each), rules),
+        lambda k: scenario.with_each(lambda each: each.with_limit(k) if each in together else each),
         lambda k: f"{begins} {k} instead of {before}{ends}", objective.span, 1,
     )  # fmt: skip
 
 
-def _after_knob(scenario: Scenario, rules: Rules, reach: Reach) -> Knob:
+def _earlier(scenario: Scenario, reach: Reach) -> Repair:
     due, names, before = reach.words.due, listed(ref.name for ref in reach.events), reach.after
-    return _number(
+    return Repair(
         "after", names, f"an earlier {due}", before, whole_below(before, 0),
-        lambda k: (scenario.with_each(lambda each: replace(reach, after=k) if each is reach else each), rules),
+        lambda k: scenario.with_instead(reach, replace(reach, after=k)),
         lambda k: f"{due} after {k} instead of {before}", reach.span, 1,
     )  # fmt: skip
 
 
-def _agent_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[Knob]:
+def _of_agent(scenario: Scenario, agent: Agent) -> Iterator[Repair]:
     pace = agent.mobile
     if pace is None or not scenario.connections:
         return
-
-    word = "faster" if agent.controllable else "slower"
+    what = f"a {'faster' if agent.controllable else 'slower'} {agent.shown}"
     values = whole_below(pace, 1) if agent.controllable else whole_above(pace, pace * SLOWER)
-    what = f"a {word} {agent.shown}"
     if values:
-        yield _number(
-            "agent", agent.name, what, pace, values,
-            lambda k: (scenario.with_instead(agent, replace(agent, mobile=k)), rules),
-            lambda k: f"{what}, mobile {k} instead of {pace}", agent.span, 2,
+        yield Repair(
+            "agent", agent.name, what, pace, values, lambda k: scenario.with_instead(agent, replace(agent, mobile=k)),
+            lambda k: f"{what}, mobile {k} instead of {pace}", agent.span,
         )  # fmt: skip
 
 
-def _duration_knobs(scenario: Scenario, rules: Rules, event: Event) -> Iterator[Knob]:
+def _of_duration(scenario: Scenario, event: Event) -> Iterator[Repair]:
     duration = event.duration or 0
     if event.latest is not None:
-        yield from _number_knobs(rules, event_changes(scenario, event))
+        yield from event_changes(scenario, event)
         return
 
-    def make(k: int) -> Variant:
-        return scenario.with_instead(event, replace(event, duration=k)), rules
-
-    def say(k: int) -> str:
-        return f"{event.shown} lasting {k} instead of {duration or 'no time'}"
+    def lasting(word: str, values: Sequence[int], helps: int = 2) -> Repair:
+        return Repair(
+            "duration", event.name, f"a {word} {event.shown}", duration, values,
+            lambda k: scenario.with_instead(event, replace(event, duration=k)),
+            lambda k: f"{event.shown} lasting {k} instead of {duration or 'no time'}", event.span, helps,
+        )  # fmt: skip
 
     if event.duration is None:
         if scenario.reach and _may_be_endless(scenario, event):
-            yield _number("duration", event.name, f"a longer {event.shown}", 0, (1,), make, say, event.span, 0)
+            yield lasting("longer", (1,), 0)
         return
     if duration > 1:
-        values = whole_below(duration, 1)
-        yield _number("duration", event.name, f"a shorter {event.shown}", duration, values, make, say, event.span, 2)
+        yield lasting("shorter", whole_below(duration, 1))
     doers = [agent for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
     if doers and not any(agent.controllable for agent in doers):
-        longer = whole_above(duration, max(duration * 2, 2 * _all_time(scenario)))
-        yield _number("duration", event.name, f"a longer {event.shown}", duration, longer, make, say, event.span, 2)
-
-
-def _number_knobs(rules: Rules, changes: Iterable[NumberChange]) -> Iterator[Knob]:
-    for one in changes:
-
-        def make(k: int, one: NumberChange = one) -> Variant:
-            return one.make(k), rules
-
-        yield _number(one.what, one.name, one.label, one.before, one.values, make, one.say, one.span, 2)
+        yield lasting("longer", whole_above(duration, max(duration * 2, 2 * _all_time(scenario))))
 
 
 def _may_be_endless(scenario: Scenario, event: Event) -> bool:
@@ -188,65 +157,38 @@ def _may_be_endless(scenario: Scenario, event: Event) -> bool:
     return moving and event.location is None and not any(agent.controllable for agent in doers)
 
 
-def _distance_knobs(scenario: Scenario, rules: Rules, connection: Connection) -> Iterator[Knob]:
-    ends, ways = f"{scenario.shown(connection.a)} and {scenario.shown(connection.b)}", scenario.connections
-    if connection.distance > 1:
-        yield _number(
-            "distance", ends, f"a shorter way between {ends}", connection.distance, whole_below(connection.distance, 1),
-            lambda k: (scenario.with_instead(connection, replace(connection, distance=k)), rules),
-            lambda k: f"{ends} at distance {k} instead of {connection.distance}", connection.span, 2,
+def _of_way(scenario: Scenario, way: Connection) -> Iterator[Repair]:
+    ends = f"{scenario.shown(way.a)} and {scenario.shown(way.b)}"
+    if way.distance > 1:
+        yield Repair(
+            "distance", ends, f"a shorter way between {ends}", way.distance, whole_below(way.distance, 1),
+            lambda k: scenario.with_instead(way, replace(way, distance=k)),
+            lambda k: f"{ends} at distance {k} instead of {way.distance}", way.span,
         )  # fmt: skip
-    if connection.one_way and not any((w.a, w.b) == (connection.b, connection.a) for w in ways):
-        freer = scenario.with_instead(connection, replace(connection, one_way=False))
+    if way.one_way and not any((other.a, other.b) == (way.b, way.a) for other in scenario.connections):
         label = f"a way between {ends} in both directions"
-        yield _switch("direction", ends, label, "one_way", (freer, rules), connection.span)
+        freer = scenario.with_instead(way, replace(way, one_way=False))
+        yield _switch("direction", ends, label, "one_way", freer, way.span)
 
 
-def _order_knobs(scenario: Scenario, rules: Rules) -> Iterator[Knob]:
+def _of_orders(scenario: Scenario) -> Iterator[Repair]:
     for rule in scenario.rules:
         fewer = replace(scenario, rules=tuple(r for r in scenario.rules if r != rule))
-        yield _switch("rule", rule.name, f"without rule {rule.name}", rule.name, (fewer, rules), rule.span)
+        yield _switch("rule", rule.name, f"without rule {rule.name}", rule.name, fewer, rule.span)
     for event, most in counted(scenario):
-        yield from _number_knobs(rules, count_changes(scenario, event, most))
+        yield from count_changes(scenario, event, most)
     for need in scenario.dependencies:
         freer = replace(scenario, dependencies=tuple(d for d in scenario.dependencies if d != need))
         text = f"{need.event.name} only_if {need.state.name} is_{'true' if need.value else 'false'}"
-        label = f"without stateDependency {text}"
-        yield _switch("dependency", need.event.name, label, text, (freer, rules), need.span, 1)
+        yield _switch("dependency", need.event.name, f"without stateDependency {text}", text, freer, need.span, 1)
     spans = [span for _, span in scenario.conditions()]
     for (what, text, left_out), span in zip(without_conditions(scenario), spans):
-        label = f"{what} without only_if {text}"
-        yield _switch("condition", what, label, text, (left_out(scenario), rules), span, 1)
+        yield _switch("condition", what, f"{what} without only_if {text}", text, left_out(scenario), span, 1)
 
 
-def _control_knobs(scenario: Scenario, rules: Rules, agent: Agent) -> Iterator[Knob]:
-    if not agent.controllable and (agent.can_do or agent.mobile is not None):
-        changed = scenario.with_instead(agent, replace(agent, human=True, controllable=True))
-        label = f"{agent.shown} following instructions (human controllable)"
-        yield _switch("control", agent.name, label, "not controllable", (changed, rules), agent.span)
-
-
-def _switch(
-    what: str, name: str, label: str, before: str, variant: Variant, span: Optional[Span], helps: int = 0
-) -> Knob:
-    return Knob(what, name, label, before, ("",), lambda _: variant, lambda _: label, span, helps)
-
-
-def _number(
-    what: str,
-    name: str,
-    label: str,
-    before: Number,
-    values: Sequence[int],
-    make: Callable[[int], Variant],
-    say: Callable[[int], str],
-    span: Optional[Span],
-    helps: int,
-) -> Knob:
-    texts = tuple(str(k) for k in values)
-    return Knob(
-        what, name, label, str(before), texts, lambda text: make(int(text)), lambda text: say(int(text)), span, helps
-    )
+def _switch(what: str, name: str, label: str, before: str, changed: Scenario, span: Span, helps: int = 0) -> Repair:
+    """Something that is left out, or that is so."""
+    return Repair(what, name, label, before, ("",), lambda _: changed, lambda _: label, span, helps)
 
 
 def _reactions(reaction: Fraction) -> Tuple[str, ...]:
