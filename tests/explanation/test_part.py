@@ -13,7 +13,7 @@ from benchmarks.lab_scenarios import Size, lab_scenario
 from pursue_gen.explanation.explain import Explanation, as_json, explain, render
 from pursue_gen.explanation.part import part_of_scenario, statements_of, with_objectives
 from pursue_gen.explanation.play import counter_plays
-from pursue_gen.explanation.texts import TimedLine, describe
+from pursue_gen.explanation.play_lines import TimedLine, describe
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit
