@@ -13,6 +13,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import String
 
 from pursue_runtime.data import DataError, Package
+from pursue_runtime.event_words import EVENTS, FINISH, PLAN, START
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.links import Links
@@ -43,7 +44,6 @@ from pursue_runtime.ui.options import ARGUMENTS, Options, read_options, read_tol
 from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, Terminal, on_terminal
 from pursue_runtime.ui.trace import TraceError
 from pursue_runtime.ui.verdict import ALONE, INTERRUPTED, NOT_STARTED, Verdict, drop_interrupted, write_verdict
-from pursue_runtime.words import EVENTS, FINISH, PLAN, START
 
 GATHERING, READY, STARTING, RUNNING = "waiting for the nodes", "ready", "starting", "running"
 RETRY = 1.0  # real seconds until `_start_` is published again

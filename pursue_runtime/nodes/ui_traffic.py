@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Sequence, Tuple
 import rospy
 from std_msgs.msg import String
 
+from pursue_runtime.event_words import EVENTS, SYSTEM_STATE
 from pursue_runtime.nodes.node import subscribe
 from pursue_runtime.nodes.positions import settings_of
 from pursue_runtime.state import parse_state
 from pursue_runtime.ui.mission_view import traffic_lines
 from pursue_runtime.ui.options import ALL_TOPICS, IN_WORDS
-from pursue_runtime.words import EVENTS, SYSTEM_STATE
 
 if TYPE_CHECKING:
     from pursue_runtime.nodes.ui import UI
