@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Callable, Dict, Iterator, List, Optional, Sequence, Tuple
+from typing import Callable, Dict, Iterator, List, Sequence, Tuple
 
 from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.play import CounterStep, Play
 from pursue_gen.language import network_names as names
 from pursue_gen.language.numbers import time_text
-from pursue_gen.language.scenario import Scenario, StatedObjective
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga.objectives import stated
-from pursue_gen.vocabulary.agents import deed, place
+from pursue_gen.vocabulary.agents import deed
+from pursue_gen.vocabulary.losses import loss
 
 _MOST_OTHERS = 3
 """So many of the others' last actions are named in an attempt."""
@@ -85,8 +86,8 @@ def _remarks(scenario: Scenario, play: Play, step: CounterStep) -> Iterator[str]
 
 def _ending(scenario: Scenario, play: Play) -> Tuple[TimedLine, ...]:
     tell: Dict[str, Callable[[Scenario, Play], str]] = {
-        "bad": _bad,
-        "overdue": _overdue,
+        "bad": _loss,
+        "overdue": _loss,
         "idle": lambda s, p: f"nobody has to do anything any more{_goal_clause(s, ', and ', ' need never come')}",
         "again": lambda s, p: f"all is as it was at {time_text(p.since)}, and so it can go on for ever"
         f"{_goal_clause(s, ': ', ' can always be prevented')}",
@@ -134,31 +135,5 @@ def _goal_clause(scenario: Scenario, before: str, after: str) -> str:
     return f"{before}{listed(wanted)}{after}" if wanted else ""
 
 
-def _bad(scenario: Scenario, play: Play) -> str:
-    """The objective that is broken in the last state of the play."""
-    game, objectives = play.game, stated(scenario)
-    broken = (game.automata[k].name for k, place in game.bad if play.position.state.locations[k] == place)
-    return _broken(scenario, objectives.get(next(broken, "")), play)
-
-
-def _broken(scenario: Scenario, objective: Optional[StatedObjective], play: Play) -> str:
-    if objective is None:
-        return "the objective is broken"
-    late = "too late: " if objective.limit is not None else ""
-    return late + objective.broken(lambda agent: f": both {_place(scenario, play, agent)}")
-
-
-def _overdue(scenario: Scenario, play: Play) -> str:
-    overdue, objectives = [play.game.automata[k].name for k in play.overdue], stated(scenario)
-    passed = next((objectives[name] for name in overdue if name in objectives), None)
-    if passed is not None:
-        return _broken(scenario, passed, play)
-    doing = ", ".join(f"{scenario.shown(name)} (now {_place(scenario, play, name)})" for name in overdue)
-    return f"nothing can go on: {doing} ought to be done by now, and cannot be"
-
-
-def _place(scenario: Scenario, play: Play, agent: str) -> str:
-    for automaton, location in zip(play.game.automata, play.position.state.locations):
-        if automaton.name == agent:
-            return place(scenario, automaton.locations[location])
-    return ""
+def _loss(scenario: Scenario, play: Play) -> str:
+    return loss(scenario, play.game, play.position.state, [play.game.automata[k].name for k in play.overdue])

@@ -99,7 +99,7 @@ def shown(session: Session) -> Tuple[str, ...]:
     """Where everything stands, what comes next, and what the person can do."""
     setup, play = session.setup, session.play
     if play.over:
-        return (ending(setup, session.words, play),)
+        return (ending(setup, play),)
     lines = [f"Time {time_text(play.now)}", *situation(setup, session.words, play)]
     if isinstance(session.game, StrategyPlay):
         lines.append(_intention(session, session.game))
@@ -334,7 +334,7 @@ def farewell(session: Session) -> str:
     """How it stood when the person left."""
     play, setup = session.play, session.setup
     if play.status != RUNNING:
-        return ending(setup, session.words, play)
+        return ending(setup, play)
     at = time_text(play.now)
     if isinstance(session.game, CounterPlay):
         return f"You have left at {at}: the robots have not done it, and could not have been sure of it."

@@ -15,6 +15,7 @@ from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.synthesis.game import Game, JointMove
 from pursue_gen.tga.objectives import clock_of, stated
 from pursue_gen.tools.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
+from pursue_gen.vocabulary.losses import loss
 from pursue_gen.vocabulary.statuses import courses
 from pursue_gen.vocabulary.words import Words
 
@@ -108,43 +109,18 @@ def window_text(now: Fraction, open_: Window) -> str:
 # The end --------------------------------------------------------------------------------------------------------------
 
 
-def ending(setup: Setup, words: Words, play: PlayState) -> str:
+def ending(setup: Setup, play: PlayState) -> str:
     """How a game ended, in a sentence."""
-    at = time_text(play.now)
+    at, late = time_text(play.now), overdue(setup, play)
     if play.status == WON:
         done = dict.fromkeys(ref.shown for reach in setup.scenario.reach for ref in reach.events)
         what = f": {listed(done)}" if done else ""
         return f"The robots have done it after {at} time units{what}."
     if play.status == LOST:
-        return f"The robots have lost after {at} time units: {_lost(setup, words, play)}."
-    late = ", ".join(map(setup.scenario.shown, overdue(setup, play)))
-    return f"Nothing can go on after {at} time units: {late} ought to move and cannot. The robots have not lost."
-
-
-def _lost(setup: Setup, words: Words, play: PlayState) -> str:
-    late, objectives = overdue(setup, play), stated(setup.scenario)
-    game, places = setup.game, play.position.state.locations
-    broken = [game.automata[k].name for k, place in game.bad if places[k] == place]
-
-    def beside(agent: str) -> str:
-        return f", both {_place(setup, words, play, agent)}"
-
-    for name in (*late, *broken):
-        passed = objectives.get(name)
-        if passed is not None and passed.limit is not None:
-            return passed.broken(beside)
-    if late:
-        doing = ", ".join(f"{setup.scenario.shown(name)} ({_place(setup, words, play, name)})" for name in late)
-        return f"{doing} ought to be done by now and cannot be, so nothing goes on"
-    safety = objectives.get(next(iter(broken), ""))
-    return "the objective is broken" if safety is None else safety.broken(beside)
-
-
-def _place(setup: Setup, words: Words, play: PlayState, name: str) -> str:
-    for automaton, location in zip(setup.game.automata, play.position.state.locations):
-        if automaton.name == name:
-            return words.place(name, automaton.locations[location])
-    return name
+        why = loss(setup.scenario, setup.game, play.position.state, late)
+        return f"The robots have lost after {at} time units: {why}."
+    who = ", ".join(map(setup.scenario.shown, late))
+    return f"Nothing can go on after {at} time units: {who} ought to move and cannot. The robots have not lost."
 
 
 def _only_while(way: Connection) -> str:
