@@ -64,12 +64,3 @@ def position_variable(agent: str) -> str:
 def automaton_clock(name: str) -> str:
     """Return the clock of an agent (how long since its last movement or action began or ended), or of `obj`."""
     return f"C{name}"
-
-
-def in_words(location: str) -> str:
-    """Return where an agent is, as in "at c", "on the way from c to b", "doing catch at b"."""
-    if is_movement(location):
-        return "on the way from " + location[len(_MOVEMENT) :].replace("_to_", " to ")
-    if is_action(location):
-        return "doing " + location[len(_ACTION) :].replace("_in_", " at ")
-    return f"at {location}"

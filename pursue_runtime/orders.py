@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Iterable, NamedTuple, Optional, Tuple
 
-from pursue_runtime.words import Word, format_word
+from pursue_runtime.event_words import Word, format_word
 
 
 class Order(NamedTuple):

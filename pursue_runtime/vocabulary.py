@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from typing import NamedTuple, Optional, Sequence, Tuple
 
+from pursue_runtime.event_words import START
 from pursue_runtime.locations import is_action, is_end, is_movement, is_under_way
 from pursue_runtime.model import Automaton, Edge, Model
 from pursue_runtime.sentences import Names
 from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import SystemState
-from pursue_runtime.words import START
 
 
 class Deed(NamedTuple):

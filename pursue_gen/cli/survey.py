@@ -149,7 +149,7 @@ def _picture(scenario: Scenario, found: Survey, floor: Path, radius: float) -> b
 
 
 def _print(found: Survey, as_json_: bool) -> None:
-    from pursue_gen.survey.texts import as_data, table
+    from pursue_gen.survey.survey_table import as_data, table
 
     if as_json_:
         findings = [as_json(finding) for finding in (*found.findings, *found.errors)]

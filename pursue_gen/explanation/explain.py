@@ -18,8 +18,9 @@ from pursue_gen.explanation.changes import Change, findings
 from pursue_gen.explanation.endless import PAUSE, Endless, endless
 from pursue_gen.explanation.part import part_of_scenario, rules_for, statements_of, with_one_robot
 from pursue_gen.explanation.play import Play, counter_plays
-from pursue_gen.explanation.texts import Attempt, TimedLine, attempt, describe, time_text
+from pursue_gen.explanation.play_lines import Attempt, TimedLine, attempt, describe
 from pursue_gen.explanation.together import Conflict, conflict
+from pursue_gen.language.numbers import time_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import statement_text
 from pursue_gen.outcomes import LimitHit

@@ -8,7 +8,6 @@ from functools import partial
 
 from pursue_gen.language.scenario import Event
 from pursue_gen.language.symbols import Role, Symbol, numbered
-from pursue_runtime import locations
 
 STATES = Role.STATES()
 """The automaton of all states."""
@@ -18,9 +17,6 @@ IDLE, AT_RISK, LOSE = Role.IDLE(), Role.AT_RISK(), Role.LOSE()
 
 START, UNLOCKED, WIN, LATE = Role.START(), Role.UNLOCKED(), Role.WIN(), Role.LATE()
 """Locations of a reach objective's automaton: it does not count yet, it does, it is reached, its time is over."""
-
-in_words = locations.in_words
-"""Where an agent is, in English."""
 
 at, going, doing = Role.AT, Role.WAY, Role.WORK
 """The location of an agent at a POI; on the way from one to another; at work, by event and POI."""

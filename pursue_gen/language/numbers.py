@@ -49,6 +49,11 @@ def decimal_text(number: Number) -> str:
     return f"{'-' if number < 0 else ''}{digits[:-places]}.{digits[-places:]}"
 
 
+def time_text(at: Number) -> str:
+    """A time in units, with at most three decimals."""
+    return f"{float(at):.3f}".rstrip("0").rstrip(".")
+
+
 def tenths_above(number: Number) -> Number:
     """An upper bound for people, rounded up to tenths: less is not guaranteed."""
     return exact(Fraction(ceil(number * 10), 10))

@@ -14,7 +14,7 @@ from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.partition.split import SubStrategy
 from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Command, DiscreteState, Strategy, Zone
-from pursue_gen.tga.words import event_word
+from pursue_gen.tga.event_words import event_word
 
 
 def strategy_data(sub: SubStrategy, reaction: Fraction) -> Dict[str, Any]:

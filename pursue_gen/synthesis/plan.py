@@ -34,7 +34,7 @@ from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Move, S
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.passages import with_passages
 from pursue_gen.tga.tours import with_tours
-from pursue_gen.tga.uppaal_words import with_own_names
+from pursue_gen.tga.uppaal_keywords import with_own_names
 from pursue_gen.tga.watchers import with_watchers
 
 _ESCAPE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")

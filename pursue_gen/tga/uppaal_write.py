@@ -16,7 +16,7 @@ from pursue_gen.diagnostics import error
 from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Network, Objective
 from pursue_gen.tga.scale import common_denominator, scaled
-from pursue_gen.tga.uppaal_words import renamed, uppaal_names
+from pursue_gen.tga.uppaal_keywords import renamed, uppaal_names
 
 _PUBLIC = "-//Uppaal Team//DTD Flat System 1.6//EN"
 _SYSTEM = "http://www.it.uu.se/research/group/darts/uppaal/flat-1_6.dtd"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
+from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import Automaton, Edge, Network, Objective
-from pursue_gen.tga.words import event_word
 from pursue_gen.workspace.model_file import places_data
 
 

@@ -23,9 +23,9 @@ from pursue_gen.partition import SubStrategy, partition, strategy_file, unneeded
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.synthesis.plan import write_plan
 from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.uppaal_write import write_network, write_query
-from pursue_gen.tga.words import event_word
 from pursue_gen.workspace import context, deploy, expected, game_file, model_file, ui_file
 from pursue_gen.workspace.context import Options
 from pursue_gen.workspace.packages import (

@@ -10,9 +10,9 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
+from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Objective
 from pursue_gen.tga.objectives import stated
-from pursue_gen.tga.words import event_word
 
 
 def render(network: Network, objective: Objective, scenario: Scenario, reaction: Fraction, generator: str) -> str:

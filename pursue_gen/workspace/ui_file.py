@@ -16,7 +16,7 @@ from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.solving.answers import told
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import stated
-from pursue_gen.tga.status_words import statuses
+from pursue_gen.vocabulary.statuses import statuses
 from pursue_gen.workspace.context import Options
 from pursue_gen.workspace.spots import Placing
 

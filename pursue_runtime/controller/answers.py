@@ -9,8 +9,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from pursue_runtime.controller.goal import ABORTED, FAILURES, Answer
+from pursue_runtime.event_words import BLOCKED, FAILED, STUCK
 from pursue_runtime.sentences import quoted
-from pursue_runtime.words import BLOCKED, FAILED, STUCK
 
 
 class Meaning(NamedTuple):

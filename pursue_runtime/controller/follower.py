@@ -7,13 +7,13 @@ from typing import Any, Callable, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.controller.scheduler import CommandScheduler
 from pursue_runtime.data import DataError
+from pursue_runtime.event_words import Word
 from pursue_runtime.missions import Missions, Source
 from pursue_runtime.poses import POSES, Poses, read_poses
 from pursue_runtime.state import ENDED, LIVE, WAITING, SystemState
 from pursue_runtime.state_checks import strategy_problem
 from pursue_runtime.state_filter import OLD, OTHER, REFUSED, StateFilter
 from pursue_runtime.strategy import Strategy
-from pursue_runtime.words import Word
 
 Log = Callable[[str, str], None]
 """Takes a level (info, warn, err) and a sentence."""

@@ -22,10 +22,7 @@ from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.trip import Trip
 from pursue_runtime.controller.view import Due, View
 from pursue_runtime.controller.whereabouts import Position, Whereabouts
-from pursue_runtime.locations import is_action, is_movement
-from pursue_runtime.orders import Order
-from pursue_runtime.sentences import in_words, marked
-from pursue_runtime.words import (
+from pursue_runtime.event_words import (
     BACK,
     BLOCKED,
     DISPLACED,
@@ -36,6 +33,9 @@ from pursue_runtime.words import (
     RobotReport,
     Word,
 )
+from pursue_runtime.locations import is_action, is_movement
+from pursue_runtime.orders import Order
+from pursue_runtime.sentences import in_words, marked
 
 GRACE = 2.0
 """Seconds for which the position of a robot may be missing, or the robot may move about, before that is reported."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Optional, Union
 
+from pursue_runtime.event_words import RobotReport, Word, format_report, format_word
 from pursue_runtime.resend import resend_timeout
-from pursue_runtime.words import RobotReport, Word, format_report, format_word
 
 
 class RepeatedReport:

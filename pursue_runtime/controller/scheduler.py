@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Callable, Dict, FrozenSet, List, Optional, Tuple
 
+from pursue_runtime.event_words import PLANNED, Word
 from pursue_runtime.locations import is_under_way
 from pursue_runtime.orders import Order, parse_orders
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState, older, rewinds
 from pursue_runtime.strategy import Command, Entry, Plans, Strategy
-from pursue_runtime.words import PLANNED, Word
 from pursue_runtime.zones import EPSILON
 
 UNREADY = 0.2

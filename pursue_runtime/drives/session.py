@@ -18,9 +18,9 @@ from pursue_runtime.controller.whereabouts import Place, Position
 from pursue_runtime.drives.actions import DONE, MOST_FAILURES, Act, Acts, location_of
 from pursue_runtime.drives.report import ARRIVED, FAILED, INTERRUPTED, LATE, Drive
 from pursue_runtime.drives.tour import Way, next_way, towards
+from pursue_runtime.event_words import HELD, parse_report, parse_word
 from pursue_runtime.locations import movement
 from pursue_runtime.sentences import in_words
-from pursue_runtime.words import HELD, parse_report, parse_word
 
 
 class Plan(NamedTuple):

@@ -16,6 +16,7 @@ from std_msgs.msg import String
 from pursue_runtime.arguments import CONFIG
 from pursue_runtime.controller.follower import Follower
 from pursue_runtime.data import DataError, Package
+from pursue_runtime.event_words import PLAN, format_word
 from pursue_runtime.folders import ros_home
 from pursue_runtime.missions import Missions, own_source
 from pursue_runtime.nodes.alarm import Alarm
@@ -31,7 +32,6 @@ from pursue_runtime.state import LOST, STOPPED, WON, SystemState
 from pursue_runtime.state_filter import OLD, OURS, REFUSED
 from pursue_runtime.strategy import parse_plan
 from pursue_runtime.troubles import trouble_values
-from pursue_runtime.words import PLAN, format_word
 
 
 class Controller:

@@ -33,6 +33,7 @@ from pursue_runtime.data import DataError, Package
 from pursue_runtime.drives.report import DRIVES, Drive, format_drive
 from pursue_runtime.drives.robots import Driven, driven_robots, duration, next_action, who_is_near
 from pursue_runtime.drives.session import Due, Session
+from pursue_runtime.event_words import EVENTS, STATE
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.missions import own_source
 from pursue_runtime.nodes.alarm import Alarm, Later
@@ -41,7 +42,6 @@ from pursue_runtime.nodes.recorder import CHUNK, stamp
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.orders import Order
 from pursue_runtime.ui.recording import ACTIVE, GAME, keep_file, reserve_file
-from pursue_runtime.words import EVENTS, STATE
 
 DEFAULTS: Mapping[str, Any] = {"goals": "action", "ends": "result", "on_stop": "cancel"}
 """Those of real robots, as `mission.launch simulate:=false` has them."""

@@ -16,6 +16,7 @@ from pursue_runtime.controller.navigation import Navigation
 from pursue_runtime.controller.settings import read_settings
 from pursue_runtime.controller.view import View
 from pursue_runtime.controller.whereabouts import Place, Position, place_of
+from pursue_runtime.event_words import EVENTS, ORDERED, Word, format_word
 from pursue_runtime.locations import is_end, is_movement, is_under_way, movement
 from pursue_runtime.locations import place_of as poi_of
 from pursue_runtime.nodes.alarm import Alarm, Later
@@ -27,7 +28,6 @@ from pursue_runtime.poses import Table
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, LIVE, RUNNING, WON, SystemState
 from pursue_runtime.strategy import Command
-from pursue_runtime.words import EVENTS, ORDERED, Word, format_word
 
 LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 

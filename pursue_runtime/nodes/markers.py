@@ -14,6 +14,7 @@ from std_msgs.msg import String
 
 from pursue_runtime.arguments import CONFIG
 from pursue_runtime.data import DataError, Package
+from pursue_runtime.event_words import MARKERS, PLAN
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import (
@@ -36,7 +37,6 @@ from pursue_runtime.strategy import parse_plan
 from pursue_runtime.ui.markers import ARROW, BALL, DISC, LINES, TEXT, Mark, Picture, read_spots
 from pursue_runtime.ui.page import read_floor_plan
 from pursue_runtime.ui.strategies import strategies_in, strategies_of
-from pursue_runtime.words import MARKERS, PLAN
 
 HEIGHTS = {LINES: 0.0, DISC: 0.01, ARROW: 0.04, BALL: 0.1, TEXT: 0.2}
 """Metres above the map: what lies above the rest is seen from above."""

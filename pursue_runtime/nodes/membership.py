@@ -11,6 +11,7 @@ import rospy
 from pursue_msgs.msg import SystemState as SystemStateMessage
 
 from pursue_runtime.data import DataError, Package
+from pursue_runtime.event_words import STATE
 from pursue_runtime.folders import ros_home
 from pursue_runtime.missions import Missions, Source, own_source
 from pursue_runtime.model import Model
@@ -22,7 +23,6 @@ from pursue_runtime.state import WAITING, SystemState
 from pursue_runtime.state_checks import model_problem
 from pursue_runtime.state_filter import OLD, OTHER, OURS, REFUSED, StateFilter
 from pursue_runtime.strategy import Strategy
-from pursue_runtime.words import STATE
 
 PATIENCE = 1.0
 """Seconds of real time for which a node that starts waits for an observer whose states name the mission."""

@@ -21,6 +21,7 @@ from pursue_msgs.msg import SystemState as SystemStateMessage
 from std_msgs.msg import String
 
 from pursue_runtime.data import DataError, Package
+from pursue_runtime.event_words import EVENTS, FINISH, PLAN, REPORTED, STATE, SYSTEM_STATE
 from pursue_runtime.folders import ros_home, scenario_folder
 from pursue_runtime.missions import Missions, Source, own_source
 from pursue_runtime.model import Model
@@ -54,7 +55,6 @@ from pursue_runtime.resend import StateRepeats
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, STOPPED, WAITING, WON, SystemState, format_state
 from pursue_runtime.strategy import read_cover
-from pursue_runtime.words import EVENTS, FINISH, PLAN, REPORTED, STATE, SYSTEM_STATE
 
 LOGS = {"debug": rospy.logdebug, "info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 import rospy
 from std_msgs.msg import String
 
+from pursue_runtime.event_words import EVENTS, FINISH, PLAIN_WORDS
 from pursue_runtime.parameters import ParameterError
 from pursue_runtime.state import ENDED, WON, SystemState
-from pursue_runtime.words import EVENTS, FINISH, PLAIN_WORDS
 
 
 class PlainWords:

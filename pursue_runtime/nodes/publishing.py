@@ -12,7 +12,7 @@ import rospy
 from rospy.impl.tcpros_pubsub import QueuedConnection
 from std_msgs.msg import String
 
-from pursue_runtime.words import REPORTED
+from pursue_runtime.event_words import REPORTED
 
 
 def listeners(publisher: rospy.Publisher) -> List[str]:

@@ -23,6 +23,7 @@ from std_msgs.msg import String
 from pursue_runtime.arguments import KEYS
 from pursue_runtime.bundle import LIMIT, MISSION, mission_id
 from pursue_runtime.data import Package
+from pursue_runtime.event_words import STATE
 from pursue_runtime.folders import keys_folder, missions_folder
 from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.links import Links
@@ -35,7 +36,6 @@ from pursue_runtime.reader.reader import KEYS_PERIOD, PATIENCE, Machine, Reader
 from pursue_runtime.reader.store import KEEP, Store
 from pursue_runtime.state import SystemState
 from pursue_runtime.trusted_keys import KeyFolder
-from pursue_runtime.words import STATE
 
 LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 

@@ -23,6 +23,7 @@ from std_msgs.msg import String
 
 from pursue_runtime.arguments import BAG, CONFIG
 from pursue_runtime.data import Package
+from pursue_runtime.event_words import STATE, SYSTEM_STATE
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.nodes.links import Links, is_gone
 from pursue_runtime.nodes.membership import Membership
@@ -44,7 +45,6 @@ from pursue_runtime.parameters import names
 from pursue_runtime.state import ENDED, WAITING, WON, SystemState
 from pursue_runtime.ui.options import expected
 from pursue_runtime.ui.recording import ACTIVE, GAME, keep_file, missing_connections, reserve_file, topics
-from pursue_runtime.words import STATE, SYSTEM_STATE
 
 CHUNK = 64 * 1024  # bytes; what is not yet in a whole chunk is harder to read after a crash
 

@@ -17,11 +17,11 @@ import rospy
 from rosgraph_msgs.msg import Clock
 
 from pursue_runtime.data import Package
+from pursue_runtime.event_words import EVENTS, STATE
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import OK, Diagnostics, Ending, NodeReport, run_node, start_thread, subscribe
 from pursue_runtime.simulator.clock import ClockFile, Pace, SimClock, read_pace, send_whole
-from pursue_runtime.words import EVENTS, STATE
 
 
 def pace() -> Pace:

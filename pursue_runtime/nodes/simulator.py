@@ -16,6 +16,7 @@ from std_msgs.msg import String
 
 from pursue_runtime.arguments import CONFIG
 from pursue_runtime.data import Package
+from pursue_runtime.event_words import EVENTS, ORDERED, Word, format_word, parse_word
 from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
@@ -36,7 +37,6 @@ from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import choice, names, whole
 from pursue_runtime.simulator.simulator import ACTING, DELAYS, Delays, Simulator
 from pursue_runtime.state import LOST, STOPPED, WAITING, WON, SystemState
-from pursue_runtime.words import EVENTS, ORDERED, Word, format_word, parse_word
 
 
 class SimulatorNode:

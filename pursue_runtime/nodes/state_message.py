@@ -8,10 +8,10 @@ import rospy
 from pursue_msgs.msg import AutomatonLocation, ClockValue, Variable
 from pursue_msgs.msg import SystemState as Message
 
+from pursue_runtime.event_words import STATE
 from pursue_runtime.nodes.node import Ending, subscribe
 from pursue_runtime.state import LISTS, SystemState
 from pursue_runtime.state_checks import names_problem, state_problem
-from pursue_runtime.words import STATE
 
 THROTTLE = 10.0
 """Seconds for which the log has one line about messages that are no states."""

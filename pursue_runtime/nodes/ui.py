@@ -11,6 +11,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import String
 
 from pursue_runtime.data import DataError, Package
+from pursue_runtime.event_words import EVENTS, FINISH, PLAN, START
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.links import Links
@@ -42,7 +43,6 @@ from pursue_runtime.ui.options import ARGUMENTS, Options, read_options, read_tol
 from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, on_terminal
 from pursue_runtime.ui.trace import TraceError
 from pursue_runtime.ui.verdict import ALONE, INTERRUPTED, NOT_STARTED, Verdict, drop_interrupted, write_verdict
-from pursue_runtime.words import EVENTS, FINISH, PLAN, START
 
 RETRY = 1.0  # real seconds until `_start_` is published again
 TRIES = 10

@@ -10,6 +10,7 @@ from typing import Any, Dict, Mapping, Optional, Tuple
 
 import rospy
 
+from pursue_runtime.event_words import STOP
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.nodes.links import traffic
 from pursue_runtime.nodes.node import start_thread
@@ -24,7 +25,6 @@ from pursue_runtime.ui.page_server import ADDRESS, PageServer, format_address, o
 from pursue_runtime.ui.past_missions import PastMissions, shown_missions, workspace_of
 from pursue_runtime.ui.presence import LOOK, Presence
 from pursue_runtime.ui.requests import PageRequest, Presses
-from pursue_runtime.words import STOP
 
 NO_ANSWER = "The observer does not answer"
 

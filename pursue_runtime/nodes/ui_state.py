@@ -10,13 +10,13 @@ from typing import List, Optional, Tuple
 import rospy
 from std_msgs.msg import String
 
+from pursue_runtime.event_words import EVENTS
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import Ending
 from pursue_runtime.ui.mission_view import Environment, MissionView, Readiness
 from pursue_runtime.ui.options import Options
 from pursue_runtime.ui.terminal import Terminal
-from pursue_runtime.words import EVENTS
 
 GATHERING, READY, STARTING, RUNNING = "waiting for the nodes", "ready", "starting", "running"
 

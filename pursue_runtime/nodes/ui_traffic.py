@@ -7,13 +7,13 @@ from typing import Sequence, Tuple
 import rospy
 from std_msgs.msg import String
 
+from pursue_runtime.event_words import EVENTS, SYSTEM_STATE
 from pursue_runtime.nodes.node import subscribe
 from pursue_runtime.nodes.positions import settings_of
 from pursue_runtime.nodes.ui_state import UIState
 from pursue_runtime.state import parse_state
 from pursue_runtime.ui.mission_view import traffic_lines
 from pursue_runtime.ui.options import ALL_TOPICS, IN_WORDS
-from pursue_runtime.words import EVENTS, SYSTEM_STATE
 
 
 class Traffic:

@@ -11,13 +11,13 @@ import rosgraph
 import rospy
 from pursue_msgs.msg import SystemState as Message
 
+from pursue_runtime.event_words import EVENTS, SEEN
 from pursue_runtime.nodes.links import is_gone
 from pursue_runtime.nodes.node import Ending
 from pursue_runtime.nodes.publishing import listeners, publish_to_one
 from pursue_runtime.nodes.state_message import message_of, subscribe_states
 from pursue_runtime.observer.witnesses import PATIENCE
 from pursue_runtime.state import LIVE, WAITING, SystemState
-from pursue_runtime.words import EVENTS, SEEN
 
 AGAIN = 0.1
 """Seconds of real time between two looks at which of them are still there."""

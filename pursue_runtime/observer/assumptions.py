@@ -9,9 +9,9 @@ from __future__ import annotations
 from itertools import chain
 from typing import AbstractSet, NamedTuple, Optional, Tuple
 
+from pursue_runtime.event_words import Word
 from pursue_runtime.model import Assumption, Model, Move, Position
 from pursue_runtime.sentences import quoted
-from pursue_runtime.words import Word
 from pursue_runtime.zones import EPSILON
 
 

@@ -4,19 +4,7 @@ from __future__ import annotations
 
 from typing import List, Optional, Tuple
 
-from pursue_runtime.locations import is_under_way
-from pursue_runtime.model import Assumption, Move, Position
-from pursue_runtime.observer import life
-from pursue_runtime.observer.assumptions import Breach, breach, overstayed
-from pursue_runtime.observer.lateness import late_words, untimely_words
-from pursue_runtime.observer.mission_status import MissionStatus
-from pursue_runtime.observer.orders import first_overdue
-from pursue_runtime.observer.planning import stays
-from pursue_runtime.orders import Order
-from pursue_runtime.sentences import MARKED, as_sentence, in_words, marked, quoted
-from pursue_runtime.state import HOLDING, LIVE, RUNNING, SystemState
-from pursue_runtime.vocabulary import deed
-from pursue_runtime.words import (
+from pursue_runtime.event_words import (
     BLOCKED,
     FAILED,
     FINISH,
@@ -33,6 +21,18 @@ from pursue_runtime.words import (
     parse_report,
     parse_word,
 )
+from pursue_runtime.locations import is_under_way
+from pursue_runtime.model import Assumption, Move, Position
+from pursue_runtime.observer import life
+from pursue_runtime.observer.assumptions import Breach, breach, overstayed
+from pursue_runtime.observer.lateness import late_words, untimely_words
+from pursue_runtime.observer.mission_status import MissionStatus
+from pursue_runtime.observer.orders import first_overdue
+from pursue_runtime.observer.planning import stays
+from pursue_runtime.orders import Order
+from pursue_runtime.sentences import MARKED, as_sentence, in_words, marked, quoted
+from pursue_runtime.state import HOLDING, LIVE, RUNNING, SystemState
+from pursue_runtime.vocabulary import deed
 from pursue_runtime.zones import EPSILON, INFINITY, due, was_reached
 
 UNACKNOWLEDGED = "has not acknowledged"

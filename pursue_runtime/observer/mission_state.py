@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, Collection, Dict, List, Optional, Set, Tuple
 
+from pursue_runtime.event_words import Word
 from pursue_runtime.model import Model, Position
 from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.beginnings import Beginnings
@@ -16,7 +17,6 @@ from pursue_runtime.observer.ways import Ways
 from pursue_runtime.sentences import Told, in_words
 from pursue_runtime.state import WON, SystemState
 from pursue_runtime.strategy import Cover, Entry
-from pursue_runtime.words import Word
 
 Log = Callable[[str, str], None]
 """Takes a level (debug, info, warn, err) and a sentence."""

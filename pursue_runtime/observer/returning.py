@@ -10,12 +10,12 @@ import time
 from typing import Any, Callable, Collection, List, Mapping, NamedTuple, Optional, Set, Tuple
 
 from pursue_runtime.data import DataError
+from pursue_runtime.event_words import EVENTS, STOP, said_at
 from pursue_runtime.observer.journal import Journal
 from pursue_runtime.observer.mark import Rank
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.witnesses import find_state
 from pursue_runtime.state import LIVE, SystemState
-from pursue_runtime.words import EVENTS, STOP, said_at
 
 PATIENCE = 5.0
 """Seconds of real time for which it waits for these nodes."""

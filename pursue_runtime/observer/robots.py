@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Dict, List, Mapping, Set, Tuple
 
+from pursue_runtime.event_words import BACK, DISPLACED, HELD, RESUME, RobotReport
 from pursue_runtime.locations import is_action, is_movement, is_under_way, position_variable
 from pursue_runtime.model import Edge, Model, Move
 from pursue_runtime.sentences import as_sentence, marked
 from pursue_runtime.state import SystemState
-from pursue_runtime.words import BACK, DISPLACED, HELD, RESUME, RobotReport
 
 
 class Robots:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Collection, Dict, List, NamedTuple, Optional, Set, Tuple
 
+from pursue_runtime.event_words import Word
 from pursue_runtime.locations import is_end
 from pursue_runtime.model import Edge, Model, Move, Position
 from pursue_runtime.observer.beginnings import Beginnings
 from pursue_runtime.state import SystemState
-from pursue_runtime.words import Word
 
 ALL, DOER = "all", "doer"
 WHOSE = (ALL, DOER)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import AbstractSet, Any, Dict, Iterable, Mapping, Optional, Set, Tuple
 
 from pursue_runtime.data import DataError
+from pursue_runtime.event_words import BLOCKED, FREE, STUCK, RobotReport
 from pursue_runtime.locations import is_movement, movement
 from pursue_runtime.model import Model, Move
 from pursue_runtime.sentences import as_sentence, marked
-from pursue_runtime.words import BLOCKED, FREE, STUCK, RobotReport
 
 Way = Tuple[str, str]
 """The two places that a way connects, in alphabetical order."""

@@ -11,11 +11,11 @@ import random
 from dataclasses import dataclass
 from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Tuple
 
+from pursue_runtime.event_words import Word, format_word
 from pursue_runtime.locations import action, is_end, is_movement
 from pursue_runtime.model import Automaton, Edge, Model
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.state import LIVE, SystemState, older, rewinds
-from pursue_runtime.words import Word, format_word
 
 ACTING = ("robot", "human", "agent")
 DELAYS = ("random", "early", "middle", "late")

@@ -7,15 +7,7 @@ from __future__ import annotations
 
 from typing import Any, Collection, Dict, List, Mapping, NamedTuple, Optional, Protocol, Sequence, Tuple
 
-from pursue_runtime.locations import is_end, is_movement
-from pursue_runtime.model import Model
-from pursue_runtime.resend import resend_timeout
-from pursue_runtime.sentences import Told, in_words
-from pursue_runtime.simulator.simulator import ACTING, report_word, reports
-from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
-from pursue_runtime.strategy import Entry, Plans, Strategy
-from pursue_runtime.vocabulary import deed, instruction, not_promised, sentence, where
-from pursue_runtime.words import (
+from pursue_runtime.event_words import (
     PING,
     RESUME,
     START,
@@ -26,6 +18,14 @@ from pursue_runtime.words import (
     one_line,
     parse_word,
 )
+from pursue_runtime.locations import is_end, is_movement
+from pursue_runtime.model import Model
+from pursue_runtime.resend import resend_timeout
+from pursue_runtime.sentences import Told, in_words
+from pursue_runtime.simulator.simulator import ACTING, report_word, reports
+from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
+from pursue_runtime.strategy import Entry, Plans, Strategy
+from pursue_runtime.vocabulary import deed, instruction, not_promised, sentence, where
 from pursue_runtime.zones import due
 
 MARGIN = 0.05  # time units: how far inside an open bound something counts as possible

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.data import DataError
+from pursue_runtime.event_words import START
 from pursue_runtime.locations import is_action, is_end, is_movement
 from pursue_runtime.model import Automaton, Model
 from pursue_runtime.poses import read_poses
@@ -23,7 +24,6 @@ from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_no
 from pursue_runtime.ui.statuses import Status, status_texts
 from pursue_runtime.ui.strategies import strategies_in
 from pursue_runtime.vocabulary import awaited, begin_of, deed, listed, not_promised, place, sentence, where
-from pursue_runtime.words import START
 
 MAX_ENTRIES = 300  # entries of the log
 NOTE, GOOD, BAD = "note", "good", "bad"

@@ -11,11 +11,11 @@ import shlex
 import stat
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
+from pursue_runtime.event_words import START, STOP
 from pursue_runtime.observer.records import RecordsRead, read_records
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, LIVE, LOST, STATUSES
 from pursue_runtime.ui.bag_file import BadBag, BagSummary, read_summary
-from pursue_runtime.words import START, STOP
 
 MOST = 30  # missions that are listed, the newest
 MOST_FILES = 200  # files of the folder that are looked at, the newest

@@ -70,8 +70,8 @@ def _text(
     name = reason.of
     if not _acts(automata, name):
         status = words.get(name)
-        value = state.locations.get(name, str(state.values.get(name, "")))
-        return f"{status.label}: {status.texts[value]}" if status is not None and value in status.texts else ""
+        text = status and status.text(state.locations, state.values)
+        return f"{status.label}: {text}" if status and text else ""
     automaton = automata[name]
     text = f"{model.shown(name)} is {place(model, automaton, state.locations[name])}"
     other, command = min(reason.instead, key=lambda each: is_under_way(each[0]))

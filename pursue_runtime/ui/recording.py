@@ -8,8 +8,8 @@ from itertools import count
 from types import MappingProxyType
 from typing import Callable, Collection, Iterator, List, Mapping, Sequence
 
+from pursue_runtime.event_words import EVENTS, PLAN, STATE, SYSTEM_STATE
 from pursue_runtime.model import Model
-from pursue_runtime.words import EVENTS, PLAN, STATE, SYSTEM_STATE
 
 OF_A_ROBOT = (
     "move_base_simple/goal",

@@ -9,8 +9,8 @@ import time
 from typing import Any, Callable, Collection, Dict, NamedTuple, Tuple
 
 from pursue_runtime.bounded import BadText, read_json
+from pursue_runtime.event_words import parse_word
 from pursue_runtime.state import LIVE, SystemState
-from pursue_runtime.words import parse_word
 
 REQUESTS = {"start": False, "stop": False, "next": False, "close": False, "say": True, "done": True}
 """What a page may ask for, and whether a word, and the number of the state that the page shows, belong to it."""

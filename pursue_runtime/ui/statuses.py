@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, Mapping, NamedTuple, Sequence, Tuple
+from typing import Any, Dict, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.data import DataError
 from pursue_runtime.model import Model
@@ -15,6 +15,11 @@ class Status(NamedTuple):
     of: str
     label: str
     texts: Dict[str, str]
+
+    def text(self, locations: Mapping[str, str], values: Mapping[str, int]) -> Optional[str]:
+        """What it is at where the automata are at these locations, and the variables have these values; None where it
+        has no words for that."""
+        return self.texts.get(locations.get(self.of) or str(values.get(self.of)))
 
 
 def read_statuses(settings: Mapping[str, Any]) -> Tuple[Status, ...]:
@@ -34,7 +39,7 @@ def status_texts(statuses: Sequence[Status], model: Model, state: SystemState, a
     shown = {}
     for status in statuses:
         location = state.locations.get(status.of, "")
-        text = status.texts.get(location or str(state.values.get(status.of)))
+        text = status.text(state.locations, state.values)
         if text is None:
             continue
         bounds = model.bounds_of(status.of, location, state.values) if location in places.get(status.of, {}) else ()

@@ -13,7 +13,7 @@ from benchmarks.lab_scenarios import Size, lab_scenario
 from pursue_gen.explanation.explain import Explanation, as_json, explain, render
 from pursue_gen.explanation.part import part_of_scenario, statements_of, with_objectives
 from pursue_gen.explanation.play import counter_plays
-from pursue_gen.explanation.texts import TimedLine, describe
+from pursue_gen.explanation.play_lines import TimedLine, describe
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import LimitHit
@@ -123,7 +123,7 @@ def test_each_of_several_that_are_lost_alone_is_explained() -> None:
     first, second = text.split('"if ring3 then nora at room3 within 16" (line 14):\n')
     assert first.startswith('"if ring1 then nora at room1 within 8" (line 13):\n')
     for part, least in ((first, "a deadline of 13 instead of 8"), (second, "a deadline of 21 instead of 16")):
-        assert least in part and "too late: not once" in part
+        assert least in part and "not once" in part
     (other,) = as_json(explanation)["others"]
     assert other["about"] == ['"if ring3 then nora at room3 within 16" (line 14)']
     assert other["preventing"] == ["resident3"]
@@ -162,7 +162,7 @@ def test_a_play_against_few_calls_is_found_where_the_game_of_all_calls_is_too_la
     scenario = parse(CARE, "care.pur")
     network, objective = played(translate(scenario), RULES), scenario_objective(scenario)
     play = next(counter_plays(network, objective, RULES.reaction, Budget(Limits(work=60_000_000))))
-    assert play.end == "overdue" and describe(scenario, play)[-1].text.startswith("too late")
+    assert play.end == "overdue" and describe(scenario, play)[-1].text.startswith("not once")
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -20,8 +20,8 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.plan_text import read_constraint
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone
+from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import Edge, Sync
-from pursue_gen.tga.words import event_word
 from tests.partition.games import AGENTS, QUICK, game, random_strategies, zones
 from tests.runtime.texts import read
 from tests.two_stages import LOADED, solved_in_stages

@@ -10,9 +10,9 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from pursue_msgs.msg import SystemState as Message
 from std_msgs.msg import String
 
+from pursue_runtime.event_words import EVENTS, START, STATE
 from pursue_runtime.nodes.state_message import message_of
 from pursue_runtime.state import LOST, RUNNING, WAITING, SystemState
-from pursue_runtime.words import EVENTS, START, STATE
 
 UNIT = 10.0  # seconds; a node that learns of the start later than that skips the first entries of a trace
 begun = []

@@ -20,7 +20,7 @@ from pursue_gen.tools.replay.game import from_workspace
 from pursue_gen.tools.replay.journal import Journal, reconstruct
 from pursue_gen.tools.replay.moves import Moves
 from pursue_gen.workspace import Options, write_workspace
-from pursue_runtime.words import parse_word
+from pursue_runtime.event_words import parse_word
 
 pytestmark = pytest.mark.ros
 

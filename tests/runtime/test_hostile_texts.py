@@ -33,6 +33,7 @@ from pursue_gen.workspace.machines import parse_machines
 from pursue_runtime import bundle
 from pursue_runtime.bounded import DATA, exact, read_json, read_yaml, whole
 from pursue_runtime.data import DataError, parse_data, read_data
+from pursue_runtime.event_words import parse_word
 from pursue_runtime.manager.manager import parse_status
 from pursue_runtime.missions import MANIFEST, Missions, Source
 from pursue_runtime.model import Model
@@ -42,7 +43,6 @@ from pursue_runtime.reader.reader import check_data
 from pursue_runtime.strategy import Strategy, parse_plan, read_cover
 from pursue_runtime.ui.requests import read_request
 from pursue_runtime.ui.trace import TraceError, read_trace
-from pursue_runtime.words import parse_word
 from pursue_runtime.zones import parse_zone
 from tests.partition.games import game
 from tests.runtime.reader_stage import Robot, mission

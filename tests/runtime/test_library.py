@@ -12,10 +12,7 @@ from hypothesis import strategies as st
 
 from pursue_runtime import zones as runtime_zones
 from pursue_runtime.data import DataError, Package, data_file, read_data
-from pursue_runtime.sentences import in_words
-from pursue_runtime.state import SystemState, format_state, older, parse_state
-from pursue_runtime.strategy import Strategy
-from pursue_runtime.words import (
+from pursue_runtime.event_words import (
     BACK,
     FAILED,
     RobotReport,
@@ -26,6 +23,9 @@ from pursue_runtime.words import (
     parse_word,
     said_at,
 )
+from pursue_runtime.sentences import in_words
+from pursue_runtime.state import SystemState, format_state, older, parse_state
+from pursue_runtime.strategy import Strategy
 from pursue_runtime.zones import due, parse_zone
 from tests.runtime.texts import read
 

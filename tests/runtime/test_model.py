@@ -13,8 +13,8 @@ import yaml
 
 from pursue_gen.language import load, parse
 from pursue_gen.tga import ends_reported, scenario_objective, translate
+from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import Edge, Network
-from pursue_gen.tga.words import event_word
 from pursue_gen.workspace.model_file import render
 from pursue_runtime.model import Model
 

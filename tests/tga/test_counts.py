@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from pursue_gen.explanation.network_words import words_of
 from pursue_gen.tga import translate
 from pursue_gen.tga.network import Test
+from pursue_gen.vocabulary.words import words_of
 from tests.tga.networks import scenario
 
 TEXT = """
@@ -47,4 +47,4 @@ def test_each_beginning_counts_and_none_is_one_too_many() -> None:
 def test_the_count_in_words() -> None:
     read = scenario(TEXT)
     words = words_of(read, translate(read))
-    assert words.place("call_count", "call_count_1") == "1 of 2 call"
+    assert words.place("call_count", "call_count_1") == "1 of 2 times"

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import List, Tuple
 
-from pursue_gen.explanation.network_words import words_of
 from pursue_gen.tga import translate
 from pursue_gen.tga.network import Edge, Network, Test
-from pursue_gen.tga.own_turns import own_turns
+from pursue_gen.vocabulary.statuses import statuses
 from tests.tga.networks import scenario
 
 CARTS = """
@@ -71,7 +70,6 @@ def test_other_guards_and_what_is_set_stay() -> None:
 
 def test_turns_in_words() -> None:
     read = scenario(CARTS)
-    words = words_of(read, translate(read))
-    first = next(iter(own_turns(read)))
-    texts = [words.place(first.name, location.name) for location in first.order.locations]
-    assert first.name == "bag of cart1" and texts[:3] == ["next: load", "next: the end of load", "next: unload or rest"]
+    first = next(iter(statuses(read, translate(read))))
+    texts = list(first.texts.values())
+    assert first.label == "bag of cart1" and texts[:3] == ["next: load", "load goes on", "next: unload or rest"]

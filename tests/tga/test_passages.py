@@ -10,7 +10,7 @@ from pursue_gen.language import parse
 from pursue_gen.tga import translate
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.passages import Passage, passage_automaton, with_passages
-from pursue_gen.tga.status_words import own_words
+from pursue_gen.vocabulary.statuses import statuses
 
 TEXT = """
 poi "a"
@@ -87,7 +87,9 @@ def test_visits_of_one_robot_have_an_automaton_of_their_own() -> None:
 
 
 def test_words() -> None:
-    words = own_words(with_passages(network(), [Passage("b", ("bot1", "bot2"))]))["b_passage"]
+    passing = with_passages(network(), [Passage("b", ("bot1", "bot2"))])
+    found = statuses(parse(TEXT, "passing.pur", "passing"), passing)
+    (words,) = (each.texts for each in found if each.of == "b_passage")
     assert words["awaits_bot1_1"] == "next is bot1, visit 1"
     assert words["has_bot2_2"] == "taken by bot2, visit 2"
     assert words["awaits_nobody"] == "nobody comes any more"

@@ -9,8 +9,8 @@ import pytest
 from pursue_gen.language import parse
 from pursue_gen.tga import translate
 from pursue_gen.tga.network import Network
-from pursue_gen.tga.status_words import own_words, statuses
 from pursue_gen.tga.tours import Tour, tour_automaton, with_tours
+from pursue_gen.vocabulary.statuses import statuses
 
 TEXT = """
 poi "a"
@@ -84,7 +84,6 @@ def test_one_that_is_there_is_left_as_it_is() -> None:
 
 def test_its_locations_have_words() -> None:
     toured = with_tours(network(), [ROUND])
-    assert own_words(toured)["bot1_tour"]["stop_2"] == "stop 2 of 4"
-    assert own_words(toured)["bot1_tour"]["lose"] == "off the tour"
     (status,) = (each for each in statuses(parse(TEXT, "round.pur", "round"), toured) if each.of == "bot1_tour")
     assert status.label == "tour of bot1"
+    assert (status.texts["stop_2"], status.texts["lose"]) == ("stop 2 of 4", "off the tour")

@@ -31,9 +31,9 @@ from pursue_gen.workspace.packages import RECEIVING, RUNTIME, SHARED
 from pursue_gen.workspace.poses_text import poses_text
 from pursue_gen.workspace.spots import placing
 from pursue_runtime import bundle
+from pursue_runtime.event_words import MARKERS
 from pursue_runtime.poses import read_poses
 from pursue_runtime.ui.promise import read_promise
-from pursue_runtime.words import MARKERS
 from tests.runtime.texts import read
 
 SHAPES = [

@@ -9,9 +9,9 @@ from pursue_gen.diagnostics import PursueError, counted, error
 from pursue_gen.drawing.look import ACCENT, INK, PAPER, RULE, AgentLook, agent_looks, mark, safe, svg, tag, text
 from pursue_gen.files import write_texts
 from pursue_gen.tools.calibration.proposal import Finding, Proposal, window_text
+from pursue_gen.tools.calibration.proposal_report import HEAD, changed, proposed, rows, sentences, shown, unknown
 from pursue_gen.tools.calibration.samples import Way
 from pursue_gen.tools.calibration.solved_again import Verdict
-from pursue_gen.tools.calibration.texts import HEAD, changed, proposed, rows, sentences, shown, unknown
 from pursue_gen.tools.report.html import Section, figure, page, table
 from pursue_gen.tools.report.timeline import nice_step
 

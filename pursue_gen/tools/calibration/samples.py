@@ -9,8 +9,9 @@ from pursue_gen.language.network_names import agent_clock, going
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
 from pursue_gen.tools.replay.record import MissionRecord
+from pursue_gen.vocabulary.agents import place
 from pursue_runtime.drives.report import ARRIVED, Drive
-from pursue_runtime.locations import action_of, in_words
+from pursue_runtime.locations import action_of
 from pursue_runtime.state import WAITING, SystemState
 
 _SAME = 0.005
@@ -125,7 +126,7 @@ class _Names:
     """From locations to ways and events of a scenario."""
 
     def __init__(self, scenario: Scenario) -> None:
-        self.agents = {agent.name for agent in scenario.agents}
+        self.scenario = scenario
         self._ways: Dict[Tuple[str, str], Way] = {
             (agent.name, going(*way)): Way(agent.name, *way)
             for agent in scenario.agents
@@ -217,7 +218,7 @@ class _Stays:
             return None  # no agent
         start, what = _start(agent, state), self._names.what(agent, location)
         if what is None:
-            self.strangers.add(f"{agent} {in_words(location)}")
+            self.strangers.add(f"{agent} {place(self._names.scenario, location)}")
         leads = True
         if isinstance(what, Work):  # several may do it together, and it counts once
             leads = abs(self._shared.get(what, float("-inf")) - start) > _SAME

@@ -63,7 +63,7 @@ def calibrate(
     mission (rosrun UI drive_legs). Needs no ROS.
     """
     from pursue_gen import api
-    from pursue_gen.tools.calibration import texts
+    from pursue_gen.tools.calibration import proposal_report
     from pursue_gen.tools.calibration.proposal import propose
     from pursue_gen.tools.calibration.recordings import samples_in
 
@@ -75,13 +75,13 @@ def calibrate(
     show(findings)
     proposal = propose(scenario, samples, replace(options, unit=samples.unit or 1.0))
     if not as_json_:
-        print(*texts.report(proposal), sep="\n")
+        print(*proposal_report.report(proposal), sep="\n")
     proposed = proposal.checked()
     verdicts = _verdicts(scenario, proposed, request, as_json_) if solved else ()
     if as_json_:
-        print(json.dumps(texts.as_json(proposal, verdicts), indent=1))
+        print(json.dumps(proposal_report.as_json(proposal, verdicts), indent=1))
     elif verdicts:
-        print("", *texts.changed(proposal, *verdicts), sep="\n")
+        print("", *proposal_report.changed(proposal, *verdicts), sep="\n")
     if picture is not None:
         _draw(proposal, verdicts, picture)
     if output is not None:

@@ -90,7 +90,7 @@ def _print(
     as_json_: bool,
 ) -> None:
     from pursue_gen.tools.calibration.advice import advice_json, reaction_advice
-    from pursue_gen.tools.calibration.texts import left_most, left_most_json
+    from pursue_gen.tools.calibration.proposal_report import left_most, left_most_json
     from pursue_gen.tools.replay.summary import as_json, listed, summary, verdict
     from pursue_gen.workspace.model_file import model_data
     from pursue_runtime.model import Model

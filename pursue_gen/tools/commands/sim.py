@@ -119,7 +119,7 @@ def _draw(summary: Summary, seed: int, timeline: Path) -> None:
 
 
 def _print(summary: Summary, facts: Dict[str, Any], as_json_: bool) -> None:
-    from pursue_gen.tools.simulation.outcome_texts import as_json, failure, table
+    from pursue_gen.tools.simulation.outcome_table import as_json, failure, table
 
     if as_json_:
         print(json.dumps(as_json(summary, facts), indent=1))

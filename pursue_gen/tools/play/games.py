@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Optional
 
-from pursue_gen.explanation.network_words import words_of
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import Lost
 from pursue_gen.solving.optional import promised
@@ -17,6 +16,7 @@ from pursue_gen.tools.play.counter import counter_game
 from pursue_gen.tools.play.session import GameOf, Session
 from pursue_gen.tools.play.state import beginning, setup_of
 from pursue_gen.tools.play.world import StrategyPlay
+from pursue_gen.vocabulary.words import words_of
 
 
 def session_of(

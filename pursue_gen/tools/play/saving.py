@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any, Dict, Iterator
 
 from pursue_gen import __version__
-from pursue_gen.explanation.texts import time_text
 from pursue_gen.files import write_texts
+from pursue_gen.language.numbers import time_text
 from pursue_gen.solving.rules import rules_text
 from pursue_gen.tools.play.state import LOST, ROBOTS, RUNNING, WON, PlayedMove, PlayState, Setup
 from pursue_runtime.observer.records import FORMAT, format_record

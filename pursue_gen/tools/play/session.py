@@ -12,23 +12,22 @@ from pathlib import Path
 from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.explanation.network_words import Words
-from pursue_gen.explanation.texts import time_text
+from pursue_gen.language.numbers import time_text
 from pursue_gen.language.wording import objective_words, promise_words
 from pursue_gen.tools.play.advice import Holding
 from pursue_gen.tools.play.counter import CounterPlay
 from pursue_gen.tools.play.saving import save
-from pursue_gen.tools.play.state import RUNNING, PlannedMove, PlayState, Setup, taken
-from pursue_gen.tools.play.texts import (
+from pursue_gen.tools.play.situation import (
     deed_text,
     ending,
     move_text,
-    order_text,
     overview,
     situation,
     window_text,
 )
+from pursue_gen.tools.play.state import RUNNING, PlannedMove, PlayState, Setup, taken
 from pursue_gen.tools.play.world import Offer, StrategyPlay
+from pursue_gen.vocabulary.words import Words
 
 GameOf = Union[StrategyPlay, CounterPlay]
 
@@ -100,7 +99,7 @@ def shown(session: Session) -> Tuple[str, ...]:
     """Where everything stands, what comes next, and what the person can do."""
     setup, play = session.setup, session.play
     if play.over:
-        return (ending(setup, session.words, play),)
+        return (ending(setup, play),)
     lines = [f"Time {time_text(play.now)}", *situation(setup, session.words, play)]
     if isinstance(session.game, StrategyPlay):
         lines.append(_intention(session, session.game))
@@ -119,7 +118,7 @@ def choices(session: Session) -> Tuple[Tuple[str, str], ...]:
 
 def _offered(session: Session, offer: Offer) -> Tuple[str, str]:
     edge = session.setup.game.origins[offer.move.edges[0]]
-    what = f"{session.setup.scenario.shown(offer.agent)}: {order_text(session.words, offer.agent, edge)}"
+    what = f"{session.setup.scenario.shown(offer.agent)}: {session.words.command(offer.agent, edge)}"
     when = window_text(session.play.now, offer.open_)
     return what, when if offer.drawn is None else f"{when} (comes at {time_text(offer.drawn)} if you say nothing)"
 
@@ -307,14 +306,14 @@ def _block_texts(session: Session, holding: Holding, size: int) -> List[str]:
     lines = [f"Block {holding.number} of {size} of the strategy holds here."]
     if holding.command is not None:
         first = holding.command.moves[0]
-        said = order_text(session.words, first.automaton, first.edge)
+        said = session.words.command(first.automaton, first.edge)
         says = said if first.automaton not in setup.agents else f"{setup.scenario.shown(first.automaton)}: {said}"
     when = f": {session.words.when(holding.zone)}" if holding.zone else " nothing else happens"
     lines.append(f"It says {says}, as long as{when}.")
     for command in holding.block.commands:
         if command is not holding.command:
             first = command.moves[0]
-            said = order_text(session.words, first.automaton, first.edge)
+            said = session.words.command(first.automaton, first.edge)
             when = " or ".join(session.words.when(zone) for zone in command.zones)
             lines.append(f"At other moments here: {first.automaton}: {said}, as long as: {when}.")
     return lines
@@ -335,7 +334,7 @@ def farewell(session: Session) -> str:
     """How it stood when the person left."""
     play, setup = session.play, session.setup
     if play.status != RUNNING:
-        return ending(setup, session.words, play)
+        return ending(setup, play)
     at = time_text(play.now)
     if isinstance(session.game, CounterPlay):
         return f"You have left at {at}: the robots have not done it, and could not have been sure of it."

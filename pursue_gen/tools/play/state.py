@@ -25,8 +25,8 @@ from pursue_gen.synthesis.game import (
 )
 from pursue_gen.synthesis.strategy import Command, Strategy, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tga.words import event_word
 from pursue_gen.zones.dbm import is_strict
 
 GRAIN = Fraction(1, 1000)

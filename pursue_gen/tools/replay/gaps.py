@@ -15,8 +15,8 @@ from pursue_gen.tools.replay.finding import NOTE, Finding
 from pursue_gen.tools.replay.moves import DiscreteState, Move, Moves, after, place_of
 from pursue_gen.tools.replay.orders import Orders, since_for
 from pursue_gen.tools.replay.record import MissionRecord, RecordedWord
+from pursue_runtime.event_words import FINISH
 from pursue_runtime.state import LIVE, RUNNING, WON, SystemState
-from pursue_runtime.words import FINISH
 
 AROUND = 0.25
 """Seconds by which the recorder's clock may be beside the observer's."""

@@ -13,9 +13,9 @@ from pursue_gen.tools.replay.assumptions import breach, overstayed, without
 from pursue_gen.tools.replay.moves import EXACT, DiscreteState, Move, Moves, after
 from pursue_gen.tools.replay.record import MissionRecord, RecordedWord, read_word
 from pursue_runtime.bounded import BadText, read_json
+from pursue_runtime.event_words import FAILED, FINISH, ORDERED, PLANNED, START, STOP
 from pursue_runtime.observer.records import parse_record
 from pursue_runtime.state import LOST, RUNNING, STOPPED, WAITING, WON, SystemState
-from pursue_runtime.words import FAILED, FINISH, ORDERED, PLANNED, START, STOP
 
 FORMATS = (1, 2)
 CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "searching", "stop", "restarted", "adopted")

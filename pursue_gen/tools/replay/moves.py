@@ -7,8 +7,8 @@ from typing import Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence
 
 from pursue_gen.language.network_names import assumption_clock
 from pursue_gen.language.symbols import Role, Symbol, role_of
+from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import ClockBound, Edge, Network, Objective
-from pursue_gen.tga.words import event_word
 from pursue_runtime.state import SystemState
 
 EXACT = 1e-6

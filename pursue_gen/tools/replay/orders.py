@@ -10,7 +10,7 @@ from typing import Any, Dict, FrozenSet, Iterable, List, Mapping, Optional, Tupl
 from pursue_gen.synthesis.lookup import Entry, StateTable
 from pursue_gen.synthesis.plan_text import read_constraint
 from pursue_gen.synthesis.strategy import Constraint, Strategy, Zone
-from pursue_gen.tga.words import event_word
+from pursue_gen.tga.event_words import event_word
 from pursue_gen.tools.replay.moves import DiscreteState, Move, Moves, after
 from pursue_runtime.bounded import exact
 

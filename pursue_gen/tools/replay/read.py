@@ -15,9 +15,9 @@ from pursue_gen.tools.replay.journal import Journal, read_journal
 from pursue_gen.tools.replay.record import MissionRecord, RecordedWord, RobotOrder, ordered, read_word
 from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.drives.report import DRIVES, Drive, parse_drive
+from pursue_runtime.event_words import parse_word
 from pursue_runtime.named_files import open_regular, read_all
 from pursue_runtime.state import SystemState, parse_state
-from pursue_runtime.words import parse_word
 
 EXPECTED = "name a bag of ROS 1 (launch the mission with record:=true), or an observer's journal (journal-….jsonl)"
 

@@ -6,9 +6,9 @@ from typing import AbstractSet, Iterable, List, Set, Tuple
 
 from pursue_gen.tools.replay.finding import FAULT, UNRECORDED, Finding
 from pursue_gen.tools.replay.record import MissionRecord
+from pursue_runtime.event_words import ORDERED
 from pursue_runtime.orders import parse_orders
 from pursue_runtime.state import WON, SystemState
-from pursue_runtime.words import ORDERED
 
 Receipt = Tuple[str, int]
 """A robot, and the number of the state that its order follows from."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any, Iterator, Mapping, Optional, Tuple
 
 from pursue_runtime.drives.report import Drive
+from pursue_runtime.event_words import FINISH, Word, parse_report, parse_word
 from pursue_runtime.state import SystemState
-from pursue_runtime.words import FINISH, Word, parse_report, parse_word
 
 
 @dataclass(frozen=True)

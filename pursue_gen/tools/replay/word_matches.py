@@ -10,9 +10,7 @@ from typing import Dict, FrozenSet, List, Mapping, Optional, Sequence, Set, Tupl
 from pursue_gen.tools.replay.finding import NOTE, WORLD, Finding
 from pursue_gen.tools.replay.moves import EXACT, DiscreteState, Moves, place_of
 from pursue_gen.tools.replay.record import MissionRecord, RecordedWord
-from pursue_runtime.sentences import in_words
-from pursue_runtime.state import ENDED, HOLDING, WAITING, SystemState
-from pursue_runtime.words import (
+from pursue_runtime.event_words import (
     BACK,
     BLOCKED,
     DISPLACED,
@@ -28,6 +26,8 @@ from pursue_runtime.words import (
     STOP,
     STUCK,
 )
+from pursue_runtime.sentences import in_words
+from pursue_runtime.state import ENDED, HOLDING, WAITING, SystemState
 
 CONTROL = (START, PING, STOP, FINISH)
 REPORTS = {BLOCKED: WORLD, STUCK: WORLD, FREE: NOTE, HELD: WORLD, RESUME: NOTE, DISPLACED: WORLD, BACK: NOTE}

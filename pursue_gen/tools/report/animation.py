@@ -18,7 +18,6 @@ from pursue_gen.drawing import map_svg
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.layout import poses
 from pursue_gen.drawing.look import AgentLook, agent_looks, mark, safe, tag, text
-from pursue_gen.explanation.network_words import Words, words_of
 from pursue_gen.files import write_texts
 from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.language.symbols import Role, Symbol
@@ -26,6 +25,7 @@ from pursue_gen.tools.report import timeline
 from pursue_gen.tools.report.html import Section, asset, data, page
 from pursue_gen.tools.report.recording import Recording, Stay, Step, ending_text, stays
 from pursue_gen.tools.report.timeline import event_text
+from pursue_gen.vocabulary.words import Words, words_of
 
 _ID = "animation"
 _AWAY = 28.0

@@ -10,6 +10,7 @@ from fractions import Fraction
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen import __version__
+from pursue_gen.columns import columns
 from pursue_gen.language.scenario import Agent
 from pursue_gen.partition import CENTRALIZED, DISTRIBUTED, GENERAL, SubStrategy, partition
 from pursue_gen.partition.split import CONTROLLER, DEDICATED, UI
@@ -154,7 +155,7 @@ def render_table(table: CommandsTable) -> str:
     title = f"{table.scenario}: commands and lines per controller (reachObj's commands: {table.reach_obj}"
     if table.thesis_reach_obj and table.thesis_reach_obj != table.reach_obj:
         title += f"; in the thesis: {table.thesis_reach_obj}"
-    return "\n".join([title + ")", "", *_aligned([heads, *cells]), "", *_NOTES[table.ends]]) + "\n"
+    return "\n".join([title + ")", "", *columns([heads, *cells], ruled=True), "", *_NOTES[table.ends]]) + "\n"
 
 
 def _thesis_cells(figure: Optional[Figure], general: Figure) -> List[str]:
@@ -174,15 +175,3 @@ def _percent_text(part: int, whole: int) -> str:
     """The share as the table shows it."""
     percent = _percent(part, whole)
     return "-" if percent is None else f"{percent:.1f}"
-
-
-def _aligned(cells: Sequence[Sequence[str]]) -> List[str]:
-    """The lines of a table: the first column to the left, numbers to the right, a rule below the heads."""
-    widths = [max(len(row[column]) for row in cells) for column in range(len(cells[0]))]
-    lines = [
-        "  ".join(
-            cell.rjust(width) if column else cell.ljust(width) for column, (cell, width) in enumerate(zip(row, widths))
-        )
-        for row in cells
-    ]
-    return [line.rstrip() for line in [lines[0], "  ".join("-" * width for width in widths), *lines[1:]]]

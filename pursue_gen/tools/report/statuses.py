@@ -7,9 +7,9 @@ from typing import Dict, List, Tuple
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import Condition, condition_text
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.tga.status_words import statuses
 from pursue_gen.tools.report.recording import Recording, Stay, Step, lasting
 from pursue_gen.tools.simulation.meaning import holds
+from pursue_gen.vocabulary.statuses import statuses
 
 
 def conditions(scenario: Scenario) -> Dict[str, Condition]:
@@ -37,7 +37,7 @@ def broken(recording: Recording) -> Tuple[Tuple[str, Stay], ...]:
 
 
 def changes(recording: Recording) -> Tuple[str, ...]:
-    """For each step what it has changed, as in `bag of bot: load done, next: unload`; "" where that is nothing."""
+    """For each step what it has changed, as in `bag of bot: next: unload`; "" where that is nothing."""
     shown = [_texts(recording, step) for step in recording.steps]
     found = []
     for before, now in zip([{}, *shown], shown):
@@ -49,9 +49,9 @@ def _texts(recording: Recording, step: Step) -> Dict[str, str]:
     """label → what that is at."""
     texts = {}
     for status in statuses(recording.scenario, recording.network):
-        value = step.locations.get(status.of) or str(step.values.get(status.of, ""))
-        if value in status.texts:
-            texts[status.label] = status.texts[value]
+        value = status.text(step.locations, step.values)
+        if value is not None:
+            texts[status.label] = value
     for text, condition in conditions(recording.scenario).items():
         texts[text] = "holds" if _holds(recording, condition, step) else "does not hold"
     return texts

@@ -76,7 +76,7 @@
 
   // What a question says: of whom, and who is where. ---------------------------------------------------------------
   const SMALL = new Set(("a an the what will would does do is are be being who where how if when while once and or then that it " +
-    "goes go going moves move walks walk drives drive on way of gets get happens happen now must should can has have there " +
+    "goes go going moves move walks walk drives drive on its way of gets get happens happen now must should can has have there " +
     "to towards toward into from leaves leave at in reaches reach arrives doing begins true false not").split(" "));
   const HOW = { to: "to", towards: "to", toward: "to", into: "to", from: "from", leaves: "from", leave: "from", at: "at", in: "at",
     reaches: "at", arrives: "at", doing: "doing", begins: "doing" };

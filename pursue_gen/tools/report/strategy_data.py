@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.explanation.network_words import Words, words_of, zone_texts
 from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, Symbol, role_of
@@ -17,6 +16,7 @@ from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import Game, State, initial_state, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Place, Strategy, Zone
 from pursue_gen.tga.network import Objective
+from pursue_gen.vocabulary.words import Words, words_of, zone_texts
 
 Key = Tuple[Tuple[str, str, str, str], ...]
 

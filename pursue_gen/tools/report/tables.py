@@ -14,7 +14,7 @@ from pursue_gen.tools.report.commands import CommandsTable, Game, commands_table
 from pursue_gen.tools.report.html import Section, table
 from pursue_gen.tools.report.thesis_figures import Times, thesis_times
 from pursue_gen.tools.simulation.outcome import Settings
-from pursue_gen.tools.simulation.outcome_texts import END_TEXTS, driven_words
+from pursue_gen.tools.simulation.outcome_table import END_TEXTS, driven_words
 from pursue_gen.tools.simulation.runs import Case, Summary, case_of, simulate
 from pursue_gen.workspace import Options
 

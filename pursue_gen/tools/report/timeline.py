@@ -6,18 +6,17 @@ from dataclasses import dataclass, replace
 from typing import Dict, Iterator, List, Mapping, Sequence, Tuple
 
 from pursue_gen.drawing.look import AgentLook, agent_looks, mark, patterns, safe, svg, tag, text
-from pursue_gen.explanation.network_words import Words, words_of
 from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import UNDER_WAY, Role, Symbol, role_of
-from pursue_gen.tga.counts import counted
+from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import stated
-from pursue_gen.tga.own_turns import own_turns
-from pursue_gen.tga.words import event_word
 from pursue_gen.tools.report.html import Section, table
 from pursue_gen.tools.report.recording import Recording, Stay, Step, ending_text, lasting, stays
 from pursue_gen.tools.report.statuses import broken, changes, conditions, holding
+from pursue_gen.vocabulary.statuses import courses
+from pursue_gen.vocabulary.words import Words, words_of
 from pursue_runtime.state import HOLDING, LOST, STOPPED, WON
 
 _WIDTH, _WIDEST = 960.0, 2000.0
@@ -130,10 +129,7 @@ def _bar_label(recording: Recording, words: Words, location: str) -> str:
 
 def _names(recording: Recording) -> List[str]:
     scenario = recording.scenario
-    lanes = [*map(scenario.shown, recording.agents), *(s.name for s in scenario.states)]
-    lanes += [rule.name for rule in scenario.rules]
-    lanes += [own.name for own in own_turns(scenario)]
-    lanes += [names.count(event.name) for event, _ in counted(scenario)]
+    lanes = [*map(scenario.shown, recording.agents), *(each.label for each in courses(scenario, recording.network))]
     return [*lanes, *conditions(scenario), *_due(scenario).values()]
 
 
@@ -175,25 +171,12 @@ def _lanes(
         fill = f"url(#{ident}-fill-{number})"
         bars = tuple(_agent(recording, words, scale, agent, looks[agent], fill))
         lanes.append(Lane(recording.scenario.shown(agent), bars, agent))
-    for state in recording.scenario.states:
-        changes = ((step.at, str(step.values.get(names.state_value(state.name), 0))) for step in recording.steps)
-        found = [stay for stay in lasting(recording, changes) if stay.what == "1"]
-        lanes.append(Lane(state.name, tuple(_box(scale, stay, "true") for stay in found)))
-    for rule in (rule for rule in recording.scenario.rules if not rule.each):
-        lanes.append(_turns(rule.name, list(stays(recording, rule.name)), words, scale))
-    for own in own_turns(recording.scenario):
-        places = [location.name for location in own.order.locations]
-        changes = ((step.at, places[step.values.get(own.variable, 0)]) for step in recording.steps)
-        lanes.append(_turns(own.name, lasting(recording, changes), words, scale))
-    for event, _ in counted(recording.scenario):
-        name = names.count(event.name)
-        counts = tuple(_line(scale, stay, words.place(name, stay.what)) for stay in stays(recording, name))
-        lanes.append(Lane(name, counts))
-    for battery in recording.scenario.batteries:
-        level = names.level(battery.agent.name)
-        changes = ((step.at, str(step.values.get(level, battery.capacity))) for step in recording.steps)
-        charge = tuple(_line(scale, stay, stay.what) for stay in lasting(recording, changes))
-        lanes.append(Lane(f"battery of {battery.agent.shown}", charge))
+    for status in courses(recording.scenario, recording.network):
+        texts = ((step.at, status.text(step.locations, step.values) or "") for step in recording.steps)
+        found = lasting(recording, texts)
+        is_state = "true" in status.texts.values()
+        trues = tuple(_box(scale, stay, "true") for stay in found if stay.what == "true")
+        lanes.append(Lane(status.label, trues if is_state else tuple(_line(scale, stay, stay.what) for stay in found)))
     for words_of_it, condition in conditions(recording.scenario).items():
         parts = [_box(scale, stay, "holds", f"{words_of_it} holds") for stay in holding(recording, condition)]
         lanes.append(Lane(words_of_it, tuple(parts)))
@@ -232,12 +215,6 @@ def _agent(
         under = text(x, 50, label, "pg-small pg-strong") if room > free else ""
         free = x + len(label) * _LETTER / 2 if under else free
         yield tag("g", tooltip, drawn, under, class_="instant")
-
-
-def _turns(name: str, found: Sequence[Stay], words: Words, scale: Scale) -> Lane:
-    """What a rule waited for, and what went on."""
-    turns = (words.place(name, stay.what).replace("next: the end of ", "during ") for stay in found)
-    return Lane(name, tuple(_line(scale, stay, turn) for stay, turn in zip(found, turns)))
 
 
 def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:

@@ -9,8 +9,7 @@ from pursue_gen.diagnostics import Diagnostic, listed, units
 from pursue_gen.drawing.look import safe
 from pursue_gen.explanation.costs import Costs, in_words
 from pursue_gen.explanation.explain import Explanation, attempt_texts, endless_texts, how_found, play_title
-from pursue_gen.explanation.texts import time_text
-from pursue_gen.language.numbers import decimal_text
+from pursue_gen.language.numbers import decimal_text, time_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import kind_words, objective_words, promise_words, speed_words
 from pursue_gen.partition import unneeded, unneeded_words

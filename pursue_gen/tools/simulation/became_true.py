@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Dict, List, Optional, Set, Tuple
 
+from pursue_runtime.event_words import parse_report, parse_word, said_at
 from pursue_runtime.state import SystemState
-from pursue_runtime.words import parse_report, parse_word, said_at
 
 
 class BecameTrue:

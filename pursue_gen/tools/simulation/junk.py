@@ -5,9 +5,9 @@ from __future__ import annotations
 import random
 from typing import Optional, Sequence
 
+from pursue_runtime.event_words import parse_word
 from pursue_runtime.observer.assumptions import without
 from pursue_runtime.observer.mission import Mission
-from pursue_runtime.words import parse_word
 
 JUNK = ("", "\u2603", "bot1 goes", "_start_", "_ping_", "unknown:nothing@3", "_plan_@1", "@@", ":_failed_", "x" * 3000)
 """Words that mean nothing in any state of a mission that is under way."""

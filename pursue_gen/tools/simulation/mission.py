@@ -20,13 +20,13 @@ from pursue_gen.tools.simulation.recorder import EPSILON, Judgement, Recorder
 from pursue_gen.tools.simulation.remaining import Remaining
 from pursue_gen.tools.simulation.stage import Stage
 from pursue_gen.tools.simulation.world import SimulatedAgent
+from pursue_runtime.event_words import Word, format_word
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planning import PlanRequest
 from pursue_runtime.observer.witnesses import PATIENCE
 from pursue_runtime.orders import Order
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, STOPPED, WON, SystemState
-from pursue_runtime.words import Word, format_word
 
 START = 1000.0
 """The moment at which missions start, in seconds of ROS time."""

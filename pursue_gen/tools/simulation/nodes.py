@@ -8,6 +8,7 @@ from typing import Any, Dict, List, Mapping, Optional, Protocol, Sequence, Union
 from pursue_gen.tools.simulation.event_queue import Action, EventQueue, Timer
 from pursue_gen.tools.simulation.stage import Stage
 from pursue_runtime.controller.scheduler import CommandScheduler
+from pursue_runtime.event_words import Word, parse_word
 from pursue_runtime.observer.journal import Journal, Log, replay
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.planning import PlanRequest
@@ -18,7 +19,6 @@ from pursue_runtime.state import LIVE, SystemState
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui import mission_view as ui
 from pursue_runtime.ui.environment import IdleEnvironment
-from pursue_runtime.words import Word, parse_word
 
 TICK = 1e-9
 """Seconds by which an alarm rings after its moment, so that its moment has come by any clock."""

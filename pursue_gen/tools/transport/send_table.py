@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
+from pursue_gen.columns import columns
 from pursue_gen.tools.transport.client import Status
 from pursue_gen.tools.transport.sender import Row
 from pursue_runtime.manifest import mission_id
@@ -17,9 +18,7 @@ def table(rows: Sequence[Row], looked: bool = False) -> List[str]:
 
     `before` is what it had before it was sent something; where it was only `looked` at, before what it has now.
     """
-    cells = [_HEAD, *(_cells(row, looked) for row in rows)]
-    widths = [max(len(line[column]) for line in cells) for column in range(len(_HEAD) - 1)]
-    return ["  ".join((*(cell.ljust(width) for cell, width in zip(line, widths)), line[-1])) for line in cells]
+    return columns([_HEAD, *(_cells(row, looked) for row in rows)], "<")
 
 
 def _cells(row: Row, looked: bool) -> Tuple[str, ...]:

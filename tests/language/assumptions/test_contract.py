@@ -23,8 +23,8 @@ from pursue_gen.language.occurrences import occurrences
 from pursue_gen.language.scenario import Ref, Scenario
 from pursue_gen.language.word import HOLE
 from pursue_gen.tga.assumptions import _KEPT
+from pursue_runtime.event_words import Word
 from pursue_runtime.observer.assumptions import breach
-from pursue_runtime.words import Word
 from tests.course import Course
 from tests.plays import Play
 

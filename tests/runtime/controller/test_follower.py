@@ -9,10 +9,10 @@ import pytest
 from pursue_runtime import missions as pursue_missions
 from pursue_runtime.controller.follower import Follower
 from pursue_runtime.data import DataError
+from pursue_runtime.event_words import Word, format_word
 from pursue_runtime.missions import Missions
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy
-from pursue_runtime.words import Word, format_word
 from tests.runtime.texts import read
 
 A, B, C = "a" * 12, "b" * 12, "c" * 12

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from pursue_runtime.controller.scheduler import CommandScheduler
+from pursue_runtime.event_words import Word
 from pursue_runtime.strategy import Plans, Strategy
-from pursue_runtime.words import Word
 from tests.runtime.controller.test_scheduler import STRATEGY, state
 from tests.runtime.texts import read
 

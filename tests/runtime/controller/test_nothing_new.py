@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any, Tuple
 
 from pursue_runtime.controller.scheduler import CommandScheduler
+from pursue_runtime.event_words import Word
 from pursue_runtime.model import Model
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.environment import IdleEnvironment
 from pursue_runtime.ui.mission_view import MissionView
-from pursue_runtime.words import Word
 from tests.runtime.models import model_data, mover
 from tests.runtime.texts import read
 

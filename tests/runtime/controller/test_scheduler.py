@@ -7,10 +7,10 @@ from typing import Any, List, Optional, Tuple
 import pytest
 
 from pursue_runtime.controller.scheduler import UNREADY, CommandScheduler
+from pursue_runtime.event_words import Word
 from pursue_runtime.orders import Order, parse_order
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Command, Strategy
-from pursue_runtime.words import Word
 from tests.runtime.texts import read
 
 STRATEGY = """

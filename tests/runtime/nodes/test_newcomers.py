@@ -12,8 +12,8 @@ pytest.importorskip("rospy", reason="ROS is not installed")
 from rospy.topics import _PublisherImpl
 from std_msgs.msg import String
 
+from pursue_runtime.event_words import REPORTED
 from pursue_runtime.nodes.publishing import Newcomers
-from pursue_runtime.words import REPORTED
 from tests.runtime.nodes.test_publish_to_one import Lock, Subscriber
 
 

@@ -13,11 +13,11 @@ pytest.importorskip("rospy", reason="ROS is not installed")
 
 from std_msgs.msg import String
 
+from pursue_runtime.event_words import FINISH
 from pursue_runtime.nodes import observer as observer_module
 from pursue_runtime.nodes.observer import Observer
 from pursue_runtime.observer.returning import Returning
 from pursue_runtime.state import SystemState
-from pursue_runtime.words import FINISH
 
 
 @pytest.fixture

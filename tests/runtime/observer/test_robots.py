@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pursue_runtime.event_words import RobotReport, format_report, parse_report, parse_word
 from pursue_runtime.model import Model
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import format_state, parse_state
-from pursue_runtime.words import RobotReport, format_report, parse_report, parse_word
 from tests.runtime.models import commanding
 from tests.runtime.observer.test_mission import Journey
 from tests.runtime.texts import read

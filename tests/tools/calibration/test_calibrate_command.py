@@ -10,7 +10,7 @@ from typing import Any, List
 import pytest
 
 from pursue_gen.language import load, parse
-from pursue_gen.tools.calibration import texts
+from pursue_gen.tools.calibration import proposal_report
 from pursue_gen.tools.calibration.proposal import Options, Proposal, propose
 from pursue_gen.tools.calibration.samples import Sample, Samples, Way, Work
 from pursue_runtime.drives.report import Drive
@@ -169,7 +169,7 @@ def test_what_is_not_known_is_said_first_and_then_nothing_is_claimed(folder: Pat
 
 def test_where_all_was_measured_often_nothing_of_that_is_said() -> None:
     found = proposal([Sample(way, 5.0 + 0.1 * n) for way in (OUT, BACK) for n in range(6)])
-    assert next(texts.report(found)) == "1 time unit = 1 s; times in time units" and found.claims
+    assert next(proposal_report.report(found)) == "1 time unit = 1 s; times in time units" and found.claims
 
 
 def test_how_long_a_robot_tried_in_vain_says_nothing_of_how_long_to_wait(folder: Path, tmp_path: Path) -> None:
@@ -191,7 +191,7 @@ agent "mate" controllable mobile 1 location desk can_do carry reacts_to carry
         found = proposal([Sample(OUT, 4.0)], text.replace('"mate" controllable', f'"mate" {whose}controllable'))
         assert found.missing_events == (Work("fetch"), Work("carry")) and found.of_others == of_others
         told = "Not robots alone do this, so only recorded missions measure it: carry."
-        assert (told in list(texts.report(found))) is bool(whose)
+        assert (told in list(proposal_report.report(found))) is bool(whose)
 
 
 def test_durations_of_actions_are_proposed_too() -> None:
@@ -204,8 +204,8 @@ def test_durations_of_actions_are_proposed_too() -> None:
 def test_actions_that_were_not_measured_are_named() -> None:
     found = proposal([Sample(OUT, 4.0), Sample(BACK, 4.0)])
     assert found.missing == () and found.missing_events == (Work("fetch"),)
-    assert any(line.startswith("Not measured, so durations stay: fetch. (") for line in texts.report(found))
-    assert texts.as_json(found, ())["missing_events"] == ["fetch"]
+    assert any(line.startswith("Not measured, so durations stay: fetch. (") for line in proposal_report.report(found))
+    assert proposal_report.as_json(found, ())["missing_events"] == ["fetch"]
 
 
 def test_an_action_that_takes_hardly_any_time_keeps_a_duration() -> None:

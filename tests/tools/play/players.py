@@ -9,7 +9,6 @@ from typing import List, Optional, Tuple
 
 from hypothesis import strategies as st
 
-from pursue_gen.explanation.network_words import words_of
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import IDEAL, Rules
@@ -18,6 +17,7 @@ from pursue_gen.tools.play.games import session_of
 from pursue_gen.tools.play.session import GameOf, Session
 from pursue_gen.tools.play.state import GRAIN, PlannedMove, PlayState, beginning
 from pursue_gen.tools.play.world import Offer, StrategyPlay
+from pursue_gen.vocabulary.words import words_of
 
 SCENARIOS = Path(__file__).resolve().parents[3] / "scenarios"
 

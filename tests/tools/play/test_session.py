@@ -32,12 +32,12 @@ def test_it_begins_with_who_plays_whom() -> None:
     won, lost = "\n".join(opening(session(THIEF))), "\n".join(opening(session("cage")))
     assert "You play all other agents" in won
     assert "You play the robots" in lost
-    assert "1  thief: set off from c to b" in won
+    assert "1  thief: go to b" in won
 
 
 def test_a_number_and_a_moment() -> None:
     at, told = say(session(THIEF), "1 @ 3.5", "wait")
-    assert "thief    on the way from c to b since 3.5; arrives between 15.5 and 16.5" in told
+    assert "thief    on its way from c to b since 3.5; arrives between 15.5 and 16.5" in told
     assert at.play.now == Fraction(7, 2)
 
 

@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from players import do, game, moments, whims, world
 
-from pursue_gen.explanation.network_words import words_of
+from pursue_gen.tools.play.situation import situation
 from pursue_gen.tools.play.state import CHANCE, LOST, OTHERS, ROBOTS, RUNNING, WON, PlannedMove, beginning, last_moment
-from pursue_gen.tools.play.texts import situation
 from pursue_gen.tools.play.world import StrategyPlay
+from pursue_gen.vocabulary.words import words_of
 
 REACH = ("thesis/scenario_1", "thesis/scenario_2", "thesis/scenario_3", "thesis/scenario_4", "thesis/catch_the_thief",
          "catch_the_thief/one_officer", "museum/film")

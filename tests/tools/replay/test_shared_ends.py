@@ -20,11 +20,11 @@ from pursue_gen.tools.replay.journal import read_journal, reconstruct
 from pursue_gen.tools.replay.moves import Moves
 from pursue_gen.tools.replay.record import MissionRecord, RecordedWord, RobotOrder, read_word
 from pursue_runtime.controller.scheduler import CommandScheduler
+from pursue_runtime.event_words import format_word
 from pursue_runtime.observer.journal import Journal
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.state import LIVE, SystemState
 from pursue_runtime.strategy import Strategy, read_cover
-from pursue_runtime.words import format_word
 from tests.together import HOTEL, files, model
 
 ENDS = {"porter": 4.2, "waiter": 4.6}

@@ -23,8 +23,8 @@ from pursue_gen.tools.simulation.mission import START, SimulatedMission
 from pursue_gen.tools.simulation.outcome import Outcome, Settings
 from pursue_gen.tools.simulation.stage import Stage, stage_of
 from pursue_gen.workspace import Options
+from pursue_runtime.event_words import ORDERED
 from pursue_runtime.state import SystemState
-from pursue_runtime.words import ORDERED
 from tests.assumptions import AWAY, CAFE, GOODBYE, LEAVES, MUSEUM, ONCE
 
 CARTS = """\

@@ -131,7 +131,7 @@ def test_who_is_still_under_way_at_the_end_has_not_arrived(window: "browsers.Bro
     go(window, 20.0)
     end = place(window, 1)
     assert start != end
-    assert "on the way from c to a" in window.text("#animation-where")
+    assert "on its way from c to a" in window.text("#animation-where")
 
 
 @in_browser

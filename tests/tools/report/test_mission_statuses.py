@@ -82,7 +82,7 @@ def test_the_table_says_what_each_step_changes() -> None:
     made = made_up()
     first, unlock, leaves, call, arrives, again, stamp = changes(made)
     assert "bag of bot: next: unlock" in first and "open: false" in first
-    assert unlock == "bag of bot: unlock done, next: stamp; open: true; open is_true: holds"
+    assert unlock == "bag of bot: next: stamp; open: true; open is_true: holds"
     assert leaves == "not bot at a: holds"
     assert call == "call by guest: 1 of 1 times"
     assert arrives == ""
@@ -105,5 +105,5 @@ def test_a_battery_shows_its_levels() -> None:
     levels = [step.values["Lwatchman"] for step in made.steps]
     changed = [level for before, level in zip([-1, *levels], levels) if level != before]
     charge = tooltips(lanes(draw(made))["battery of watchman"], "turn")
-    assert [text.split(",")[0] for text in charge] == [str(level) for level in changed]
+    assert [text.split(",")[0] for text in charge] == [f"{level} of 14" for level in changed]
     assert changed[0] == 14 and len(set(changed)) > 2

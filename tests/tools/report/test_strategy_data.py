@@ -9,7 +9,6 @@ from typing import Set, Tuple
 import pytest
 
 from benchmarks.families import deliver_by_robots
-from pursue_gen.explanation.network_words import zone_texts
 from pursue_gen.language import load, parse
 from pursue_gen.language.network_names import reach_objective, safety_objective
 from pursue_gen.partition import partition
@@ -20,6 +19,7 @@ from pursue_gen.solving.solution import Solution, solve_scenario
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.watchers import Watcher
 from pursue_gen.tools.report.strategy_data import UNKNOWN, StrategyData, as_json, shown_name, size, strategy_data_of
+from pursue_gen.vocabulary.words import zone_texts
 from tests.patrols import corridor
 
 SCENARIOS = Path(__file__).resolve().parents[3] / "scenarios"

@@ -89,7 +89,7 @@ def test_deadlines_run_until_they_are_met() -> None:
 def test_rules_tell_whose_turn_it_is() -> None:
     turns = tooltips(lanes(draw(mission("thesis/scenario_1")))["rule1"], "turn")
     assert [turn.partition(",")[0] for turn in turns] == [
-        "next: bot1_inb", "during bot1_inb", "next: bot2_ina", "during bot2_ina", "next: bot1_inb"]
+        "next: bot1_inb", "bot1_inb goes on", "next: bot2_ina", "bot2_ina goes on", "next: bot1_inb"]
 
 
 def test_the_end_is_marked() -> None:

@@ -12,7 +12,7 @@ from pursue_gen.tools.simulation.opponents import Opponent
 from pursue_gen.tools.simulation.outcome import GOAL, Settings
 from pursue_gen.tools.simulation.stage import Stage, stage_of
 from pursue_gen.workspace import Options
-from pursue_runtime.words import Word
+from pursue_runtime.event_words import Word
 
 LOCKED_SHOP = """
 poi "yard"

@@ -9,8 +9,8 @@ import pytest
 from pursue_gen.tools.simulation.event_queue import EventQueue
 from pursue_gen.tools.simulation.faults import Breakdown, FaultPlan
 from pursue_gen.tools.simulation.world import SimulatedAgent
+from pursue_runtime.event_words import ORDERED
 from pursue_runtime.orders import Order
-from pursue_runtime.words import ORDERED
 from tests.runtime.models import state
 from tests.tools.simulation.stages import stage
 

@@ -6,33 +6,18 @@ from fractions import Fraction
 from typing import Dict, Iterator, List, Mapping, Optional, Sequence
 
 from pursue_gen.diagnostics import listed
-from pursue_gen.explanation.network_words import Words
 from pursue_gen.explanation.policy import Window
-from pursue_gen.explanation.texts import time_text
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import condition_words
+from pursue_gen.language.numbers import time_text
 from pursue_gen.language.scenario import Connection
 from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.synthesis.game import Game, JointMove
-from pursue_gen.tga.counts import counted
-from pursue_gen.tga.network import Edge
 from pursue_gen.tga.objectives import clock_of, stated
-from pursue_gen.tga.own_turns import own_turns
 from pursue_gen.tools.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
-
-_ORDERS = {
-    Role.SETTING_OFF: "set off from {1} to {2}",
-    Role.WAY: "arrive at {1}",
-    Role.EVENT: "do {}",
-    Role.WORK: "begin {}",
-    Role.END: "finish {}",
-}
-
-
-def order_text(words: Words, owner: str, edge: Edge) -> str:
-    """The command for this edge of that automaton, as in "set off from a to b"."""
-    return words.deed(owner, edge, _ORDERS) or words.move(owner, edge)
-
+from pursue_gen.vocabulary.losses import loss
+from pursue_gen.vocabulary.statuses import courses
+from pursue_gen.vocabulary.words import Words
 
 # What there is --------------------------------------------------------------------------------------------------------
 
@@ -46,19 +31,11 @@ def situation(setup: Setup, words: Words, play: PlayState) -> Iterator[str]:
         place = setup.game.automata[where[agent]].locations[play.position.state.locations[where[agent]]]
         yield f"  {shown(agent):<{widest}}  {words.place(agent, place)}{_lasting(setup, play, where[agent])}"
     values = dict(zip(setup.game.variables, play.position.state.values))
-    for state in setup.scenario.states:
-        value = values.get(names.state_value(state.name), int(state.initially))
-        yield f"  {state.name} is {'true' if value else 'false'}"
-    for battery in setup.scenario.batteries:
-        level = values.get(names.level(battery.agent.name), battery.capacity)
-        yield f"  battery of {battery.agent.shown}: {level} of {battery.capacity}"
-    for own in own_turns(setup.scenario):
-        place = own.order.locations[values.get(own.variable, 0)].name
-        yield f"  rule {own.name}: {words.place(own.name, place)}"
-    for rule in (rule for rule in setup.scenario.rules if not rule.each):
-        yield f"  rule {rule.name}: {_place(setup, words, play, rule.name)}"
-    for event, _ in counted(setup.scenario):
-        yield f"  so far {_place(setup, words, play, names.count(event.name))}"
+    locations = {name: setup.game.automata[k].locations[play.position.state.locations[k]] for name, k in where.items()}
+    for status in courses(setup.scenario, setup.network):
+        text = status.text(locations, values)
+        if text is not None:
+            yield f"  {status.label}: {text}"
     yield from (f"  {line}" for line in _objective(setup, play, where))
 
 
@@ -132,43 +109,18 @@ def window_text(now: Fraction, open_: Window) -> str:
 # The end --------------------------------------------------------------------------------------------------------------
 
 
-def ending(setup: Setup, words: Words, play: PlayState) -> str:
+def ending(setup: Setup, play: PlayState) -> str:
     """How a game ended, in a sentence."""
-    at = time_text(play.now)
+    at, late = time_text(play.now), overdue(setup, play)
     if play.status == WON:
         done = dict.fromkeys(ref.shown for reach in setup.scenario.reach for ref in reach.events)
         what = f": {listed(done)}" if done else ""
         return f"The robots have done it after {at} time units{what}."
     if play.status == LOST:
-        return f"The robots have lost after {at} time units: {_lost(setup, words, play)}."
-    late = ", ".join(map(setup.scenario.shown, overdue(setup, play)))
-    return f"Nothing can go on after {at} time units: {late} ought to move and cannot. The robots have not lost."
-
-
-def _lost(setup: Setup, words: Words, play: PlayState) -> str:
-    late, objectives = overdue(setup, play), stated(setup.scenario)
-    game, places = setup.game, play.position.state.locations
-    broken = [game.automata[k].name for k, place in game.bad if places[k] == place]
-
-    def beside(agent: str) -> str:
-        return f", both {_place(setup, words, play, agent)}"
-
-    for name in (*late, *broken):
-        passed = objectives.get(name)
-        if passed is not None and passed.limit is not None:
-            return passed.broken(beside)
-    if late:
-        doing = ", ".join(f"{setup.scenario.shown(name)} ({_place(setup, words, play, name)})" for name in late)
-        return f"{doing} ought to be done by now and cannot be, so nothing goes on"
-    safety = objectives.get(next(iter(broken), ""))
-    return "the objective is broken" if safety is None else safety.broken(beside)
-
-
-def _place(setup: Setup, words: Words, play: PlayState, name: str) -> str:
-    for automaton, location in zip(setup.game.automata, play.position.state.locations):
-        if automaton.name == name:
-            return words.place(name, automaton.locations[location])
-    return name
+        why = loss(setup.scenario, setup.game, play.position.state, late)
+        return f"The robots have lost after {at} time units: {why}."
+    who = ", ".join(map(setup.scenario.shown, late))
+    return f"Nothing can go on after {at} time units: {who} ought to move and cannot. The robots have not lost."
 
 
 def _only_while(way: Connection) -> str:

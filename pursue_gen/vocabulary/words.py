@@ -1,60 +1,44 @@
-"""The network in the words of its scenario: where an agent is, what it does, how long ago an event was."""
+"""The network in the words of its scenario: where its automata are, what they do, how long ago an event was."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, Iterator, Mapping, Optional, Tuple
+from typing import Dict, Iterator, Mapping, Optional
 
-from pursue_gen.diagnostics import listed, units
+from pursue_gen.diagnostics import units
 from pursue_gen.language import network_names as names
 from pursue_gen.language.numbers import decimal_text
-from pursue_gen.language.objectives.base import STATUSES
 from pursue_gen.language.scenario import Scenario, StatedObjective
-from pursue_gen.language.symbols import Role, Symbol, role_of
+from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Constraint, Zone
-from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.objectives import clock_of, stated
-from pursue_gen.tga.own_turns import own_turns
-from pursue_gen.tga.status_words import own_words, turn_words
-
-_PLACES = {Role.WAY: "on the way from {} to {}", Role.WORK: "doing {} at {}"}
-_MOVES = {
-    Role.SETTING_OFF: "sets off from {1} to {2}",
-    Role.ARRIVAL: "arrives at {2} from {1}",
-    Role.WAY: "arrives at {1} from {0}",
-    Role.EVENT: "does {}",
-    Role.WORK: "begins {}",
-    Role.END: "has finished {}",
-}
-"""What an agent does, by the role of its channel; of the location that it leaves or enters where that says more."""
+from pursue_gen.vocabulary.agents import deed, place
+from pursue_gen.vocabulary.statuses import statuses
 
 
 @dataclass(frozen=True)
 class Words:
-    """What to call things. `clocks`: clock → the moment since which it counts; `turns`: (rule, location) → its words.
-    """
+    """What to call things. `clocks`: clock → the moment since which it counts; `texts`: what each location of each
+    automaton but agents means."""
 
     scenario: Scenario
-    clocks: Dict[str, str]
-    turns: Dict[Tuple[str, str], str]
+    clocks: Mapping[str, str]
+    texts: Mapping[str, Mapping[str, str]]
     objectives: Mapping[str, StatedObjective]
 
     def place(self, automaton: str, location: str) -> str:
-        """Where it is, as in "at c", "on the way from c to b", "doing catch at b", "next: load or wait"."""
-        objective = self.objectives.get(automaton)
-        if objective is not None:
-            done = [ref.shown for ref in objective.done_in(location)]
-            return f"{listed(done)} done" if done else STATUSES.get(role_of(location), location)
-        return self.turns.get((automaton, location)) or place_words(self.scenario, location)
+        """Where it is, as in "at c", "on its way from c to b", "doing catch at b", "next: load or wait"."""
+        return self.texts.get(automaton, {}).get(location) or place(self.scenario, location)
 
     def move(self, automaton: str, edge: Edge) -> str:
         """What it does by that edge, as in "sets off from c to b"."""
-        said = self.deed(automaton, edge, _MOVES) or (edge.sync and edge.sync.channel)
-        if said:
-            return said
-        objective = self.objectives.get(automaton)
+        done, objective = deed(self.scenario, automaton, edge), self.objectives.get(automaton)
+        if done is not None:
+            return done.does
+        if edge.sync is not None:
+            return edge.sync.channel
         if objective is not None and edge.target == names.LATE:
             return f"the deadline of {objective.words.due} has passed"
         if objective is not None and objective.once:
@@ -63,14 +47,10 @@ class Words:
             return "the objective is broken" if len(self.objectives) == 1 else f"broken: {objective.text}"
         return f"goes from {edge.source} to {edge.target}"
 
-    def deed(self, automaton: str, edge: Edge, words: Mapping[Role, str]) -> str:
-        """What an agent does by that edge, in these words for roles; "" where they have none, or it is no agent."""
-        if all(agent.name != automaton for agent in self.scenario.agents):
-            return ""
-        name = edge.sync.channel if edge.sync else edge.source
-        symbol = Symbol.of(name)
-        role = Role.WORK if symbol.role is Role.EVENT and edge.enters is Role.WORK else symbol.role
-        return words.get(role, "").format(*map(self.scenario.shown, symbol.parts))
+    def command(self, automaton: str, edge: Edge) -> str:
+        """The command for that edge, as in "go to b"."""
+        done = deed(self.scenario, automaton, edge)
+        return self.move(automaton, edge) if done is None else done.do
 
     def when(self, zone: Zone) -> str:
         """The zone in words; "at any time" for the one without constraints."""
@@ -121,32 +101,16 @@ def words_of(scenario: Scenario, network: Network) -> Words:
     for number, assumption in enumerate(scenario.assumptions, start=1):
         clocks[names.assumption_clock(number)] = assumption.since
     clocks = {clock: clocks.get(clock, "the start") for clock in network.clocks}
-    turns = {}
-    for own in own_turns(scenario):
-        for location in own.order.locations:
-            turns[own.name, location.name] = turn_words(scenario, own.order, location.name)
-    for rule in (rule for rule in scenario.rules if not rule.each):
-        automaton = network.automaton(rule.name)
-        for location in automaton.locations:
-            turns[rule.name, location.name] = turn_words(scenario, automaton, location.name)
-    for event, most in counted(scenario):
-        automaton = network.automaton(names.count(event.name))
-        for number, location in enumerate(automaton.locations):
-            turns[automaton.name, location.name] = f"{number} of {most} {scenario.shown(event.name)}"
-    turns.update(((own, place), text) for own, texts in own_words(network).items() for place, text in texts.items())
-    return Words(scenario, clocks, turns, objectives)
+    texts = {each.of: each.texts for each in statuses(scenario, network)}
+    for watcher in (Symbol.of(automaton.name) for automaton in network.automata):
+        if watcher.role is Role.WATCHER:
+            texts[watcher] = texts[watcher.parts[0]]
+    return Words(scenario, clocks, texts, objectives)
 
 
 def zone_texts(zone: Zone) -> str:
     """The zone exactly, as plans and strategy files have it."""
     return " && ".join(constraint_texts(zone, space=" ")) or "always"
-
-
-def place_words(scenario: Scenario, location: str) -> str:
-    """Where an agent is, as in "at c", "on the way from c to b", "doing catch at b"."""
-    symbol = Symbol.of(location)
-    words = _PLACES.get(symbol.role)
-    return words.format(*map(scenario.shown, symbol.parts)) if words else f"at {scenario.shown(location)}"
 
 
 def _span(lower: Optional[Constraint], upper: Optional[Constraint]) -> str:

@@ -6,7 +6,7 @@ from typing import Dict
 
 from pursue_gen.language import parse
 from pursue_gen.tga import translate
-from pursue_gen.tga.status_words import statuses
+from pursue_gen.vocabulary.statuses import statuses
 
 TEXT = """
 poi "a"
@@ -45,10 +45,8 @@ def shown(text: str = TEXT) -> Dict[str, Dict[str, str]]:
     return {each.label: dict(each.texts) for each in found}
 
 
-def test_a_count_is_what_is_left() -> None:
-    assert list(shown()["call"].values()) == [
-        "may be done 2 more times", "may be done 1 more time", "may not be done any more"
-    ]  # fmt: skip
+def test_a_count_is_how_often_of_how_many_times() -> None:
+    assert list(shown()["call"].values()) == ["0 of 2 times", "1 of 2 times", "2 of 2 times"]
 
 
 def test_the_turn_of_an_agent_with_a_label_has_its_label() -> None:
@@ -56,10 +54,10 @@ def test_the_turn_of_an_agent_with_a_label_has_its_label() -> None:
     assert "bag of Porter 1" in words and "bag of bot" not in words
 
 
-def test_a_turn_is_what_has_been_done_and_what_is_next() -> None:
+def test_a_turn_is_what_is_next_or_goes_on() -> None:
     words = shown()
-    assert list(words["papers"].values()) == ["next: stamp", "stamp done, next: seal"]
-    assert sorted(words["bag of bot"].values()) == ["load done, next: unload", "load goes on", "next: load"]
+    assert list(words["papers"].values()) == ["next: stamp", "next: seal"]
+    assert sorted(words["bag of bot"].values()) == ["load goes on", "next: load", "next: unload"]
     assert set(words["bag of bot"]) == {"0", "1", "2"}
 
 

@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pursue_gen.explanation.network_words import words_of
 from pursue_gen.language import parse
 from pursue_gen.language.wording import objective_words
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga import translate
+from pursue_gen.vocabulary.words import words_of
 
 TEXT = """
 poi "hall" poi "shop"
@@ -155,14 +155,14 @@ def test_words_mean_what_the_zone_means(some: List[Constraint], values: "tuple[i
 
 
 def test_places_moves_and_turns_are_called_by_their_names() -> None:
-    assert WORDS.place("bot", "going_hall_to_shop") == "on the way from hall to shop"
+    assert WORDS.place("bot", "going_hall_to_shop") == "on its way from hall to shop"
     assert WORDS.place("bot", "doing_meet_in_hall") == "doing meet at hall"
     assert WORDS.place("order", "order_initial_location") == "next: meet"
     assert {WORDS.place("order", location.name) for location in NETWORK.automaton("order").locations} == {
-        "next: meet", "next: the end of meet", "next: wave",
+        "next: meet", "meet goes on", "next: wave",
     }  # fmt: skip
     moves = {WORDS.move("bot", edge) for edge in NETWORK.automaton("bot").edges}
-    assert {"sets off from hall to shop", "arrives at shop from hall", "begins meet", "has finished meet"} <= moves
+    assert {"sets off from hall to shop", "arrives at shop", "begins meet", "finishes meet"} <= moves
 
 
 def test_the_objective_is_a_sentence() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Dict, Iterator, List, Sequence, Tuple
 
+from pursue_gen.columns import columns
 from pursue_gen.diagnostics import counted
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.tools.calibration.proposal import KEPT, Finding, Proposal, statement, window_text
@@ -17,7 +18,7 @@ def report(proposal: Proposal) -> Iterator[str]:
     yield from unknown(proposal)
     yield f"1 time unit = {proposal.options.unit:g} s; times in time units"
     yield ""
-    yield from table(proposal)
+    yield from columns([HEAD, *rows(proposal)])
     yield ""
     yield from sentences(proposal)
     yield ""
@@ -60,15 +61,6 @@ def shown(scenario: Scenario, what: object) -> str:
     if isinstance(what, Way):
         return f"{scenario.shown(what.agent)}: {scenario.shown(what.a)} to {scenario.shown(what.b)}"
     return scenario.shown(str(what))
-
-
-def table(proposal: Proposal) -> Iterator[str]:
-    """The rows as lines below a head, in columns."""
-    cells = [HEAD, *rows(proposal)]
-    widths = [max(len(line[column]) for line in cells) for column in range(len(HEAD))]
-    for line in cells:
-        padded = [line[0].ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(line[1:], widths[1:]))]
-        yield "  ".join(padded).rstrip()
 
 
 def sentences(proposal: Proposal) -> Iterator[str]:

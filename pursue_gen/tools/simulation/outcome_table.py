@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Optional
 
+from pursue_gen.columns import columns
 from pursue_gen.language.numbers import at_most
 from pursue_gen.tools.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome
 from pursue_gen.tools.simulation.runs import Summary
@@ -31,20 +32,9 @@ def table(summary: Summary, guaranteed: Optional[str] = None) -> str:
         share = f"{100 * row.missions / summary.missions:.1f}"
         times = [f"{time:.2f}" for time in (row.least, row.median, row.worst)]
         cells.append([END_TEXTS[row.end], f"{row.missions:,}", share, *times])
-    lines = [*_aligned(cells), ""]
-    lines += [*_aligned(answers), ""] if summary.answers else []
+    lines = [*columns(cells, ruled=True), ""]
+    lines += [*columns(answers, ruled=True), ""] if summary.answers else []
     return "\n".join([*lines, *_notes(summary, guaranteed)]).rstrip()
-
-
-def _aligned(cells: Sequence[Sequence[str]]) -> List[str]:
-    """A table's lines; the first row is its head."""
-    widths = [max(len(line[column]) for line in cells) for column in range(len(cells[0]))]
-    return [_line(line, widths) for line in (cells[0], ["-" * width for width in widths], *cells[1:])]
-
-
-def _line(cells: Sequence[str], widths: Sequence[int]) -> str:
-    parts = (cell.rjust(width) if k else cell.ljust(width) for k, (cell, width) in enumerate(zip(cells, widths)))
-    return "  ".join(parts).rstrip()
 
 
 def _notes(summary: Summary, guaranteed: Optional[str]) -> List[str]:

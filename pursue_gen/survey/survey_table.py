@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import astuple
 from typing import Any, Dict, List
 
+from pursue_gen.columns import columns
 from pursue_gen.survey.make import Survey, SurveyedWay
 
 
@@ -14,8 +15,7 @@ def table(survey: Survey) -> List[str]:
     for way in survey.ways:
         metres = "-" if way.metres is None else f"{way.metres:.2f}"
         rows.append((f"{way.a} - {way.b}", metres, _distance(way)))
-    wide, middle = (max(len(row[column]) for row in rows) for column in (0, 1))
-    lines = [f"{name:{wide}}  {metres:>{middle}}  {text}" for name, metres, text in rows]
+    lines = columns(rows, "<><")
     windows = [one for way in survey.ways for one in way.windows]
     lines += [f"travel {robot} from {a} to {b} takes {low} to {high}" for robot, a, b, low, high in windows]
     for place, spots in survey.spots.items():

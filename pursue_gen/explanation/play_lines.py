@@ -1,19 +1,21 @@
-"""A counter-play in the scenario's own words."""
+"""A counter-play line by line, in the scenario's own words."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Callable, Dict, Iterator, List, Optional, Tuple
+from typing import Callable, Dict, Iterator, List, Sequence, Tuple
 
 from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.endless import may_repeat
-from pursue_gen.explanation.network_words import place_words
 from pursue_gen.explanation.play import CounterStep, Play
 from pursue_gen.language import network_names as names
-from pursue_gen.language.scenario import Scenario, StatedObjective
+from pursue_gen.language.numbers import time_text
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga.objectives import stated
+from pursue_gen.vocabulary.agents import deed
+from pursue_gen.vocabulary.losses import loss
 
 _MOST_OTHERS = 3
 """So many of the others' last actions are named in an attempt."""
@@ -30,13 +32,11 @@ class TimedLine:
 
 def describe(scenario: Scenario, play: Play) -> Tuple[TimedLine, ...]:
     """The play step by step, and at last how it ends."""
-    words = _words(scenario)
     lines: List[TimedLine] = []
     for step in play.steps:
-        owner = play.game.automata[step.owner].name
-        text = words.get(_key(play, step))
-        if text is not None:
-            lines.append(TimedLine(step.at, scenario.shown(owner), text + "".join(_remarks(scenario, play, step))))
+        who, text = _deed(scenario, play, step.owner, step.edges)
+        if text:
+            lines.append(TimedLine(step.at, who, text + "".join(_remarks(scenario, play, step))))
     return (*lines, *_ending(scenario, play))
 
 
@@ -50,52 +50,25 @@ class Attempt:
 
 def attempt(scenario: Scenario, play: Play) -> Attempt:
     """How a play begins that the robots have to begin in a certain way, and what the others do until it is lost."""
-    words = _words(scenario)
+    first = "the robots wait"
     if play.first:
-        step = CounterStep(Fraction(0), play.game.edges[play.first[0]].automaton, play.first)
-        owner, *_ = key = _key(play, step)
-        first = f"{scenario.shown(owner)} {words.get(key, key[1])}"
-    else:
-        first = "the robots wait"
+        first = " ".join(_deed(scenario, play, play.game.edges[play.first[0]].automaton, play.first))
     others = {agent.name for agent in scenario.agents if not agent.controllable}
     done: List[str] = []
     for step in play.steps:
-        text = words.get(_key(play, step))
+        who, text = _deed(scenario, play, step.owner, step.edges)
         owner = play.game.automata[step.owner].name
-        if owner in others and text is not None and not play.game.origins[step.edges[0]].is_end:
-            done.append(f"{scenario.shown(owner)} {text} at {time_text(step.at)}")
+        if owner in others and text and not play.game.origins[step.edges[0]].is_end:
+            done.append(f"{who} {text} at {time_text(step.at)}")
     ending = _ending(scenario, play)[0]
     return Attempt(first, "; ".join([*done[-_MOST_OTHERS:], f"{ending.text} ({time_text(ending.at)})"]))
 
 
-def time_text(at: Fraction) -> str:
-    """A time in units, with at most three decimals."""
-    return f"{float(at):.3f}".rstrip("0").rstrip(".")
-
-
-_Key = Tuple[str, str, str]
-"""An automaton, a channel (or nothing for a step of its own), and the location that is left by a step of its own."""
-
-
-def _key(play: Play, step: CounterStep) -> _Key:
-    edge = play.game.origins[step.edges[0]]
-    owner = play.game.automata[step.owner].name
-    return (owner, edge.sync.channel, "") if edge.sync else (owner, "", edge.source)
-
-
-def _words(scenario: Scenario) -> Dict[_Key, str]:
-    words: Dict[_Key, str] = {}
-    for agent in scenario.agents:
-        for event in scenario.events:
-            begins = event.shown if event.duration is None else f"begins {event.shown}"
-            words[agent.name, event.name, ""] = begins
-            words[agent.name, names.done(event.name), ""] = f"has finished {event.shown}"
-        for a, b in (way for connection in scenario.connections for way in connection.directions):
-            there = scenario.shown(b)
-            words[agent.name, names.movement(agent.name, a, b), ""] = f"sets off from {scenario.shown(a)} to {there}"
-            words[agent.name, "", names.going(a, b)] = f"arrives at {there}"
-            words[agent.name, names.arrival(agent.name, a, b), ""] = f"arrives at {there}"
-    return words
+def _deed(scenario: Scenario, play: Play, owner: int, edges: Sequence[int]) -> Tuple[str, str]:
+    """The agent that makes a move, as people read it, and what it does; "" for what is no agent's."""
+    name = play.game.automata[owner].name
+    done = deed(scenario, name, play.game.origins[edges[0]])
+    return scenario.shown(name), "" if done is None else done.does
 
 
 def _remarks(scenario: Scenario, play: Play, step: CounterStep) -> Iterator[str]:
@@ -113,8 +86,8 @@ def _remarks(scenario: Scenario, play: Play, step: CounterStep) -> Iterator[str]
 
 def _ending(scenario: Scenario, play: Play) -> Tuple[TimedLine, ...]:
     tell: Dict[str, Callable[[Scenario, Play], str]] = {
-        "bad": _bad,
-        "overdue": _overdue,
+        "bad": _loss,
+        "overdue": _loss,
         "idle": lambda s, p: f"nobody has to do anything any more{_goal_clause(s, ', and ', ' need never come')}",
         "again": lambda s, p: f"all is as it was at {time_text(p.since)}, and so it can go on for ever"
         f"{_goal_clause(s, ': ', ' can always be prevented')}",
@@ -135,9 +108,8 @@ def _withheld(scenario: Scenario, play: Play) -> Iterator[str]:
         return
     # Agents' guards only bound their clocks from below: what is not possible yet will be.
     moves = [move for move in joint_moves(game, state) if game.automata[move.owner].name in agents]
-    words = _words(scenario)
-    keys = [_key(play, CounterStep(play.at, move.owner, move.edges)) for move in moves if not move.controllable]
-    undone = ", ".join(dict.fromkeys(f"{scenario.shown(key[0])}: {words[key]}" for key in keys))
+    able = (_deed(scenario, play, move.owner, move.edges) for move in moves if not move.controllable)
+    undone = ", ".join(dict.fromkeys(map(" ".join, able)))
     if undone and not any(move.controllable for move in moves):
         yield f"the robots can do nothing before one of these, and none of them needs to happen: {undone}"
     elif undone and play.end == "idle":
@@ -163,31 +135,5 @@ def _goal_clause(scenario: Scenario, before: str, after: str) -> str:
     return f"{before}{listed(wanted)}{after}" if wanted else ""
 
 
-def _bad(scenario: Scenario, play: Play) -> str:
-    """The objective that is broken in the last state of the play."""
-    game, objectives = play.game, stated(scenario)
-    broken = (game.automata[k].name for k, place in game.bad if play.position.state.locations[k] == place)
-    return _broken(scenario, objectives.get(next(broken, "")), play)
-
-
-def _broken(scenario: Scenario, objective: Optional[StatedObjective], play: Play) -> str:
-    if objective is None:
-        return "the objective is broken"
-    late = "too late: " if objective.limit is not None else ""
-    return late + objective.broken(lambda agent: f": both {_place(scenario, play, agent)}")
-
-
-def _overdue(scenario: Scenario, play: Play) -> str:
-    overdue, objectives = [play.game.automata[k].name for k in play.overdue], stated(scenario)
-    passed = next((objectives[name] for name in overdue if name in objectives), None)
-    if passed is not None:
-        return _broken(scenario, passed, play)
-    doing = ", ".join(f"{scenario.shown(name)} (now {_place(scenario, play, name)})" for name in overdue)
-    return f"nothing can go on: {doing} ought to be done by now, and cannot be"
-
-
-def _place(scenario: Scenario, play: Play, agent: str) -> str:
-    for automaton, location in zip(play.game.automata, play.position.state.locations):
-        if automaton.name == agent:
-            return place_words(scenario, automaton.locations[location])
-    return ""
+def _loss(scenario: Scenario, play: Play) -> str:
+    return loss(scenario, play.game, play.position.state, [play.game.automata[k].name for k in play.overdue])
