@@ -12,41 +12,30 @@ from pursue_gen.language.messages import KEYWORDS, MAY_BE_NAMES, kind_of
 from pursue_gen.language.poses import robots_in
 from pursue_gen.language.syntax import DECLARED, Statement, bare, start_of
 
-_ASSUMED = [found for kind in KINDS.values() for found in kind.fields()]
+_ASSUMED = [(word.upper(), field) for kind in KINDS.values() for word, field in kind.fields()]
 
 _USED: Dict[Tuple[str, str], str] = {
-    ("CONNECT", "CONNECT"): "POI",
-    ("CONNECT", "AND"): "POI",
-    ("EVENT", "LOCATION"): "POI",
-    ("RULE", "RULE"): "event",
-    ("RULE", "ROBOT"): "event",
-    ("RULE", "AGENT"): "event",
-    ("RULE", "BEFORE"): "event",
-    ("RULE", "OR"): "event",
-    ("RULE", "AND"): "event",
-    ("STATE", "TRUE_IF"): "event",
-    ("STATE", "FALSE_IF"): "event",
-    ("STATEDEPENDENCY", "STATEDEPENDENCY"): "event",
-    ("STATEDEPENDENCY", "ONLY_IF"): "state",
-    ("AGENT", "LOCATION"): "POI",
-    ("AGENT", "CAN_DO"): "event",
-    ("AGENT", "REACTS_TO"): "event",
-    ("TRAVEL", "TRAVEL"): "agent",
-    ("TRAVEL", "FROM"): "POI",
-    ("TRAVEL", "TO"): "POI",
-    ("BATTERY", "BATTERY"): "agent",
-    ("BATTERY", "AT"): "POI",
-    **{("ASSUME", word.upper()): NAMES[field] for word, field in _ASSUMED if field in NAMES},
-    ("OBJECTIVE", "OBJECTIVE"): "agent",
-    ("OBJECTIVE", "NEVER_WITH"): "agent",
-    ("OBJECTIVE", "PATROL"): "POI",
-    ("OBJECTIVE", "BY"): "agent",
-    ("OBJECTIVE", "AT"): "POI",
-    ("OBJECTIVE", "IF"): "event",
-    ("OBJECTIVE", "THEN"): "event",
-    ("OBJECTIVE", "AVOID"): "event",
-    ("REACH_OBJECTIVE", "DO"): "event",
-    ("REACH_OBJECTIVE", "AND"): "event",
+    (statement, word): kind
+    for statement, kind, words in (
+        ("CONNECT", "POI", "CONNECT AND"),
+        ("EVENT", "POI", "LOCATION"),
+        ("RULE", "event", "RULE ROBOT AGENT BEFORE OR AND"),
+        ("STATE", "event", "TRUE_IF FALSE_IF"),
+        ("STATEDEPENDENCY", "event", "STATEDEPENDENCY"),
+        ("STATEDEPENDENCY", "state", "ONLY_IF"),
+        ("AGENT", "POI", "LOCATION"),
+        ("AGENT", "event", "CAN_DO REACTS_TO"),
+        ("TRAVEL", "agent", "TRAVEL"),
+        ("TRAVEL", "POI", "FROM TO"),
+        ("BATTERY", "agent", "BATTERY"),
+        ("BATTERY", "POI", "AT"),
+        *(("ASSUME", NAMES[field], word) for word, field in _ASSUMED if field in NAMES),
+        ("OBJECTIVE", "agent", "OBJECTIVE NEVER_WITH BY"),
+        ("OBJECTIVE", "POI", "PATROL AT"),
+        ("OBJECTIVE", "event", "IF THEN AVOID"),
+        ("REACH_OBJECTIVE", "event", "DO AND"),
+    )
+    for word in words.split()
 }
 """The kind of thing that a name stands for, by the statement and the last word of the language before the name."""
 
@@ -60,7 +49,7 @@ SUBJECTS = ("agent", "state")
 
 _OPENS = {
     ("CONNECT", "ONLY_IF"), ("EVENT", "ONLY_IF"), ("OBJECTIVE", "AVOID"), ("OBJECTIVE", "ALWAYS"), ("OBJECTIVE", "IF"),
-    *(("ASSUME", word.upper()) for word, field in _ASSUMED if field == "condition"),
+    *(("ASSUME", word) for word, field in _ASSUMED if field == "condition"),
 }  # fmt: skip
 """The statements with a condition in them, and the word behind which it begins."""
 
