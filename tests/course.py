@@ -132,6 +132,8 @@ class Course:
             return False
         if event.collaborative and not self.partners(agent, event):
             return False
+        if event.duration is not None and not self._keeps(agent, Stay(stay.place, self.now, event=name)):
+            return False
         if self.levels.get(agent, 0) < self._used_at_work(agent, event):
             return False
         if event.is_shared and self._goes_on(name):

@@ -24,16 +24,14 @@ from pursue_gen.api.solutions import (
 )
 from pursue_gen.api.uses import replan, simulate, write_workspace
 from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, Span
+from pursue_gen.language import scenario
 from pursue_gen.language.scenario import *
 from pursue_gen.outcomes import Invalid, LimitHit, Lost, NotProven, TooSlow, Unavailable
 
 __all__ = [
-    "AboutOne", "Agent", "AllOf", "Always", "AnyOf", "Assumption", "At", "AtMost", "Avoid", "Battery", "Both",
-    "Choice", "Condition", "Connection", "Dependency", "Diagnostic", "Doing", "Event", "GivenUp", "Holds", "Invalid",
-    "Leaves", "LimitHit", "Lost", "NeverAt", "NeverHolds", "NeverWith", "Not", "NotProven", "OnWay", "Patrol", "Poi",
-    "Pose", "PursueError", "Reach", "Ref", "Respond", "Rule", "RuleBody", "Safety", "Scenario", "Sequence", "Severity",
-    "Solved", "SolvedGame", "Span", "Spot", "State", "StatedObjective", "TooSlow", "Travel", "Unavailable", "Waits",
-    "Who", "Why", "Window", "as_text", "as_uppaal", "can_explain", "check", "explain", "game", "parse", "problem_of",
-    "promises_of", "read", "read_game", "replan", "request", "settle", "simulate", "solve", "solve_game", "verdict_of",
-    "verify", "verify_game", "write_workspace",
+    "Diagnostic", "Invalid", "LimitHit", "Lost", "NotProven", "PursueError", "Severity", "Solved", "SolvedGame", "Span",
+    "TooSlow", "Unavailable", "Why", "as_text", "as_uppaal", "can_explain", "check", "explain", "game", "parse",
+    "problem_of", "promises_of", "read", "read_game", "replan", "request", "settle", "simulate", "solve", "solve_game",
+    "verdict_of", "verify", "verify_game", "write_workspace",
 ]  # fmt: skip
+__all__ += scenario.__all__

@@ -71,9 +71,8 @@ def _once(scenario: Scenario) -> Iterator[Tuple[Form, Scenario]]:
     calls = (each.breaks.begins for each in scenario.safety)
     wanted = {call.name for call in calls if isinstance(call, Ref)}
     for event in scenario.events:
-        doers = [agent for agent in scenario.agents if event.name in {ref.name for ref in agent.can_do}]
-        if event.name not in wanted or event.at_most is not None or any(agent.controllable for agent in doers):
+        controlled = any(agent.controllable for agent in scenario.doers(event.name))
+        if event.name not in wanted or event.at_most is not None or controlled:
             continue
-        events = tuple(replace(each, at_most=1) if each is event else each for each in scenario.events)
-        meaning = f"only the first {event.name} is answered then"
-        yield Form(event.span.line, "at_most 1 times", meaning), replace(scenario, events=events)
+        changed, meaning = replace(event, at_most=1), f"only the first {event.name} is answered then"
+        yield Form(event.span.line, "at_most 1 times", meaning), scenario.with_instead(event, changed)

@@ -48,7 +48,7 @@ def event_changes(scenario: Scenario, event: Event) -> Iterator[Repair]:
     def say(earliest: Number, latest: Number) -> str:
         return f"{shown} lasting {earliest} to {latest} instead of {low} to {high}"
 
-    doers = [agent for agent in scenario.agents if any(ref.name == name for ref in agent.can_do)]
+    doers = scenario.doers(name)
     if high - low > 1:
         yield Repair(
             "latest", name, f"a {shown} that ends earlier", high, whole_below(high, floor(low) + 1),
@@ -106,8 +106,7 @@ def battery_changes(scenario: Scenario, battery: Battery) -> Iterator[Repair]:
 
 def count_changes(scenario: Scenario, event: Event, most: int) -> Iterator[Repair]:
     """An event that can happen more often where robots do it, less often where the environment does."""
-    doers = [agent for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
-    ours = any(agent.controllable for agent in doers)
+    ours = any(agent.controllable for agent in scenario.doers(event.name))
     values = range(most + 1, min(2 * most + 2, MOST_TIMES) + 1) if ours else range(most - 1, 0, -1)
     if values:
         yield Repair(

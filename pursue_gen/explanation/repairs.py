@@ -145,14 +145,14 @@ def _of_duration(scenario: Scenario, event: Event) -> Iterator[Repair]:
         return
     if duration > 1:
         yield lasting("shorter", whole_below(duration, 1))
-    doers = [agent for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
+    doers = scenario.doers(event.name)
     if doers and not any(agent.controllable for agent in doers):
         yield lasting("longer", whole_above(duration, max(duration * 2, 2 * _all_time(scenario))))
 
 
 def _may_be_endless(scenario: Scenario, event: Event) -> bool:
     """True if the environment alone can do the event, on its ways as often as it likes without time passing."""
-    doers = [agent for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
+    doers = scenario.doers(event.name)
     moving = any(agent.mobile is not None for agent in doers) and bool(scenario.connections)
     return moving and event.location is None and not any(agent.controllable for agent in doers)
 

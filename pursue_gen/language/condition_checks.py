@@ -34,8 +34,7 @@ def _heard(scenario: Scenario, safety: Safety, domains: Domains) -> Iterator[Dia
         if not isinstance(atom, Doing):
             continue
         event, name = events[atom.event.name], atom.event.name
-        doers = [agent for agent in scenario.agents if any(ref.name == name for ref in agent.can_do)]
-        if len(doers) > 1 or (event.is_shared and event.location is None):
+        if len(scenario.doers(name)) > 1 or (event.is_shared and event.location is None):
             message = f"it cannot be seen who begins {name}: several agents may be the one"
             hint = f"name the event itself (if {name} then …), a state that it sets, or give it to one agent only"
             yield error("PML262", message, atom.event.span, hint)

@@ -159,6 +159,10 @@ class Scenario:
         who = patrol.who.agent
         return tuple(agent for agent in self.agents if (agent.is_robot if who is None else agent.name == who.name))
 
+    def doers(self, event: str) -> Tuple[Agent, ...]:
+        """The agents that can do an event."""
+        return tuple(agent for agent in self.agents if any(ref.name == event for ref in agent.can_do))
+
     def movements(self, agent: Agent) -> Dict[Tuple[str, str], Window]:
         """From and to of each movement that the agent can make, and between which times it arrives."""
         if agent.mobile is None:

@@ -73,8 +73,7 @@ class Surroundings:
 
     def doers(self, event: Event) -> Tuple[Agent, ...]:
         """The agents who can do an event."""
-        able = (agent for agent in self.scenario.agents if any(ref.name == event.name for ref in agent.can_do))
-        return tuple(agent for agent in able if self.can_ever_do(agent, event))
+        return tuple(agent for agent in self.scenario.doers(event.name) if self.can_ever_do(agent, event))
 
     def is_contested(self, event: Event) -> bool:
         """True for an event that partners share and several agents can do.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Tuple
 
@@ -114,3 +115,13 @@ def test_the_office_robot_has_the_deadline_that_it_can_keep() -> None:
     scenario = load(ROOT / "scenarios" / "ecobot" / "ecobot.pur")
     (safety,) = scenario.safety
     assert isinstance(safety, Respond) and safety.deadline == 46
+
+
+def test_a_part_of_any_kind_is_replaced_and_nothing_else() -> None:
+    scenario = load(sorted((ROOT / "scenarios").rglob("*.pur"))[0])
+    for kind in ("pois", "events", "agents", "safety", "reach", "connections"):
+        for old in getattr(scenario, kind):
+            new = replace(old, span=replace(old.span, line=999))
+            changed = scenario.with_instead(old, new)
+            assert new in getattr(changed, kind) and old not in getattr(changed, kind)
+            assert changed.with_instead(new, old) == scenario

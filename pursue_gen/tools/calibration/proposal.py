@@ -212,8 +212,7 @@ def _present(scenario: Scenario, slack: Mapping[str, int]) -> Dict[Measured, Win
             found[Way(agent.name, *way)] = low, exact(high + slack.get(agent.name, 0))
     for event in scenario.events:
         if event.window is not None:
-            doers = [agent.name for agent in scenario.agents if any(ref.name == event.name for ref in agent.can_do)]
-            later = min((slack.get(doer, 0) for doer in doers), default=0)
+            later = min((slack.get(doer.name, 0) for doer in scenario.doers(event.name)), default=0)
             found[Work(event.name)] = event.window[0], exact(event.window[1] + later)
     return found
 
@@ -249,8 +248,7 @@ def _is_controlled(scenario: Scenario, what: Measured) -> bool:
     """True where only agents that are controlled are on the way, or do the event."""
     if isinstance(what, Way):
         return any(agent.controllable for agent in scenario.agents if agent.name == what.agent)
-    doers = [agent for agent in scenario.agents if any(ref.name == what.event for ref in agent.can_do)]
-    return all(agent.controllable for agent in doers)
+    return all(agent.controllable for agent in scenario.doers(what.event))
 
 
 def _slack(findings: Sequence[Finding], robots: AbstractSet[str], options: Options) -> Dict[str, int]:

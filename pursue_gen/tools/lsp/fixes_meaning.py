@@ -142,7 +142,7 @@ def find_partner(document: Draft, finding: Diagnostic, part: Statement, at: int)
     if part.name is None:
         return
     event = bare(part.name)
-    doers = {agent.name for agent in document.scenario.agents if any(ref.name == event for ref in agent.can_do)}
+    doers = {agent.name for agent in document.scenario.doers(event)}
     others = [a for a in document.statements if a.kind == "AGENT" and a.name is not None and bare(a.name) not in doers]
     for agent in others[:_MOST]:
         yield f"Let {bare(agent.name)} react to {event}", (_listed(agent, "REACTS_TO", event),)
