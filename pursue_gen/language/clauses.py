@@ -24,6 +24,23 @@ class Value(NamedTuple):
     where: str
     what: str = ""
 
+    @property
+    def is_work(self) -> bool:
+        """True for an agent that is busy."""
+        return self.kind == "doing"
+
+    @property
+    def is_way(self) -> bool:
+        """True for an agent that is between two places."""
+        return self.kind == "way"
+
+    @property
+    def ahead(self) -> Value:
+        """What becomes of it without anything new: who is on the way arrives, who is busy ends."""
+        if self.is_way:
+            return Value("at", self.what)
+        return Value("at", self.where) if self.is_work else self
+
 
 TRUE, FALSE = Value("is", "true"), Value("is", "false")
 
@@ -101,10 +118,10 @@ class Domains:
 def _is(value: Value, atom: Atom) -> bool:
     """Does an atom about an agent hold with this value?"""
     if isinstance(atom, At):
-        return value.kind in ("at", "doing") and value.where == atom.place.name
+        return not value.is_way and value.where == atom.place.name
     if isinstance(atom, OnWay):
-        return value.kind == "way"
-    return isinstance(atom, Doing) and value.kind == "doing" and value.what == atom.event.name
+        return value.is_way
+    return isinstance(atom, Doing) and value.is_work and value.what == atom.event.name
 
 
 def clauses_of(condition: Condition, domains: Domains, value: bool = True) -> Clauses:

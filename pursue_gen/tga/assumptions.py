@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple, Type
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.clauses import Clauses, Value, clauses_of
+from pursue_gen.language.clauses import Clauses, clauses_of
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import Assumption, AtMost, Leaves, NeverAt, NeverHolds, Scenario, Waits
 from pursue_gen.language.symbols import Role
@@ -71,7 +71,7 @@ def _never_holds(
     """
     domains, name = conditions.domains, automaton.name
     safe: Clauses = tuple(
-        {who: frozenset(value for value in values if _ahead(value) in values) for who, values in clause.items()}
+        {who: frozenset(value for value in values if value.ahead in values) for who, values in clause.items()}
         for clause in clauses_of(assumption.condition, domains, False)
     )
     directions = (way for connection in scenario.connections for way in connection.directions)
@@ -79,7 +79,7 @@ def _never_holds(
     works: Dict[str, Change] = {
         names.doing(value.what, value.where): beginning(name, value.what, value.where, scenario, domains)
         for value in domains.of(name)
-        if value.kind == "doing"
+        if value.is_work
     }
 
     def edges(edge: Edge) -> List[Edge]:
@@ -97,13 +97,6 @@ def _never_holds(
         return [*kept, _when_broken(edge, number)] if guard != () else [edge]
 
     return _each(automaton, edges)
-
-
-def _ahead(value: Value) -> Value:
-    """What becomes of an agent's value without anything new: who is on the way arrives, who is busy ends."""
-    if value.kind == "way":
-        return Value("at", value.what)
-    return Value("at", value.where) if value.kind == "doing" else value
 
 
 def _where(edge: Edge, tests: Tuple[Clause, ...]) -> Edge:

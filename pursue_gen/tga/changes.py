@@ -68,9 +68,9 @@ def happening(channel: str, scenario: Scenario, domains: Domains) -> Change:
     becomes = dict(states_set(channel, scenario))
     for agent in scenario.agents:
         for work in domains.of(agent.name):
-            if work.kind == "doing" and channel == work.what:
+            if work.is_work and channel == work.what:
                 becomes[agent.name, Value("at", work.where)] = work
-            elif work.kind == "doing" and channel == names.done(work.what):
+            elif work.is_work and channel == names.done(work.what):
                 becomes[agent.name, work] = Value("at", work.where)
     return Change(becomes)
 

@@ -81,7 +81,7 @@ class Conditions:
         found: List[Tuple[str, Mapping[Value, int]]] = []
         for agent in scenario.agents:
             events = wanted.get(agent.name, frozenset())
-            work = [value for value in sorted(self.domains.of(agent.name)) if value.kind == "doing"]
+            work = [value for value in sorted(self.domains.of(agent.name)) if value.is_work]
             if any(one.where == two.where and one.what in events and one != two for one in work for two in work):
                 found.append((agent.name, {value: number for number, value in enumerate(work, start=1)}))
         return found
@@ -95,7 +95,7 @@ class Conditions:
         domain, position = self.domains.of(variable), names.agent_position(variable)
         tests: Dict[Test, None] = {}
         for value in sorted(values):
-            alike = {other for other in domain if other[:2] == value[:2]} if value.kind == "doing" else {value}
+            alike = {other for other in domain if other[:2] == value[:2]} if value.is_work else {value}
             if alike <= values:
                 tests[Test(position, self._code(value))] = None
             else:
@@ -103,9 +103,9 @@ class Conditions:
         return list(tests)
 
     def _code(self, value: Value) -> int:
-        if value.kind == "way":
+        if value.is_way:
             return self._positions.going(value.where, value.what)
-        return self._positions.at(value.where) if value.kind == "at" else self._positions.doing(value.where)
+        return self._positions.doing(value.where) if value.is_work else self._positions.at(value.where)
 
 
 def _alternatives(condition: Condition) -> Tuple[Condition, ...]:
