@@ -47,10 +47,17 @@ class Words:
             return "the objective is broken" if len(self.objectives) == 1 else f"broken: {objective.text}"
         return f"goes from {edge.source} to {edge.target}"
 
+    def sentence(self, automaton: str, edge: Edge) -> str:
+        """Who does what by that edge, as in "bot1 sets off from c to b"; what no agent does has no name before it."""
+        return self._who(automaton, " ") + self.move(automaton, edge)
+
     def command(self, automaton: str, edge: Edge) -> str:
-        """The command for that edge, as in "go to b"."""
+        """The command for that edge, as in "bot1: go to b"."""
         done = deed(self.scenario, automaton, edge)
-        return self.move(automaton, edge) if done is None else done.do
+        return self._who(automaton, ": ") + (self.move(automaton, edge) if done is None else done.do)
+
+    def _who(self, automaton: str, behind: str) -> str:
+        return next((each.shown + behind for each in self.scenario.agents if each.name == automaton), "")
 
     def when(self, zone: Zone) -> str:
         """The zone in words; "at any time" for the one without constraints."""
