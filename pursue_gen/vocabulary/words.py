@@ -10,7 +10,6 @@ from pursue_gen.language import network_names as names
 from pursue_gen.language.numbers import decimal_text
 from pursue_gen.language.scenario import Leaves, Scenario, StatedObjective, Waits
 from pursue_gen.language.symbols import Role, Symbol
-from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.objectives import clock_of, stated
@@ -116,11 +115,6 @@ def words_of(scenario: Scenario, network: Network) -> Words:
         if watcher.role is Role.WATCHER:
             texts[watcher] = texts[watcher.parts[0]]
     return Words(scenario, clocks, texts, objectives)
-
-
-def zone_texts(zone: Zone) -> str:
-    """The zone exactly, as plans and strategy files have it."""
-    return " && ".join(constraint_texts(zone, space=" ")) or "always"
 
 
 def _span(lower: Optional[Constraint], upper: Optional[Constraint]) -> str:
