@@ -10,7 +10,6 @@ from pursue_gen.language import network_names as names
 from pursue_gen.language.numbers import decimal_text
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.language.symbols import Role, Symbol
-from pursue_gen.synthesis.plan_text import constraint_texts
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.objectives import clock_of, stated
@@ -47,10 +46,17 @@ class Words:
             return "the objective is broken" if len(self.objectives) == 1 else f"broken: {objective.text}"
         return f"goes from {edge.source} to {edge.target}"
 
+    def sentence(self, automaton: str, edge: Edge) -> str:
+        """Who does what by that edge, as in "bot1 sets off from c to b"; what no agent does has no name before it."""
+        return self._who(automaton, " ") + self.move(automaton, edge)
+
     def command(self, automaton: str, edge: Edge) -> str:
-        """The command for that edge, as in "go to b"."""
+        """The command for that edge, as in "bot1: go to b"."""
         done = deed(self.scenario, automaton, edge)
-        return self.move(automaton, edge) if done is None else done.do
+        return self._who(automaton, ": ") + (self.move(automaton, edge) if done is None else done.do)
+
+    def _who(self, automaton: str, behind: str) -> str:
+        return next((each.shown + behind for each in self.scenario.agents if each.name == automaton), "")
 
     def when(self, zone: Zone) -> str:
         """The zone in words; "at any time" for the one without constraints."""
@@ -106,11 +112,6 @@ def words_of(scenario: Scenario, network: Network) -> Words:
         if watcher.role is Role.WATCHER:
             texts[watcher] = texts[watcher.parts[0]]
     return Words(scenario, clocks, texts, objectives)
-
-
-def zone_texts(zone: Zone) -> str:
-    """The zone exactly, as plans and strategy files have it."""
-    return " && ".join(constraint_texts(zone, space=" ")) or "always"
 
 
 def _span(lower: Optional[Constraint], upper: Optional[Constraint]) -> str:

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.language import parse
+from pursue_gen.language.symbols import Role
 from pursue_gen.language.wording import objective_words
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga import translate
@@ -163,6 +164,8 @@ def test_places_moves_and_turns_are_called_by_their_names() -> None:
     }  # fmt: skip
     moves = {WORDS.move("bot", edge) for edge in NETWORK.automaton("bot").edges}
     assert {"sets off from hall to shop", "arrives at shop", "begins meet", "finishes meet"} <= moves
+    begins = next(edge for edge in NETWORK.automaton("bot").edges if edge.enters is Role.WORK)
+    assert (WORDS.sentence("bot", begins), WORDS.command("bot", begins)) == ("bot begins meet", "bot: begin meet")
 
 
 def test_the_objective_is_a_sentence() -> None:

@@ -17,14 +17,7 @@ from pursue_gen.language.wording import objective_words, promise_words
 from pursue_gen.tools.play.advice import Holding
 from pursue_gen.tools.play.counter import CounterPlay
 from pursue_gen.tools.play.saving import save
-from pursue_gen.tools.play.situation import (
-    deed_text,
-    ending,
-    move_text,
-    overview,
-    situation,
-    window_text,
-)
+from pursue_gen.tools.play.situation import ending, overview, situation, window_text
 from pursue_gen.tools.play.state import RUNNING, PlannedMove, PlayState, Setup, taken
 from pursue_gen.tools.play.world import Offer, StrategyPlay
 from pursue_gen.vocabulary.words import Words
@@ -118,9 +111,9 @@ def choices(session: Session) -> Tuple[Tuple[str, str], ...]:
 
 def _offered(session: Session, offer: Offer) -> Tuple[str, str]:
     edge = session.setup.game.origins[offer.move.edges[0]]
-    what = f"{session.setup.scenario.shown(offer.agent)}: {session.words.command(offer.agent, edge)}"
     when = window_text(session.play.now, offer.open_)
-    return what, when if offer.drawn is None else f"{when} (comes at {time_text(offer.drawn)} if you say nothing)"
+    drawn = "" if offer.drawn is None else f" (comes at {time_text(offer.drawn)} if you say nothing)"
+    return session.words.command(offer.agent, edge), when + drawn
 
 
 def _intention(session: Session, world: StrategyPlay) -> str:
@@ -130,7 +123,7 @@ def _intention(session: Session, world: StrategyPlay) -> str:
         event = None if play.over else world.strategy_event(play)
     if event is None:
         return "The strategy waits for what others do."
-    what = move_text(session.setup, session.words, event.move)
+    what = session.words.sentence(session.setup.owner(event.move), session.setup.game.origins[event.move.edges[0]])
     return f"The strategy: {what} at {time_text(event.at)}, if nothing else happens before."
 
 
@@ -245,7 +238,8 @@ def _described(session: Session, first: int) -> List[str]:
     lines = []
     for deed in session.play.deeds[first:]:
         if deed.agent in session.setup.agents:
-            lines.append(f"{time_text(deed.at):>9}  {deed_text(session.setup, session.words, deed)}")
+            said = session.words.sentence(deed.agent, session.setup.game.origins[deed.edges[0]])
+            lines.append(f"{time_text(deed.at):>9}  {said}")
     return lines
 
 
@@ -302,12 +296,11 @@ def _block_texts(session: Session, holding: Holding, size: int) -> List[str]:
     """What a block says; nothing where it does not know this point."""
     if holding.zone is None:
         return []
-    setup, says = session.setup, "to wait"
+    says = "to wait"
     lines = [f"Block {holding.number} of {size} of the strategy holds here."]
     if holding.command is not None:
         first = holding.command.moves[0]
-        said = session.words.command(first.automaton, first.edge)
-        says = said if first.automaton not in setup.agents else f"{setup.scenario.shown(first.automaton)}: {said}"
+        says = session.words.command(first.automaton, first.edge)
     when = f": {session.words.when(holding.zone)}" if holding.zone else " nothing else happens"
     lines.append(f"It says {says}, as long as{when}.")
     for command in holding.block.commands:
@@ -315,7 +308,7 @@ def _block_texts(session: Session, holding: Holding, size: int) -> List[str]:
             first = command.moves[0]
             said = session.words.command(first.automaton, first.edge)
             when = " or ".join(session.words.when(zone) for zone in command.zones)
-            lines.append(f"At other moments here: {first.automaton}: {said}, as long as: {when}.")
+            lines.append(f"At other moments here: {said}, as long as: {when}.")
     return lines
 
 

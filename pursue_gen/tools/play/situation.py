@@ -12,9 +12,9 @@ from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.numbers import time_text
 from pursue_gen.language.scenario import Connection
 from pursue_gen.language.symbols import Role, Symbol, role_of
-from pursue_gen.synthesis.game import Game, JointMove
+from pursue_gen.synthesis.game import Game
 from pursue_gen.tga.objectives import clock_of, stated
-from pursue_gen.tools.play.state import LOST, WON, PlayedMove, PlayState, Setup, overdue
+from pursue_gen.tools.play.state import LOST, WON, PlayState, Setup, overdue
 from pursue_gen.vocabulary.losses import loss
 from pursue_gen.vocabulary.statuses import courses
 from pursue_gen.vocabulary.words import Words
@@ -82,19 +82,6 @@ def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Itera
             done = {ref.name for ref in reach.done_in(place)}
             left = listed(ref.shown for ref in reach.events if ref.name not in done)
             yield f"deadline: {left} by {time_text(Fraction(reach.within))} at the latest"
-
-
-def deed_text(setup: Setup, words: Words, deed: PlayedMove) -> str:
-    """A step that was made."""
-    said = words.move(deed.agent, setup.game.origins[deed.edges[0]])
-    return said if deed.agent not in setup.agents else f"{setup.scenario.shown(deed.agent)} {said}"
-
-
-def move_text(setup: Setup, words: Words, move: JointMove) -> str:
-    """A step that will be made: who, and what."""
-    owner = setup.owner(move)
-    said = words.move(owner, setup.game.origins[move.edges[0]])
-    return said if owner not in setup.agents else f"{setup.scenario.shown(owner)} {said}"
 
 
 def window_text(now: Fraction, open_: Window) -> str:

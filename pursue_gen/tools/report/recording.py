@@ -66,10 +66,12 @@ class Stay:
     over: bool = True
 
 
+STATUS_TEXTS = {WON: "goal reached", LOST: "lost", STOPPED: "stopped", HOLDING: "holding"}
+
+
 def ending_text(recording: Recording) -> str:
     """How the mission ended, in a word or two."""
-    texts = {WON: "goal reached", LOST: "lost", STOPPED: "stopped", HOLDING: "holding"}
-    return texts.get(recording.status, "end of the recording")
+    return STATUS_TEXTS.get(recording.status, "end of the recording")
 
 
 def stays(recording: Recording, automaton: str) -> Tuple[Stay, ...]:

@@ -10,13 +10,14 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
+from pursue_gen.partition.strategy_data import zone_text
 from pursue_gen.proof.relaxed_reachability import commanded
 from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import Game, State, initial_state, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Place, Strategy, Zone
 from pursue_gen.tga.network import Objective
-from pursue_gen.vocabulary.words import Words, words_of, zone_texts
+from pursue_gen.vocabulary.words import Words, words_of
 
 Key = Tuple[Tuple[str, str, str, str], ...]
 
@@ -178,10 +179,8 @@ def _in_parts(scenario: Scenario, won: Solution, reach_obj: str) -> StrategyData
 def _until(scenario: Scenario, words: Words, place: Place) -> str:
     """The words for what ends a part of a stage."""
     name, value = place
-    for state in scenario.states:
-        if names.state_value(state.name) == name:
-            return f"{scenario.shown(state.name)}: {'true' if value == '1' else 'false'}"
-    return f"{shown_name(name, _kind(scenario, name))}: {words.place(name, value)}"
+    states: Dict[str, str] = {names.state_value(state.name): state.name for state in scenario.states}
+    return f"{states.get(name) or shown_name(name, _kind(scenario, name))}: {words.place(name, value)}"
 
 
 @dataclass(frozen=True)
@@ -347,7 +346,7 @@ class _Builder:
         for zone in zones:
             if zone not in self._zone_numbers:
                 self._zone_numbers[zone] = len(self.zones)
-                self.zones.append((self.words.when(zone), zone_texts(zone)))
+                self.zones.append((self.words.when(zone), zone_text(zone)))
         return tuple(dict.fromkeys(self._zone_numbers[zone] for zone in zones))
 
     def _key(self, edges: Tuple[int, ...]) -> Key:

@@ -13,11 +13,11 @@ from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tools.report.html import Section, table
-from pursue_gen.tools.report.recording import Recording, Stay, Step, ending_text, lasting, stays
+from pursue_gen.tools.report.recording import STATUS_TEXTS, Recording, Stay, Step, ending_text, lasting, stays
 from pursue_gen.tools.report.statuses import broken, changes, conditions, holding
 from pursue_gen.vocabulary.statuses import courses
 from pursue_gen.vocabulary.words import Words, words_of
-from pursue_runtime.state import HOLDING, LOST, STOPPED, WON
+from pursue_runtime.state import HOLDING
 
 _WIDTH, _WIDEST = 960.0, 2000.0
 _ROW, _BAR, _TOP = 54.0, 16.0, 54.0
@@ -311,8 +311,7 @@ def _title(stay: Stay, tooltip: str) -> str:
 def _step_text(step: Step, words: Words, network: Network) -> str:
     """What happened in a step, in a sentence."""
     if not step.event:
-        texts = {WON: "the goal is reached", LOST: "it is lost", STOPPED: "it is stopped", HOLDING: "it is held"}
-        what = texts.get(step.status, "the mission runs")
+        what = STATUS_TEXTS.get(step.status, "the mission runs")
         return f"{what}: {step.reason}" if step.reason else what
     return event_text(step, words, network)
 

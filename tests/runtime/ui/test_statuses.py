@@ -25,7 +25,7 @@ PATROL_A = "patrol a every 50 by bot"
 SETTINGS = {
     "statuses": [
         {"of": "obj", "label": PATROL_A, "texts": {"idle": "bot is there", "atRisk": "a visit is due"}},
-        {"of": "Prule", "label": "bag of bot", "texts": {"0": "next: load", "1": "load done, next: unload"}},
+        {"of": "Prule", "label": "bag of bot", "texts": {"0": "next: load", "1": "next: unload"}},
     ]
 }
 STATUSES = read_statuses(SETTINGS)
@@ -34,7 +34,7 @@ STATUSES = read_statuses(SETTINGS)
 def test_values_and_locations_are_said_in_words_and_deadlines_with_their_moment() -> None:
     now = state(MODEL, 3, 120.0, {"Cobj": 8.5}, obj="atRisk", values={"Prule": 1})
     assert status_texts(STATUSES, MODEL, now, 20.0) == {
-        PATROL_A: "a visit is due, by 61.5", "bag of bot": "load done, next: unload"
+        PATROL_A: "a visit is due, by 61.5", "bag of bot": "next: unload"
     }  # fmt: skip
     there = now._replace(locations={**now.locations, "obj": "idle"})
     assert status_texts(STATUSES, MODEL, there, 20.0)[PATROL_A] == "bot is there"

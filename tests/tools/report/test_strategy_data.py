@@ -12,6 +12,7 @@ from benchmarks.families import deliver_by_robots
 from pursue_gen.language import load, parse
 from pursue_gen.language.network_names import reach_objective, safety_objective
 from pursue_gen.partition import partition
+from pursue_gen.partition.strategy_data import zone_text
 from pursue_gen.solving.decomposition import won_by_some
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules, played
@@ -19,7 +20,6 @@ from pursue_gen.solving.solution import Solution, solve_scenario
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.watchers import Watcher
 from pursue_gen.tools.report.strategy_data import UNKNOWN, StrategyData, as_json, shown_name, size, strategy_data_of
-from pursue_gen.vocabulary.words import zone_texts
 from tests.patrols import corridor
 
 SCENARIOS = Path(__file__).resolve().parents[3] / "scenarios"
@@ -39,8 +39,8 @@ def data(won: Solution) -> StrategyData:
 def test_every_block_and_command_is_there_with_its_zones(won: Solution, data: StrategyData) -> None:
     assert size(data) == (len(won.strategy.blocks), sum(len(block.commands) for block in won.strategy.blocks))
     texts = {exact for _, exact in data.zones}
-    written = {zone_texts(zone) for block in won.strategy.blocks for zone in block.wait}
-    written |= {zone_texts(zone) for block in won.strategy.blocks for c in block.commands for zone in c.zones}
+    written = {zone_text(zone) for block in won.strategy.blocks for zone in block.wait}
+    written |= {zone_text(zone) for block in won.strategy.blocks for c in block.commands for zone in c.zones}
     assert texts == written
 
 
