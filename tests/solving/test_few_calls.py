@@ -62,7 +62,7 @@ def test_calls_that_only_begin_a_pause_lose_no_game_that_is_won_without_them(dea
         assert verify(game, objective, verdict.strategy, rules.reaction).ok
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(networks(), WANTED, st.sampled_from((Fraction(0), Fraction(1, 2))), st.integers(0, 2))
 def test_what_is_lost_to_few_calls_is_lost(
     network: Network, objective: Objective, reaction: Fraction, times: int
