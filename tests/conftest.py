@@ -26,18 +26,23 @@ os.environ.pop("PURSUE_DEBUG", None)
 settings.register_profile(
     "project",
     deadline=None,
-    max_examples=60,
+    max_examples=40,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
     derandomize=True,
 )
 settings.register_profile("explore", settings.get_profile("project"), derandomize=False)
 settings.load_profile("project")
 
-EXPLORE_FACTOR = 10
+EXPLORE_FACTOR, FEW = 10, 0.1
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Adds `--explore`."""
+    """Adds `--explore` and `--few`."""
+    parser.addoption(
+        "--few",
+        action="store_true",
+        help="property tests draw a tenth of their examples: where they ran before, under another Python",
+    )
     parser.addoption(
         "--explore",
         action="store_true",
@@ -69,9 +74,11 @@ def pytest_collection(session: pytest.Session) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: List[pytest.Item]) -> None:
-    """With `--explore`: multiplies the examples of each property test, those with a number of their own included."""
+    """With `--explore`: multiplies the examples of each property test, those with a number of their own included. With
+    `--few`: divides them."""
     items.sort(key=lambda item: str(item.path))  # the same order on all workers
-    if not config.getoption("--explore"):
+    factor = EXPLORE_FACTOR if config.getoption("--explore") else FEW if config.getoption("--few") else 1
+    if factor == 1:
         return
     changed: Set[int] = set()
     for item in items:
@@ -80,7 +87,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: List[pytest.Item
             continue
         changed.add(id(holder))
         usual = getattr(holder, name, None) or settings.default
-        setattr(holder, name, settings(usual, max_examples=EXPLORE_FACTOR * usual.max_examples))
+        setattr(holder, name, settings(usual, max_examples=max(1, int(factor * usual.max_examples))))
 
 
 def pytest_collection_finish() -> None:

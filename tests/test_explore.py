@@ -1,4 +1,4 @@
-"""Which examples property tests draw: always the same ones, and new ones with `--explore`."""
+"""Which examples property tests draw: always the same ones, new ones with `--explore`, few with `--few`."""
 
 from __future__ import annotations
 
@@ -68,3 +68,8 @@ def test_examples_are_the_same_in_each_run_and_with_explore_new_and_ten_times_as
     assert drawn(project, "--explore") != explored
     for kind in ("first", "second", "method", "machine"):
         assert len(of(kind, explored)) == 10 * len(of(kind, usual)) > 0, kind
+
+
+def test_with_few_each_draws_a_tenth_and_one_at_least(project: Path) -> None:
+    few = drawn(project, "--few")
+    assert [len(of(kind, few)) for kind in ("first", "second", "method", "machine")] == [1, 1, 4, 1]

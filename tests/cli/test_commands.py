@@ -233,7 +233,7 @@ def test_an_internal_error_is_distinguished_from_words_in_a_file(tmp_path: Path)
         assert not has_internal_error(told.err) and not has_internal_error(told.out)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(content=st.binary(max_size=300), command=st.sampled_from(["check", "solve", "tga", "report", "ws"]))
 def test_no_file_content_gives_a_traceback(tmp_path: Path, content: bytes, command: str) -> None:
     file = tmp_path / "some.pur"

@@ -256,7 +256,7 @@ def scenarios(draw: st.DrawFn) -> str:
     return " ".join(words)
 
 
-FUZZ = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+FUZZ = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 
 
 @FUZZ
@@ -279,7 +279,7 @@ def test_any_text(text: str) -> None:
     told(text)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.binary(max_size=200))
 def test_any_bytes(tmp_path: Path, content: bytes) -> None:
     file = tmp_path / "some.pur"

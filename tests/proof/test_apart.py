@@ -147,7 +147,7 @@ def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     return replace(with_block(strategy, number, new), shares=shares)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(data=st.data(), text=small_patrols())
 def test_what_passes_wins_the_game_as_a_whole(data: st.DataObject, text: str) -> None:
     """Also with shorter deadlines, and where the strategy was changed. In blocks that name everything a robot's command

@@ -125,7 +125,7 @@ def _call(draw: st.DrawFn, k: int, receives: bool) -> Edge:
     return Edge(source, target, Guard((ClockBound("y", op, rest),)), sync, resets=("y",), controllable=False)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.data(), networks(), OBJECTIVES, st.sampled_from((Fraction(0), SOON)))
 def test_a_strategy_that_leaves_clocks_out_is_right_in_the_network_with_them(
     data: st.DataObject, network: Network, objective: Objective, reaction: Fraction

@@ -38,7 +38,7 @@ from pursue_gen.tga.passages import Passage
 from tests.proof.passing_games import Game, damaged, game_of, of_the_whole, passing_texts
 
 DELAY = Fraction(1, 10)
-RANDOM = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+RANDOM = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 
 CORRIDOR = """
 poi "a"

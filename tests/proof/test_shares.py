@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import replace
 from fractions import Fraction
 from typing import Dict, Optional, Tuple
@@ -129,6 +130,7 @@ def game_of(scenario: Scenario) -> Tuple[Network, Objective]:
     return played(translate(scenario), Rules()), scenario_objective(scenario)
 
 
+@functools.lru_cache(maxsize=None)
 def in_shares(text: str, reaction: Fraction = LATE) -> Tuple[Network, Objective, Strategy]:
     """The game, and a strategy in shares that is proven for it."""
     network, objective = game_of(parse(text, "lab.pur", "lab"))
@@ -137,6 +139,7 @@ def in_shares(text: str, reaction: Fraction = LATE) -> Tuple[Network, Objective,
     return network, objective, found.strategy
 
 
+@functools.lru_cache(maxsize=None)  # the same judge, whichever checker is tested
 def as_a_whole(network: Network, objective: Objective, strategy: Strategy, limit: int = LIMIT) -> ProofReport:
     """The report on the strategy with blocks that name everything, by the native checker: it is the judge here, and not
     what is tested."""
@@ -173,9 +176,11 @@ def test_a_plan_in_shares_is_read_as_it_was_written(text: str) -> None:
     assert read_plan(write_plan(strategy, network, objective), network, "plan.txt") == strategy
 
 
-@pytest.mark.parametrize("text", [NARROW, VISITED])
+# One guest walks about, not two: the whole has 20,000 symbolic states in place of 279,000.
+@pytest.mark.parametrize("text", [NARROW.replace('"guest2" mobile 2', '"guest2"'), VISITED])
 def test_what_is_proven_share_by_share_wins_the_game_as_a_whole(text: str) -> None:
     network, objective, strategy = in_shares(text, NOW)
+    assert verify(network, objective, strategy).ok
     assert as_a_whole(network, objective, strategy).ok
 
 

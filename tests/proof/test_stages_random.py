@@ -18,7 +18,7 @@ from tests.proof.staged_play import StagedPlay
 from tests.proof.test_stages import of_the_whole
 
 HALF = Fraction(1, 2)
-RANDOM = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+RANDOM = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 
 
 @pytest.fixture(scope="module", autouse=True)

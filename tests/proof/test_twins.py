@@ -39,7 +39,7 @@ T = TypeVar("T")
 Look = Tuple[Network, Objective, Strategy, Fraction, Optional[bool], bool]
 KINDS = (Kind.REACH, Kind.REACH_WHILE_SAFE, Kind.SAFETY)
 REACTIONS = st.sampled_from((Fraction(0), Fraction(1, 3), Fraction(1, 2), Fraction(1)))
-RANDOM = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+RANDOM = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 SEARCHES = ("_everything", "_ends", "is_invariant", "_latest")
 
 

@@ -73,7 +73,7 @@ def test_a_first_call_that_changes_nothing_is_not_counted_as_a_move() -> None:
     assert solve(game, objective, rules.reaction, without_pauses=True).won
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(networks(), WANTED, st.sampled_from((Fraction(0), Fraction(1, 2))))
 def test_without_calls_that_nobody_hears_the_environment_has_less_and_without_pauses_more(
     network: Network, objective: Objective, reaction: Fraction
@@ -89,7 +89,7 @@ def test_without_calls_that_nobody_hears_the_environment_has_less_and_without_pa
         assert less
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(networks(), WANTED, st.sampled_from((Fraction(0), Fraction(1, 2))), st.integers(0, 2))
 def test_what_is_lost_to_few_calls_is_lost(
     network: Network, objective: Objective, reaction: Fraction, times: int

@@ -136,7 +136,7 @@ def test_who_stays_somewhere_while_another_calls_again() -> None:
     assert lost_for_one(network, objective, Rules().reaction, SolveOptions()) == (objective,)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.integers(0, 10**6), st.integers(10, 60))
 def test_what_is_lost_where_nobody_asks_for_anything_else_is_lost(seed: int, deadline: int) -> None:
     text = lab_scenario(seed, Size(places=3, robots=1, people=2, promises=3))
@@ -155,7 +155,7 @@ def test_what_is_lost_where_nobody_asks_for_anything_else_is_lost(seed: int, dea
         assert won[0] or not won[1]
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.integers(0, 10**6), st.integers(10, 60), st.integers(1, 2))
 def test_what_a_punctual_environment_wins_is_lost(seed: int, deadline: int, people: int) -> None:
     text = lab_scenario(seed, Size(places=3, robots=1, people=people, promises=2))

@@ -179,7 +179,7 @@ def test_who_has_time_to_leave_before_somebody_comes_does_not_stay(
     assert lost(LATER.format(place)) == expected
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.integers(0, 10**6), st.integers(8, 40), st.integers(1, 2))
 def test_what_is_lost_as_robots_stay_near_others_is_lost(seed: int, deadline: int, people: int) -> None:
     text = lab_scenario(seed, Size(places=3, robots=2, people=people, promises=3))

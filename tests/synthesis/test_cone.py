@@ -41,7 +41,7 @@ from tests.synthesis.play_by_play import PlayByPlay
 from tests.synthesis.random_games import networks
 
 EVERY_KIND = (Kind.REACH, Kind.REACH_WHILE_SAFE, Kind.SAFETY)
-RANDOM = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+RANDOM = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 
 HALL = """
 poi "hall"

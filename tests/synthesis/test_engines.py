@@ -35,7 +35,7 @@ from tests.synthesis.region_game import Position, RegionGame
 
 EVERY_KIND = (Kind.REACH, Kind.REACH_WHILE_SAFE, Kind.SAFETY)
 DEFAULT = Fraction(1, 10)
-RANDOM = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+RANDOM = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 
 ALL: Tuple[Engine, ...] = (
     NativeEngine(), NativeEngine(small_budget=0), ReferenceEngine(), ReferenceEngine(directed=False),

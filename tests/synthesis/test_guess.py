@@ -251,7 +251,7 @@ def test_who_has_least_to_do_keeps_out_of_the_way_of_others() -> None:
     assert verify(network, objective, strategy, DEFAULT.reaction, closed=True).ok
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(started((Kind.SAFETY,)), st.sampled_from((Fraction(0), Fraction(1))))
 def test_what_a_policy_wins_in_a_random_game_wins_it(drawn: Tuple[Network, Objective], reaction: Fraction) -> None:
     network, objective = drawn

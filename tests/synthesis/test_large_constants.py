@@ -42,13 +42,13 @@ objective: if callBot then fetch within {deadline}
 """
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(games(EVERY_KIND, (0, 1)), FACTORS)
 def test_long_times_change_no_verdict_of_the_reference(game: Game, factor: int) -> None:
     assert ReferenceEngine().solve(slower(game, factor)).won == ReferenceEngine().solve(game).won
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(games(EVERY_KIND, (0, 1)), FACTORS)
 def test_the_native_engine_is_right_or_does_not_take_the_game(game: Game, factor: int) -> None:
     long = slower(game, factor)

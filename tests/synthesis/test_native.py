@@ -44,7 +44,7 @@ def test_a_search_that_mostly_explores_is_not_done_twice() -> None:
     assert NativeEngine(5).giving_first(7).small_budget == 7 == NativeEngine(7).giving_first(5).small_budget
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(games(EVERY_KIND, (0, 1)))
 def test_it_agrees_with_the_python_reference(game: Game) -> None:
     assert NATIVE.solve(game).won == ReferenceEngine().solve(game).won

@@ -148,7 +148,7 @@ def test_where_there_is_room_each_robot_has_a_spare_spot_at_each_place() -> None
     assert {robot: list(table) for robot, table in found.items()} == {"bot1": ["a"], "bot2": ["a"]}
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=40)
 @given(
     st.lists(st.tuples(st.integers(1, 70), st.integers(1, 50), st.integers(1, 12), st.integers(1, 12)), max_size=8),
     st.integers(2, 4),

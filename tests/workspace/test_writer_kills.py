@@ -134,7 +134,7 @@ TREES = st.dictionaries(NAMES, st.sampled_from([b"", b"1", b"22", b"#!3"]), max_
 EDITS = st.dictionaries(NAMES, st.just(PERSON), max_size=2)
 
 
-@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(old=TREES, new=TREES, last=TREES, call=st.integers(0, 80), before=EDITS, after=EDITS)
 def test_nothing_of_a_persons_is_lost_whatever_happens(
     tmp_path_factory: pytest.TempPathFactory,

@@ -34,6 +34,10 @@ class Forward {
         if (game_.start.empty()) z = origin<Z>(game_.clocks);
         for (const Bound& b : game_.start)
             if (!constrain(z, b.i, b.j, static_cast<R>(b.raw))) return false;
+        // Nothing is known of clocks that the game does not have: compared with others they would tell plays apart.
+        for (int x = game_.clocks + 1; x < Z::size; ++x)
+            for (int other = 0; other < Z::size; ++other)
+                if (other != x) z.at(x, other) = z.at(other, x) = INF<R>;
         const Z start = z;
         const int first = spot(d, memory);
         if (!invariant(first, z) || !includes(z, start)) return false;

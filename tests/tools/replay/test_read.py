@@ -162,7 +162,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("recordings")
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(kind=st.sampled_from(["", "BZ2", "LZ4", "journal"]), part=st.floats(0.0, 0.999))
 @example(kind="LZ4", part=0.7571204649100453)  # ends where a record of the index ends
 def test_what_is_cut_off_anywhere_is_read_as_far_as_it_goes(folder: Path, kind: str, part: float) -> None:
@@ -195,7 +195,7 @@ def test_a_bag_that_is_cut_off_between_two_records_is_incomplete(folder: Path, t
         assert not checked(path), place
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(kind=st.sampled_from(["", "BZ2", "LZ4", "journal"]), data=st.data())
 def test_damaged_bytes_never_end_in_a_traceback(folder: Path, kind: str, data: st.DataObject) -> None:
     content = bytearray(whole(kind, folder))
