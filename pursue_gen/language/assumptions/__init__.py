@@ -9,13 +9,15 @@ from pursue_gen.language.assumptions.base import AboutOne, Assumption
 from pursue_gen.language.assumptions.leaves import Leaves
 from pursue_gen.language.assumptions.never_at import NeverAt
 from pursue_gen.language.assumptions.never_holds import NeverHolds
+from pursue_gen.language.assumptions.not_before import NotBefore
 from pursue_gen.language.assumptions.waits import Waits
 
-__all__ = ["AboutOne", "Assumption", "AtMost", "Leaves", "NeverAt", "NeverHolds", "Waits"]
+__all__ = ["AboutOne", "Assumption", "AtMost", "Leaves", "NeverAt", "NeverHolds", "NotBefore", "Waits"]
 """Parts of scenarios: `language.scenario` hands them on."""
 
 KINDS: Mapping[str, Type[Assumption]] = {
-    "at_most": AtMost, "waits": Waits, "leaves": Leaves, "never_at": NeverAt, "never_holds": NeverHolds,
+    "at_most": AtMost, "not_before": NotBefore, "waits": Waits, "leaves": Leaves, "never_at": NeverAt,
+    "never_holds": NeverHolds,
 }  # fmt: skip
 """The kinds of assumptions, by their rules in the grammar."""
 
