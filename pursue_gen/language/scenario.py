@@ -120,15 +120,7 @@ class Scenario:
 
     def bound_by(self, rule: Rule) -> Tuple[Agent, ...]:
         """The agents that have a turn of their own in a rule for each of them; none where all have one turn."""
-
-        def names(body: RuleBody) -> Iterator[str]:
-            if isinstance(body, Ref):
-                yield body.name
-            else:
-                yield from names(body.first)
-                yield from names(body.second)
-
-        named = set(names(rule.body)) if rule.each else set()
+        named = {ref.name for ref in rule.events} if rule.each else set()
         able = (agent for agent in self.agents if any(ref.name in named for ref in agent.can_do))
         return tuple(agent for agent in able if agent.is_robot or rule.each == "agent")
 

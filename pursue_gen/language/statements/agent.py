@@ -73,6 +73,7 @@ class Agent(StatementKind):
         Form("a person who helps", 'agent "{=helper}" human controllable mobile {=1} location {POI} can_do {event}'),
     )
     declares: ClassVar[str] = "agent"
+    refers_to: ClassVar[Mapping[str, str]] = {"location": "POI", "can_do": "event", "reacts_to": "event"}
     used: ClassVar[Mapping[str, str]] = {"location": "POI", "can_do": "event", "reacts_to": "event"}
     parts: ClassVar[Tuple[str, ...]] = (
         "AGENT", "LABEL", "HUMAN", "CONTROLLABLE", "MOBILE", "RADIUS", "TOLERANCE", "INFLATION", "LOCATION", "CAN_DO",

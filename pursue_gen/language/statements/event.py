@@ -73,6 +73,7 @@ class Event(StatementKind):
         ),
     )
     declares: ClassVar[str] = "event"
+    refers_to: ClassVar[Mapping[str, str]] = {"location": "POI"}
     used: ClassVar[Mapping[str, str]] = {"location": "POI"}
     conditions_behind: ClassVar[Tuple[str, ...]] = ("only_if",)
     parts: ClassVar[Tuple[str, ...]] = (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Mapping, Tuple, Type, Union
+from typing import Any, ClassVar, Iterator, Mapping, Tuple, Type, Union
 
 from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.refs import Ref
@@ -99,6 +99,14 @@ _side: ref | "(" _body ")\""""
         return cls(bare(name), _body(reader, body), reader.at(name), who)
 
     @property
+    def events(self) -> Tuple[Ref, ...]:
+        """The events that it names, from left to right."""
+        return tuple(_events(self.body))
+
+    def names(self) -> Iterator[Tuple[str, Ref]]:
+        return (("event", ref) for ref in self.events)
+
+    @property
     def text(self) -> str:
         who = f" for each {self.each}" if self.each else ""
         return f'rule "{self.name}"{who}: {_body_text(self.body)}'
@@ -109,6 +117,13 @@ def _body(reader: TreeReader, tree: Any) -> RuleBody:
         return reader.ref(tree)
     first, second = (_body(reader, child) for child in tree.children)
     return _BODIES[tree.data][0](first, second, reader.span(tree))
+
+
+def _events(body: RuleBody) -> Iterator[Ref]:
+    if isinstance(body, Ref):
+        yield body
+    else:
+        yield from (*_events(body.first), *_events(body.second))
 
 
 def _body_text(body: RuleBody) -> str:

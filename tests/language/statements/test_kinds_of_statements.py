@@ -9,6 +9,7 @@ from typing import Any, Dict, Iterator, List, Type
 import pytest
 
 from pursue_gen.language import parse
+from pursue_gen.language.conditions import names_in
 from pursue_gen.language.document import Document
 from pursue_gen.language.kinds import BY_RULE, DECLARED, KEYWORDS, MAY_BE_NAMES, MEANINGS, STATEMENTS
 from pursue_gen.language.occurrences import are_names, occurrences
@@ -77,6 +78,14 @@ def test_what_a_statement_declares_is_written_as_it_is_read() -> None:
     assert kinds == {kind for kind in STATEMENTS.values() if is_dataclass(kind)}, "the story has each of them"
     again = parse("\n".join(part.text for part in declared(scenario)), "story.pur", "story")
     assert list(map(meaning, declared(again))) == list(map(meaning, declared(scenario)))
+
+
+def test_it_uses_the_names_that_editors_find_in_its_text() -> None:
+    for part in declared(parse(STORY, "story.pur", "story")):
+        condition = getattr(part, "only_if", None)
+        used = [*part.names(), *(names_in(condition) if condition is not None else ())]
+        found = [each for each in occurrences(Document(part.text).statements) if not each.declares]
+        assert {(kind, ref.name) for kind, ref in used} == {(each.kind, each.name) for each in found}, part.text
 
 
 @each_kind
