@@ -73,6 +73,7 @@ class Agent(StatementKind):
         Form("a person who helps", 'agent "{=helper}" human controllable mobile {=1} location {POI} can_do {event}'),
     )
     declares: ClassVar[str] = "agent"
+    shortest: ClassVar[str] = 'agent "{name}" location {place}'
     refers_to: ClassVar[Mapping[str, str]] = {"location": "POI", "can_do": "event", "reacts_to": "event"}
     used: ClassVar[Mapping[str, str]] = {"location": "POI", "can_do": "event", "reacts_to": "event"}
     parts: ClassVar[Tuple[str, ...]] = (

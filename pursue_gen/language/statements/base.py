@@ -25,6 +25,8 @@ class StatementKind:
     """Ways to write it, to fill in."""
     declares: ClassVar[str] = ""
     """The kind of thing that it declares, whose name in quotes is its second word; "": none."""
+    shortest: ClassVar[str] = ""
+    """How it declares a `{name}` in as few words as possible, an agent at a `{place}`; "": nothing is short enough."""
     refers_to: ClassVar[Mapping[str, str]] = {}
     """The kind of thing that the names in a field stand for, by field."""
     used: ClassVar[Mapping[str, str]] = {}

@@ -36,6 +36,7 @@ class Poi(StatementKind):
     form: ClassVar[str] = 'poi "a" (or with what people read: poi "a" label "security door")'
     forms: ClassVar[Tuple[Form, ...]] = (Form("a place", 'poi "{=room}"'),)
     declares: ClassVar[str] = "POI"
+    shortest: ClassVar[str] = 'poi "{name}"'
     parts: ClassVar[Tuple[str, ...]] = ("POI", "LABEL", "POSE")
 
     @classmethod

@@ -40,6 +40,7 @@ sets: "true_if" refs ["false_if" refs]
         Form("true or false, changed by events", 'state "{=open}": initially false, true_if {event} false_if {event}'),
     )
     declares: ClassVar[str] = "state"
+    shortest: ClassVar[str] = 'state "{name}": initially false'
     refers_to: ClassVar[Mapping[str, str]] = {"true_if": "event", "false_if": "event"}
     used: ClassVar[Mapping[str, str]] = {"true_if": "event", "false_if": "event"}
 

@@ -13,6 +13,7 @@ from pursue_gen.language.conditions import names_in
 from pursue_gen.language.document import Document
 from pursue_gen.language.kinds import BY_RULE, DECLARED, KEYWORDS, MAY_BE_NAMES, MEANINGS, STATEMENTS
 from pursue_gen.language.occurrences import are_names, occurrences
+from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.word import HOLE
@@ -94,6 +95,14 @@ def test_the_form_that_messages_show_is_a_statement_of_the_kind(kind: Type[State
         document = Document(text)
         assert document.syntax.findings == () and [tree.data for tree in document.syntax.trees] == [kind.rule()]
         assert document.statements[0].tokens[0].type == kind.token()
+
+
+@each_kind
+def test_its_shortest_declaration_declares_a_name_and_no_more(kind: Type[StatementKind]) -> None:
+    text = kind.shortest.format(name="new", place="a")
+    if text:
+        part = next(each for each in declared(read(f"poi \"a\"\n{text}", "story.pur").partial) if each.name == "new")
+        assert (type(part), part.name) == (kind, "new") and part.text == text
 
 
 @each_kind
