@@ -33,7 +33,11 @@ class Connection(StatementKind):
     listed_in: ClassVar[str] = "connections"
     words: ClassVar[Tuple[Word, ...]] = (
         Word("connect", "A way between two places, in both directions unless it is one_way. Write it once."),
-        Word("and", "The other end of the way; in a rule: both of the two, in any order; in a condition: both hold."),
+        Word(
+            "and",
+            "The other end of the way; in a rule: both of the two, in any order; in a condition: both hold.",
+            may_break=True,
+        ),
         Word("distance", "How long the way is, in the unit of distance that you chose."),
         Word("one_way", "From the first place to the second only. Without it, the way goes in both directions.", True),
     )

@@ -66,8 +66,8 @@ class Rule(StatementKind):
         Word("rule", "An order of events, round after round: each may happen only when it is its turn."),
         Word("for", "A rule for each of several: each of them has its own turn."),
         Word("each", "A rule for each of several: each of them has its own turn.", True),
-        Word("before", "First this, then that, and then the first again."),
-        Word("or", "Either of the two, round after round; in a condition: at least one holds."),
+        Word("before", "First this, then that, and then the first again.", may_break=True),
+        Word("or", "Either of the two, round after round; in a condition: at least one holds.", may_break=True),
     )
     grammar: ClassVar[str] = """rule: "rule" NAME [each] ":" _body
 ?each: each_robot | each_agent
