@@ -21,6 +21,7 @@ from pursue_gen.language.scenario import (
     Leaves,
     NeverAt,
     NeverHolds,
+    NotBefore,
     Ref,
     RuleBody,
     Scenario,
@@ -242,6 +243,8 @@ class Course:
             if isinstance(each, Waits) and (each.agent.name, each.event.name) == (agent, name):
                 ends = [end for _, end in self.done.get((agent, name), ())]
                 assert not ends or self.now - ends[-1] >= each.time - 1e-9, "it is assumed to wait longer"
+            if isinstance(each, NotBefore) and (each.agent.name, each.event.name) == (agent, name):
+                assert self.now > each.time - 1e-9, "it is assumed to begin later"
         partners = self.partners(agent, event) if event.collaborative else []
         self._advance(agent, name, name)
         self.begun[name] = self.begun.get(name, 0) + 1

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Collection, FrozenSet, Sequence, Set, Tuple
 
 from pursue_gen.explanation.ablations import without_agent
-from pursue_gen.language.names import events_used, refs_of
+from pursue_gen.language.names import events_used
 from pursue_gen.language.scenario import Rule, Scenario, StatedObjective
 from pursue_gen.solving.one_robot import robot_alone
 from pursue_gen.solving.rules import Rules, played
@@ -90,4 +90,4 @@ def _pastimes(scenario: Scenario) -> Set[str]:
 
 
 def _named(rule: Rule) -> FrozenSet[str]:
-    return frozenset(ref.name for ref in refs_of(rule.body))
+    return frozenset(ref.name for ref in rule.events)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Dict, Iterator
 
 from pursue_gen.diagnostics import Diagnostic, Span
-from pursue_gen.language.assumptions import Setting
+from pursue_gen.language.assumptions.base import Setting
 from pursue_gen.language.behaviour import destinations_from
 from pursue_gen.language.clauses import Domains, TooMany, holds_at_start
 from pursue_gen.language.conditions import Condition

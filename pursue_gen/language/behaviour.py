@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Optional, Set, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, error, warning
-from pursue_gen.language.names import events_used, refs_of
+from pursue_gen.language.names import events_used
 from pursue_gen.language.scenario import (
     Agent,
     Both,
@@ -265,7 +265,7 @@ def _each(scenario: Scenario) -> Iterator[Diagnostic]:
         for agent in bound:
             own = frozenset(ref.name for ref in agent.can_do)
             if not _can_turn(rule.body, own):
-                missing = ", ".join(ref.name for ref in refs_of(rule.body) if ref.name not in own)
+                missing = ", ".join(ref.name for ref in rule.events if ref.name not in own)
                 message = f"{agent.name} cannot end a round of the rule {rule.name}: it cannot do {missing}"
                 yield warning("PML206", message, agent.span, f"add {missing} behind its can_do, if it is to go on")
 
@@ -282,7 +282,7 @@ def check_rules(scenario: Scenario) -> Iterator[Diagnostic]:
             hint = "join fewer events with and, or put some of them in order with before"
             yield error("PML203", f"the rule {rule.name} {why}: expected at most {MOST_LOCATIONS}", rule.span, hint)
         seen: Set[str] = set()
-        for ref in refs_of(rule.body):
+        for ref in rule.events:
             if ref.name in seen:
                 sound = False
                 message = f"the rule {rule.name} names {ref.name} twice: it could not tell whose turn it is"
@@ -295,7 +295,7 @@ def check_rules(scenario: Scenario) -> Iterator[Diagnostic]:
     possible = course.possible()
     for rule in scenario.rules:
         if not _can_turn(rule.body, possible):
-            stuck = next(ref for ref in refs_of(rule.body) if ref.name not in possible)
+            stuck = next(ref for ref in rule.events if ref.name not in possible)
             message = f"the rule {rule.name} can never turn: {course.why_not(stuck.name, possible)}"
             yield error("PML161", message, stuck.span, "change the order, or take the event out of the rule")
     for dependency in scenario.dependencies:
@@ -313,7 +313,7 @@ Earlier = Tuple[FrozenSet[str], ...]
 
 def predecessors(rule: Rule) -> Dict[str, Earlier]:
     """For each event of a rule what it waits for in a round; nothing: it is its turn at the start."""
-    before: Dict[str, Earlier] = {ref.name: () for ref in refs_of(rule.body)}
+    before: Dict[str, Earlier] = {ref.name: () for ref in rule.events}
 
     def visit(body: RuleBody) -> Tuple[Set[str], Earlier]:
         """Notes who follows whom in the body; its first events, and what has happened when it is over."""

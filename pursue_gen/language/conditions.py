@@ -9,7 +9,7 @@ from pursue_gen.language.refs import Ref
 from pursue_gen.language.word import Word
 
 WORDS = (
-    Word("only_if", "What has to hold when the event begins, or when an agent sets off on the way."),
+    Word("only_if", "What has to hold when the event begins, or when an agent sets off on the way.", may_break=True),
     Word("is_true", "The state is true."),
     Word("is_false", "The state is false."),
     Word("at", "The place; in a condition: the agent stands there, idle or at work.", True),

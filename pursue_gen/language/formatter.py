@@ -7,16 +7,13 @@ from typing import Dict, Iterator, List, Optional, Tuple
 
 from pursue_gen.diagnostics import Severity
 from pursue_gen.language.document import Document
-from pursue_gen.language.kinds import section_of
+from pursue_gen.language.kinds import MAY_BREAK, section_of
 from pursue_gen.outcomes import Invalid
 
 WIDTH = 100
 """A statement that is longer goes on in the next line, where it can be broken; a comment is as long as it is."""
 
 INDENT = "    "
-_BREAKABLE = frozenset({"CAN_DO", "REACTS_TO", "TRUE_IF", "FALSE_IF", "BEFORE", "OR", "AND", "ONLY_IF"})
-"""A line may be broken before these words, and behind every comma."""
-
 _CLOSE = frozenset({"COMMA", "COLON", "RPAR"})
 _MOST_PADDING = 20
 _LINE = "LINE"
@@ -119,7 +116,7 @@ def _pieces(group: List[_Item]) -> Iterator[Tuple[str, int, bool]]:
     for item in group:
         own_line = item.is_comment and item.breaks > 0
         ended = bool(piece) and (piece[-1].kind == _LINE or (piece[0].is_comment and not item.is_comment))
-        may = not item.is_comment and (item.kind in _BREAKABLE or (word is not None and word.kind == "COMMA"))
+        may = not item.is_comment and (item.kind in MAY_BREAK or (word is not None and word.kind == "COMMA"))
         if piece and (own_line or ended or may):
             yield (*_joined(piece), forced)
             piece, forced = [], own_line or ended

@@ -57,6 +57,12 @@ KEYWORDS: Dict[str, str] = {word.token: word.text for word in _ALL}
 MEANINGS: Dict[str, str] = {word.token: word.meaning for word in _ALL}
 """What each word means, by token."""
 
+VALUES: FrozenSet[str] = frozenset(("TRUE", "FALSE", "IS_TRUE", "IS_FALSE"))
+"""The tokens of those of them that are values of states."""
+
+MAY_BREAK: FrozenSet[str] = frozenset(word.token for word in _ALL if word.may_break)
+"""The tokens of those of them before which a line may be broken."""
+
 MAY_BE_NAMES: Dict[str, str] = {word.token: word.text for word in _ALL if word.may_be_name}
 """Those of the words that scenarios may use as names, by token: `human` is an agent of published scenarios, and the
 others are younger than many scenarios."""

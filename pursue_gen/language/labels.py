@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from typing import Any, Dict, Iterator, Tuple
+from typing import Dict, Iterator, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
+from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.scenario import Scenario
 
-LABELLED = ("POI", "event", "agent")
-"""The kinds of things that may have a label."""
+LABELLED = {kind.declares: kind.listed_in for kind in STATEMENTS.values() if kind.has_label()}
+"""The kinds of things that may have a label, and the field of a scenario that has them."""
 
 _SIGNS = re.compile(r"[!-/:-@\[-`{-~]")
 """The signs that mean something in Markdown; a backslash before one of them makes it an ordinary sign."""
@@ -69,8 +70,8 @@ def in_markdown(scenario: Scenario, text: str) -> str:
 
 def check_labels(scenario: Scenario) -> Iterator[Diagnostic]:
     """Findings about labels: those that cannot be shown, and things of one kind that people cannot tell apart."""
-    kinds: Dict[str, Tuple[Any, ...]] = {"POI": scenario.pois, "event": scenario.events, "agent": scenario.agents}
-    for kind, parts in kinds.items():
+    for kind, field in LABELLED.items():
+        parts = getattr(scenario, field)
         seen: Dict[str, Tuple[str, Span]] = {part.name: (part.name, part.span) for part in parts if part.label is None}
         for part in parts:
             if part.label is None:

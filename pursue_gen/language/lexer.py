@@ -7,14 +7,14 @@ from typing import Any, ClassVar, Dict, Iterator, List, Tuple
 from pygments.lexer import Lexer
 from pygments.token import Comment, Keyword, Name, Number, Punctuation, String, Text, Whitespace
 
-from pursue_gen.language.kinds import KEYWORDS, STATEMENTS
+from pursue_gen.language.kinds import KEYWORDS, STATEMENTS, VALUES
 from pursue_gen.language.syntax import tokens_of
 from pursue_gen.language.tokens import end_of, start_of
 
 _COLOURS: Dict[str, Any] = {
     **dict.fromkeys(KEYWORDS, Keyword),
     **dict.fromkeys(STATEMENTS, Keyword.Declaration),
-    **dict.fromkeys(("TRUE", "FALSE", "IS_TRUE", "IS_FALSE"), Keyword.Constant),
+    **dict.fromkeys(VALUES, Keyword.Constant),
     **dict.fromkeys(("COLON", "COMMA", "LPAR", "RPAR"), Punctuation),
     "NAME": String, "WORD": Name, "TAIL": Comment.Preproc,
     "POSE": Comment.Special, "LINE_COMMENT": Comment.Single, "BLOCK_COMMENT": Comment.Multiline,

@@ -2,34 +2,30 @@
 
 from __future__ import annotations
 
-from typing import Any, Container, Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Tuple
+from typing import Container, Dict, FrozenSet, Iterator, List, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language.collisions import check_collisions
 from pursue_gen.language.conditions import names_in
-from pursue_gen.language.kinds import RESERVED
+from pursue_gen.language.kinds import RESERVED, STATEMENTS
 from pursue_gen.language.labels import LABELLED, why_no_label
-from pursue_gen.language.scenario import Ref, RuleBody, Scenario
+from pursue_gen.language.scenario import Ref, Scenario
 from pursue_gen.language.similar import Similar, closest
 from pursue_gen.language.tokens import shown
 from pursue_gen.language.usable import LONGEST, fitting, proposal, reserved, well_formed
 
-KINDS = ("POI", "event", "rule", "state", "agent")
+_LISTED_IN = {kind.declares: kind.listed_in for kind in STATEMENTS.values() if kind.declares}
+KINDS = tuple(_LISTED_IN)
+"""The kinds of things that have names."""
+
 _SOME = 12  # known names that a message lists
 _COMPARED = 200  # names in broken statements among which a similar one is looked for
 
 
 def declared(scenario: Scenario, kind: str) -> Dict[str, Span]:
     """The names of one of KINDS with the place of their first declaration."""
-    kinds: Dict[str, Tuple[Any, ...]] = {
-        "POI": scenario.pois,
-        "event": scenario.events,
-        "rule": scenario.rules,
-        "state": scenario.states,
-        "agent": scenario.agents,
-    }
     places: Dict[str, Span] = {}
-    for part in kinds[kind]:
+    for part in getattr(scenario, _LISTED_IN[kind]):
         places.setdefault(part.name, part.span)
     return places
 
@@ -62,7 +58,8 @@ def check_references(scenario: Scenario, lost: FrozenSet[str] = frozenset()) -> 
     similar = {kind: Similar(known[kind]) for kind in KINDS}
     taken = _taken(scenario)
     meant = {proposal(name, RESERVED, taken) for kind in KINDS for name in known[kind] if not well_formed(name)}
-    for kind, name, span in _uses(scenario):
+    for kind, ref in _uses(scenario):
+        name = ref.name
         if name in known[kind] or name in lost or name in meant:
             continue
         elsewhere = next((other for other in KINDS if name in known[other]), "")
@@ -70,7 +67,7 @@ def check_references(scenario: Scenario, lost: FrozenSet[str] = frozenset()) -> 
             message = f"{name} is {_a(elsewhere)}, but {_a(kind)} is needed here"
         else:
             message = f"there is no {kind} {shown(name, 60)}"
-        yield error("PML110", message, span, _instead(kind, name, elsewhere, known, similar[kind], lost, taken))
+        yield error("PML110", message, ref.span, _instead(kind, name, elsewhere, known, similar[kind], lost, taken))
 
 
 def _instead(
@@ -113,59 +110,26 @@ def _taken(scenario: Scenario) -> FrozenSet[str]:
     return frozenset(name for kind in KINDS for name in declared(scenario, kind))
 
 
-def refs_of(body: RuleBody) -> List[Ref]:
-    """The events that a rule names, from left to right."""
-    return [body] if isinstance(body, Ref) else refs_of(body.first) + refs_of(body.second)
-
-
 def events_used(scenario: Scenario) -> FrozenSet[str]:
     """The events that a rule, a state, a condition, an agent or an objective names."""
-    return frozenset(name for kind, name, _ in _uses(scenario) if kind == "event")
+    return frozenset(ref.name for kind, ref in _uses(scenario) if kind == "event")
 
 
 def _declarations(scenario: Scenario) -> List[Tuple[str, str, Span]]:
     """(kind, name, place) of each declaration, in file order, so that the later one of two is the one at fault."""
-    parts: List[Tuple[str, str, Span]] = [("POI", poi.name, poi.span) for poi in scenario.pois]
-    parts += [("event", event.name, event.span) for event in scenario.events]
-    parts += [("rule", rule.name, rule.span) for rule in scenario.rules]
-    parts += [("state", state.name, state.span) for state in scenario.states]
-    parts += [("agent", agent.name, agent.span) for agent in scenario.agents]
+    parts = [(kind, part.name, part.span) for kind, field in _LISTED_IN.items() for part in getattr(scenario, field)]
     return sorted(parts, key=lambda part: (part[2].line, part[2].column))
 
 
-def _uses(scenario: Scenario) -> Iterator[Tuple[str, str, Span]]:
-    """(kind, name, place) of each use of a name."""
-
-    def all_of(kind: str, refs: Iterable[Optional[Ref]]) -> Iterator[Tuple[str, str, Span]]:
-        return ((kind, ref.name, ref.span) for ref in refs if ref is not None)
-
-    for poi in scenario.pois:
-        yield from all_of("agent", [spot.robot for spot in poi.spots])
-    for way in scenario.connections:
-        yield "POI", way.a, way.ends[0]
-        yield "POI", way.b, way.ends[1]
+def _uses(scenario: Scenario) -> Iterator[Tuple[str, Ref]]:
+    """Each use of a name, behind the kind of thing that is needed there."""
+    for kind in STATEMENTS.values():
+        for part in getattr(scenario, kind.listed_in) if kind.listed_in else ():
+            yield from part.names()
+    for objective in scenario.objectives:
+        yield from objective.names()
     for condition, _ in scenario.conditions():
-        for kind, ref in names_in(condition):
-            yield kind, ref.name, ref.span
-    for rule in scenario.rules:
-        yield from all_of("event", refs_of(rule.body))
-    yield from all_of("POI", [event.location for event in scenario.events])
-    for state in scenario.states:
-        yield from all_of("event", state.true_if + state.false_if)
-    for dependency in scenario.dependencies:
-        yield from all_of("event", [dependency.event])
-        yield from all_of("state", [dependency.state])
-    for agent in scenario.agents:
-        yield from all_of("POI", [agent.location])
-        yield from all_of("event", agent.can_do + agent.reacts_to)
-    for travel in scenario.travels:
-        yield from all_of("agent", [travel.agent])
-        yield from all_of("POI", [travel.a, travel.b])
-    for battery in scenario.batteries:
-        yield from all_of("agent", [battery.agent])
-        yield from all_of("POI", [battery.dock])
-    for named in (*(each.names() for each in scenario.assumptions), *(each.names() for each in scenario.objectives)):
-        yield from ((kind, ref.name, ref.span) for kind, ref in named)
+        yield from names_in(condition)
 
 
 def _file_name(scenario: Scenario) -> Iterator[Diagnostic]:

@@ -129,7 +129,7 @@ def _parts(tree: Any, reader: TreeReader) -> Tuple[Any, ...]:
 def _labels(trees: Iterable[Tree[Token]]) -> Iterator[Tuple[str, str]]:
     """Names with their labels, where they have one; the first declaration counts."""
     for tree in reversed(list(trees)):
-        if isinstance(tree, Tree) and tree.data in ("poi", "event", "agent"):
+        if isinstance(tree, Tree) and BY_RULE[tree.data].has_label():
             name, _, label, *_ = tree.children
             if isinstance(name, Token) and isinstance(label, Token):
                 yield bare(name), bare(label)

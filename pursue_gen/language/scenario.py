@@ -7,7 +7,9 @@ from functools import cached_property
 from typing import Any, Callable, Collection, Dict, Iterator, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Span
-from pursue_gen.language.assumptions import AboutOne, Assumption, AtMost, Leaves, NeverAt, NeverHolds, Waits
+from pursue_gen.language import assumptions as kinds_of_assumptions
+from pursue_gen.language.assumptions import *
+from pursue_gen.language.assumptions.base import Assumption
 from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, Holds, Not, OnWay, Who
 from pursue_gen.language.numbers import Window, exact, window_of
 from pursue_gen.language.objectives import (
@@ -36,11 +38,12 @@ from pursue_gen.language.statements.state import State
 from pursue_gen.language.statements.travel import Travel
 
 __all__ = [
-    "AboutOne", "Agent", "AllOf", "Always", "AnyOf", "Assumption", "At", "AtMost", "Avoid", "Battery", "Both", "Choice",
-    "Condition", "Connection", "Dependency", "Doing", "Event", "GivenUp", "Holds", "Leaves", "NeverAt", "NeverHolds",
-    "NeverWith", "Not", "OnWay", "Patrol", "Poi", "Pose", "Reach", "Ref", "Respond", "Rule", "RuleBody", "Safety",
-    "Scenario", "Sequence", "Spot", "State", "StatedObjective", "Travel", "Waits", "Who", "Window",
+    "Agent", "AllOf", "Always", "AnyOf", "At", "Avoid", "Battery", "Both", "Choice", "Condition", "Connection",
+    "Dependency", "Doing", "Event", "GivenUp", "Holds", "NeverWith", "Not", "OnWay", "Patrol", "Poi", "Pose", "Reach",
+    "Ref", "Respond", "Rule", "RuleBody", "Safety", "Scenario", "Sequence", "Spot", "State", "StatedObjective",
+    "Travel", "Who", "Window",
 ]
+__all__ += kinds_of_assumptions.__all__
 """All parts of a scenario: whoever works with scenarios imports them from here."""
 
 
@@ -117,15 +120,7 @@ class Scenario:
 
     def bound_by(self, rule: Rule) -> Tuple[Agent, ...]:
         """The agents that have a turn of their own in a rule for each of them; none where all have one turn."""
-
-        def names(body: RuleBody) -> Iterator[str]:
-            if isinstance(body, Ref):
-                yield body.name
-            else:
-                yield from names(body.first)
-                yield from names(body.second)
-
-        named = set(names(rule.body)) if rule.each else set()
+        named = {ref.name for ref in rule.events} if rule.each else set()
         able = (agent for agent in self.agents if any(ref.name in named for ref in agent.can_do))
         return tuple(agent for agent in able if agent.is_robot or rule.each == "agent")
 

@@ -9,12 +9,14 @@ from typing import NamedTuple
 class Word(NamedTuple):
     """A word of the language and what it means, in a sentence.
 
-    `may_be_name`: it is younger than many scenarios, which may have something that is called so.
+    `may_be_name`: it is younger than many scenarios, which may have something that is called so; `may_break`: a line
+    that is too long may be broken before it.
     """
 
     text: str
     meaning: str
     may_be_name: bool = False
+    may_break: bool = False
 
     @property
     def token(self) -> str:

@@ -12,7 +12,7 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple, Type
 from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Clauses, clauses_of
 from pursue_gen.language.numbers import exact
-from pursue_gen.language.scenario import Assumption, AtMost, Leaves, NeverAt, NeverHolds, Scenario, Waits
+from pursue_gen.language.scenario import Assumption, AtMost, Leaves, NeverAt, NeverHolds, NotBefore, Scenario, Waits
 from pursue_gen.language.symbols import Role
 from pursue_gen.tga.agents import PAUSE
 from pursue_gen.tga.changes import Change, beginning, setting_off, states_set
@@ -117,6 +117,16 @@ def _at_most(automaton: Automaton, number: int, assumption: AtMost, *_: object) 
     return _each(automaton, edges)
 
 
+def _not_before(automaton: Automaton, number: int, assumption: NotBefore, *_: object) -> Automaton:
+    """A clock that nothing resets has to be past the time."""
+    late = ClockBound(names.assumption_clock(number), ">", assumption.time)
+
+    def edges(edge: Edge) -> List[Edge]:
+        return [_with(edge, bound=late), _when_broken(edge, number)] if _sends(edge, assumption.event.name) else [edge]
+
+    return _each(automaton, edges)
+
+
 def _waits(automaton: Automaton, number: int, assumption: Waits, *_: object) -> Automaton:
     """The first time is free; a clock runs from the end of each one to the next."""
     count, clock, event = names.assumption_count(number), names.assumption_clock(number), assumption.event.name
@@ -201,6 +211,7 @@ def _with(
 
 _KEPT: Mapping[Type[Assumption], Callable[[Automaton, int, Any, Scenario, Conditions], Automaton]] = {
     AtMost: _at_most,
+    NotBefore: _not_before,
     Waits: _waits,
     Leaves: _leaves,
     NeverAt: _never_at,

@@ -247,8 +247,9 @@ def texts(draw: st.DrawFn) -> str:
         if kind == 9:
             return ["assume", ":", *draw(st.sampled_from((
                 ["not", "(", name, "at", other, "and", name, "on_way", ")"],
-                [name, "does", other, "at_most", number, "times"], [name, "waits", number, "between", other],
-                [name, "leaves", other, "within", number], [name, "never", "at", other],
+                [name, "does", other, "at_most", number, "times"], [name, "does", other, "after", number],
+                [name, "waits", number, "between", other], [name, "leaves", other, "within", number],
+                [name, "never", "at", other],
             )))]  # fmt: skip
         if kind == 7 and draw(st.booleans()):
             who = draw(st.sampled_from(([name], ["any", "robot"])))

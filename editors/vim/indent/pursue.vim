@@ -12,20 +12,28 @@ if exists('*PursueIndent')
   finish
 endif
 
-let s:statement = '^\s*\%(agent\|assume\|battery\|connect\|event\|objective\|optional\|poi\|reach_objective\|rule\|state\|stateDependency\|travel\)\>'
-let s:goes_on = '^\s*\%(and\|distance\|one_way\|location\|duration\|collaborative\|together\|from\|to\|takes\|before\|or\|initially\|true_if\|false_if\|only_if\|'
-      \ . 'human\|controllable\|mobile\|can_do\|reacts_to\|then\|within\|in\|every\|by\|does\|at_most\|times\|waits\|between\|leaves\|never\|never_with\|do\|after\)\>'
+let s:statement = split('
+      \ agent assume battery connect event objective optional poi reach_objective rule state stateDependency travel')
+let s:goes_on = split('
+      \ after always and any at at_most avoid before between by can_do capacity collaborative controllable distance do
+      \ does doing duration each every false false_if for from human if in inflation initially is_false is_true label
+      \ leaves location mobile never never_with no not on_way one_way only_if or order patrol per radius reacts_to
+      \ recharges robot takes then times to together tolerance true true_if unit uses waits within')
+
+function! s:Begins(line, words) abort
+  return index(a:words, matchstr(a:line, '^\s*\zs\w\+')) >= 0
+endfunction
 
 function! PursueIndent() abort
   let line = getline(v:lnum)
-  if line =~# s:goes_on
-    return shiftwidth()
-  endif
   if synIDattr(synID(v:lnum, indent(v:lnum) + 1, 0), 'name') ==# 'pursueComment'
     return -1
   endif
+  if s:Begins(line, s:goes_on)
+    return shiftwidth()
+  endif
   let before = substitute(getline(prevnonblank(v:lnum - 1)), '//.*', '', '')
-  if line !~# s:statement && before =~# ',\s*$'
+  if !s:Begins(line, s:statement) && before =~# ',\s*$'
     return shiftwidth()
   endif
   return 0

@@ -26,7 +26,7 @@ class AtMost(AboutOne):
     title: ClassVar[str] = "how often somebody does something"
     written: ClassVar[str] = "{agent} does {event} at_most {times} times"
     example: ClassVar[Mapping[str, str]] = {"agent": "guest", "event": "call", "times": "2"}
-    meanings: ClassVar[Mapping[str, str]] = {"does": "The event that it does at most so many times."}
+    meanings: ClassVar[Mapping[str, str]] = {"does": "The event that the assumption is about."}
     number: ClassVar[str] = "times"
     nearest: ClassVar[int] = MOST_TIMES
     counts: ClassVar[bool] = True

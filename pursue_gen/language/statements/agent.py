@@ -55,8 +55,8 @@ class Agent(StatementKind):
         Word("radius", "Metres from the middle of the robot to its farthest part: what it needs to turn.", True),
         Word("tolerance", "Metres by which the robot stops beside its goal, at most (xy_goal_tolerance).", True),
         Word("inflation", "Metres around obstacles that the robot's planners avoid (inflation_radius).", True),
-        Word("can_do", "The events that it does."),
-        Word("reacts_to", "The collaborative events in which it is the partner."),
+        Word("can_do", "The events that it does.", may_break=True),
+        Word("reacts_to", "The collaborative events in which it is the partner.", may_break=True),
     )
     grammar: ClassVar[str] = (
         'agent: "agent" NAME [LABEL NAME] [HUMAN] [CONTROLLABLE] ["mobile" NUMBER] _size "location" ref'
@@ -73,6 +73,8 @@ class Agent(StatementKind):
         Form("a person who helps", 'agent "{=helper}" human controllable mobile {=1} location {POI} can_do {event}'),
     )
     declares: ClassVar[str] = "agent"
+    shortest: ClassVar[str] = 'agent "{name}" location {place}'
+    refers_to: ClassVar[Mapping[str, str]] = {"location": "POI", "can_do": "event", "reacts_to": "event"}
     used: ClassVar[Mapping[str, str]] = {"location": "POI", "can_do": "event", "reacts_to": "event"}
     parts: ClassVar[Tuple[str, ...]] = (
         "AGENT", "LABEL", "HUMAN", "CONTROLLABLE", "MOBILE", "RADIUS", "TOLERANCE", "INFLATION", "LOCATION", "CAN_DO",

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Mapping, Tuple, cast
 
-from pursue_gen.language.assumptions import KINDS, NAMES, Assumption
+from pursue_gen.language.assumptions import KINDS, Assumption
+from pursue_gen.language.assumptions.base import NAMES
 from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word

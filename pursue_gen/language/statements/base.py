@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Iterable, Mapping, Optional, Tuple
+from typing import Any, ClassVar, Iterable, Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.language.conditions import Condition, condition_text
 from pursue_gen.language.refs import Ref
@@ -25,6 +25,10 @@ class StatementKind:
     """Ways to write it, to fill in."""
     declares: ClassVar[str] = ""
     """The kind of thing that it declares, whose name in quotes is its second word; "": none."""
+    shortest: ClassVar[str] = ""
+    """How it declares a `{name}` in as few words as possible, an agent at a `{place}`; "": nothing is short enough."""
+    refers_to: ClassVar[Mapping[str, str]] = {}
+    """The kind of thing that the names in a field stand for, by field."""
     used: ClassVar[Mapping[str, str]] = {}
     """The kind of thing that names stand for, by the last word of the language before them."""
     conditions_behind: ClassVar[Tuple[str, ...]] = ()
@@ -47,9 +51,20 @@ class StatementKind:
         return cls.grammar.split(":", 1)[0].strip()
 
     @classmethod
+    def has_label(cls) -> bool:
+        """True if what it declares may have a label."""
+        return "[LABEL NAME]" in cls.grammar
+
+    @classmethod
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Any:
         """What it declares, one part or several, from its tree. `at`: `span`, its place in the text."""
         raise NotImplementedError
+
+    def names(self) -> Iterator[Tuple[str, Ref]]:
+        """Each name that it uses outside its conditions, behind the kind of thing that it stands for."""
+        for field, kind in self.refers_to.items():
+            value = getattr(self, field)
+            yield from ((kind, ref) for ref in (value if isinstance(value, tuple) else (value,)) if ref is not None)
 
     @property
     def text(self) -> str:

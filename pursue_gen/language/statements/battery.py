@@ -52,6 +52,7 @@ class Battery(StatementKind):
             "battery {agent} capacity {=100} uses {=2} per unit recharges {=5} per unit at {POI}",
         ),
     )
+    refers_to: ClassVar[Mapping[str, str]] = {"agent": "agent", "dock": "POI"}
     used: ClassVar[Mapping[str, str]] = {"battery": "agent", "at": "POI"}
     second: ClassVar[str] = "capacity"
 

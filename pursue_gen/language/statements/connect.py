@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Mapping, Optional, Tuple
+from typing import Any, ClassVar, Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.conditions import Condition
 from pursue_gen.language.numbers import Number
+from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import StatementKind, joined, only_if_text
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word
@@ -32,7 +33,11 @@ class Connection(StatementKind):
     listed_in: ClassVar[str] = "connections"
     words: ClassVar[Tuple[Word, ...]] = (
         Word("connect", "A way between two places, in both directions unless it is one_way. Write it once."),
-        Word("and", "The other end of the way; in a rule: both of the two, in any order; in a condition: both hold."),
+        Word(
+            "and",
+            "The other end of the way; in a rule: both of the two, in any order; in a condition: both hold.",
+            may_break=True,
+        ),
         Word("distance", "How long the way is, in the unit of distance that you chose."),
         Word("one_way", "From the first place to the second only. Without it, the way goes in both directions.", True),
     )
@@ -55,6 +60,9 @@ class Connection(StatementKind):
         first, second, condition = reader.ref(a), reader.ref(b), reader.condition_or_none(only_if)
         ends, length = (first.span, second.span), reader.number(distance)
         return cls(first.name, second.name, length, at["span"], ends, one_way is not None, condition)
+
+    def names(self) -> Iterator[Tuple[str, Ref]]:
+        return (("POI", Ref(name, span)) for name, span in zip((self.a, self.b), self.ends))
 
     @property
     def directions(self) -> Tuple[Tuple[str, str], ...]:

@@ -30,6 +30,7 @@ class Dependency(StatementKind):
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("an event that waits for a state", "stateDependency: {event} only_if {state} is_true"),
     )
+    refers_to: ClassVar[Mapping[str, str]] = {"event": "event", "state": "state"}
     used: ClassVar[Mapping[str, str]] = {"stateDependency": "event", "only_if": "state"}
     among: ClassVar[str] = "STATE"
 

@@ -73,6 +73,8 @@ class Event(StatementKind):
         ),
     )
     declares: ClassVar[str] = "event"
+    shortest: ClassVar[str] = 'event "{name}"'
+    refers_to: ClassVar[Mapping[str, str]] = {"location": "POI"}
     used: ClassVar[Mapping[str, str]] = {"location": "POI"}
     conditions_behind: ClassVar[Tuple[str, ...]] = ("only_if",)
     parts: ClassVar[Tuple[str, ...]] = (

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Optional, Tuple
+from typing import Any, ClassVar, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.poses import Pose, PoseComment, Spot, pose_text, read_poses
+from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import StatementKind, joined, label_text
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.tree_reader import TreeReader
@@ -35,6 +36,7 @@ class Poi(StatementKind):
     form: ClassVar[str] = 'poi "a" (or with what people read: poi "a" label "security door")'
     forms: ClassVar[Tuple[Form, ...]] = (Form("a place", 'poi "{=room}"'),)
     declares: ClassVar[str] = "POI"
+    shortest: ClassVar[str] = 'poi "{name}"'
     parts: ClassVar[Tuple[str, ...]] = ("POI", "LABEL", "POSE")
 
     @classmethod
@@ -43,6 +45,9 @@ class Poi(StatementKind):
         found = PoseComment(None) if pose is None else read_poses(str(pose), reader.at(pose))
         reader.findings += found.findings
         return cls(bare(name), found.pose, reader.at(name), found.spots, reader.label(label))
+
+    def names(self) -> Iterator[Tuple[str, Ref]]:
+        return (("agent", spot.robot) for spot in self.spots)
 
     @property
     def shown(self) -> str:

@@ -16,7 +16,7 @@ class ReachObjective(StatementKind):
     words: ClassVar[Tuple[Word, ...]] = (
         Word("reach_objective", "What is to be achieved once."),
         Word("do", "The event that is wanted."),
-        Word("after", "It counts when it happens later than so many units of time after the start."),
+        Word("after", "Later than so many units of time after the start."),
     )
     grammar: ClassVar[str] = """reach: "reach_objective" ":" "do" things ["after" NUMBER] ["within" NUMBER]
 things: ref ("and" ref)*"""

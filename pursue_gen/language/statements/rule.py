@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Mapping, Tuple, Type, Union
+from typing import Any, ClassVar, Iterator, Mapping, Tuple, Type, Union
 
 from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.refs import Ref
@@ -66,8 +66,8 @@ class Rule(StatementKind):
         Word("rule", "An order of events, round after round: each may happen only when it is its turn."),
         Word("for", "A rule for each of several: each of them has its own turn."),
         Word("each", "A rule for each of several: each of them has its own turn.", True),
-        Word("before", "First this, then that, and then the first again."),
-        Word("or", "Either of the two, round after round; in a condition: at least one holds."),
+        Word("before", "First this, then that, and then the first again.", may_break=True),
+        Word("or", "Either of the two, round after round; in a condition: at least one holds.", may_break=True),
     )
     grammar: ClassVar[str] = """rule: "rule" NAME [each] ":" _body
 ?each: each_robot | each_agent
@@ -99,6 +99,14 @@ _side: ref | "(" _body ")\""""
         return cls(bare(name), _body(reader, body), reader.at(name), who)
 
     @property
+    def events(self) -> Tuple[Ref, ...]:
+        """The events that it names, from left to right."""
+        return tuple(_events(self.body))
+
+    def names(self) -> Iterator[Tuple[str, Ref]]:
+        return (("event", ref) for ref in self.events)
+
+    @property
     def text(self) -> str:
         who = f" for each {self.each}" if self.each else ""
         return f'rule "{self.name}"{who}: {_body_text(self.body)}'
@@ -109,6 +117,13 @@ def _body(reader: TreeReader, tree: Any) -> RuleBody:
         return reader.ref(tree)
     first, second = (_body(reader, child) for child in tree.children)
     return _BODIES[tree.data][0](first, second, reader.span(tree))
+
+
+def _events(body: RuleBody) -> Iterator[Ref]:
+    if isinstance(body, Ref):
+        yield body
+    else:
+        yield from (*_events(body.first), *_events(body.second))
 
 
 def _body_text(body: RuleBody) -> str:

@@ -29,8 +29,8 @@ class State(StatementKind):
         Word("initially", "The value at the start, true or false."),
         Word("true", "It holds."),
         Word("false", "It does not hold."),
-        Word("true_if", "The events that make the state true."),
-        Word("false_if", "The events that make the state false."),
+        Word("true_if", "The events that make the state true.", may_break=True),
+        Word("false_if", "The events that make the state false.", may_break=True),
     )
     grammar: ClassVar[str] = """state: "state" NAME ":" "initially" (TRUE | FALSE) ["," sets]
 sets: "true_if" refs ["false_if" refs]
@@ -40,6 +40,8 @@ sets: "true_if" refs ["false_if" refs]
         Form("true or false, changed by events", 'state "{=open}": initially false, true_if {event} false_if {event}'),
     )
     declares: ClassVar[str] = "state"
+    shortest: ClassVar[str] = 'state "{name}": initially false'
+    refers_to: ClassVar[Mapping[str, str]] = {"true_if": "event", "false_if": "event"}
     used: ClassVar[Mapping[str, str]] = {"true_if": "event", "false_if": "event"}
 
     @classmethod

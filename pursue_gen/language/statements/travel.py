@@ -45,6 +45,7 @@ class Travel(StatementKind):
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("an agent's own time for a way", "travel {agent} from {POI} to {POI} takes {=5} to {=8}"),
     )
+    refers_to: ClassVar[Mapping[str, str]] = {"agent": "agent", "a": "POI", "b": "POI"}
     used: ClassVar[Mapping[str, str]] = {"travel": "agent", "from": "POI", "to": "POI"}
     second: ClassVar[str] = "from"
 

@@ -10,7 +10,7 @@ from pursue_gen.diagnostics import Diagnostic, PursueError
 from pursue_gen.language.behaviour import destinations_from
 from pursue_gen.language.document import Edit, behind, written
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.kinds import MAY_BE_NAMES, RESERVED
+from pursue_gen.language.kinds import MAY_BE_NAMES, RESERVED, STATEMENTS
 from pursue_gen.language.navigation import rename
 from pursue_gen.language.occurrences import Occurrence
 from pursue_gen.language.poses import robots_in
@@ -22,13 +22,7 @@ from pursue_gen.tools.lsp.statements import ordered
 
 _EXAMPLE = re.compile(r"for example (\w+)")
 _MOST = 3
-_DECLARATIONS = {
-    "POI": 'poi "{}"',
-    "event": 'event "{}"',
-    "rule": 'rule "{}": ',
-    "state": 'state "{}": initially false',
-    "agent": 'agent "{}" location {}',
-}
+_SHORTEST = {kind.declares: kind.shortest for kind in STATEMENTS.values()}
 
 
 def fitting_name(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
@@ -64,8 +58,9 @@ def unknown_name(document: Draft, finding: Diagnostic, part: Statement, at: int)
             yield f"Write {close}", (Edit(occurrence.start, occurrence.end, close),)
         elsewhere = any(occurrence.name in names for names in document.declared.values())
         places = list(document.declared["POI"])
-        if not elsewhere and occurrence.kind != "rule" and (places or occurrence.kind != "agent"):
-            statement = _DECLARATIONS[occurrence.kind].format(occurrence.name, *places[:1])
+        shortest = _SHORTEST[occurrence.kind]
+        if not elsewhere and shortest and (places or "{place}" not in shortest):
+            statement = shortest.format(name=occurrence.name, place=next(iter(places), ""))
             if proposal(occurrence.name, RESERVED) == occurrence.name:
                 yield f"Declare it: {statement}", (document.inserted(statement),)
 

@@ -13,7 +13,6 @@ from pursue_gen.language.conditions import condition_words, names_in
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.kinds import KEYWORDS, MEANINGS, STATEMENTS
 from pursue_gen.language.labels import in_markdown, markdown
-from pursue_gen.language.names import refs_of
 from pursue_gen.language.numbers import Number, exact, read_number
 from pursue_gen.language.scenario import (
     Agent,
@@ -153,7 +152,7 @@ def _rule(scenario: Scenario, rule: Rule) -> List[str]:
     if rule.each:
         bound = ", ".join(agent.name for agent in scenario.bound_by(rule))
         lines.append(f"- each of these has its own turn: {bound or 'nobody'}")
-    names = ", ".join(ref.name for ref in refs_of(rule.body))
+    names = ", ".join(ref.name for ref in rule.events)
     return [*lines, f"- {names} can happen only when it is their turn"]
 
 

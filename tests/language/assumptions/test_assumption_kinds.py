@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from pursue_gen.diagnostics import Severity
 from pursue_gen.language import parse
 from pursue_gen.language.assumption_checks import setting_of
-from pursue_gen.language.assumptions import KINDS, NAMES, NUMBERED, Assumption
+from pursue_gen.language.assumptions import KINDS, NUMBERED, Assumption
+from pursue_gen.language.assumptions.base import NAMES
 from pursue_gen.language.checks import check
 from pursue_gen.language.conditions import At, Condition, Doing, Not, OnWay, Who
 from pursue_gen.language.draft import Draft

@@ -9,9 +9,11 @@ from typing import Any, Dict, Iterator, List, Type
 import pytest
 
 from pursue_gen.language import parse
+from pursue_gen.language.conditions import names_in
 from pursue_gen.language.document import Document
 from pursue_gen.language.kinds import BY_RULE, DECLARED, KEYWORDS, MAY_BE_NAMES, MEANINGS, STATEMENTS
 from pursue_gen.language.occurrences import are_names, occurrences
+from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.word import HOLE
@@ -79,12 +81,28 @@ def test_what_a_statement_declares_is_written_as_it_is_read() -> None:
     assert list(map(meaning, declared(again))) == list(map(meaning, declared(scenario)))
 
 
+def test_it_uses_the_names_that_editors_find_in_its_text() -> None:
+    for part in declared(parse(STORY, "story.pur", "story")):
+        condition = getattr(part, "only_if", None)
+        used = [*part.names(), *(names_in(condition) if condition is not None else ())]
+        found = [each for each in occurrences(Document(part.text).statements) if not each.declares]
+        assert {(kind, ref.name) for kind, ref in used} == {(each.kind, each.name) for each in found}, part.text
+
+
 @each_kind
 def test_the_form_that_messages_show_is_a_statement_of_the_kind(kind: Type[StatementKind]) -> None:
     for text in examples(kind):
         document = Document(text)
         assert document.syntax.findings == () and [tree.data for tree in document.syntax.trees] == [kind.rule()]
         assert document.statements[0].tokens[0].type == kind.token()
+
+
+@each_kind
+def test_its_shortest_declaration_declares_a_name_and_no_more(kind: Type[StatementKind]) -> None:
+    text = kind.shortest.format(name="new", place="a")
+    if text:
+        part = next(each for each in declared(read(f"poi \"a\"\n{text}", "story.pur").partial) if each.name == "new")
+        assert (type(part), part.name) == (kind, "new") and part.text == text
 
 
 @each_kind

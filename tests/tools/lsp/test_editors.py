@@ -1,4 +1,4 @@
-"""What editors are told about the language agrees with its grammar."""
+"""What editors, and the page on the language, are told of its words agrees with its grammar."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from typing import Any, Dict, Iterator, List, Set, Tuple
 
 import pytest
 
+from docs.language import make
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.kinds import KEYWORDS, STATEMENTS
+from pursue_gen.language.kinds import KEYWORDS, STATEMENTS, VALUES
 from pursue_gen.language.parser import read
 from pursue_gen.language.syntax import grammar_text
 
@@ -20,8 +21,6 @@ from .test_completion import expanded
 
 VSCODE = ROOT / "editors" / "vscode"
 VIM = ROOT / "editors" / "vim"
-CONSTANTS = {"true", "false", "is_true", "is_false"}
-BEGIN = {KEYWORDS[kind] for kind in STATEMENTS}
 
 
 def grammar_words() -> Set[str]:
@@ -31,12 +30,18 @@ def grammar_words() -> Set[str]:
     return set(re.findall(r'"([A-Za-z_]+)"', rules))
 
 
-WORDS = grammar_words()
-
-
 def test_the_words_are_those_of_the_grammar() -> None:
-    assert set(KEYWORDS.values()) == WORDS
-    assert len(WORDS) > 30
+    assert set(KEYWORDS.values()) == grammar_words()
+    assert len(KEYWORDS) > 30
+
+
+@pytest.mark.parametrize("path", make.WRITTEN, ids=lambda path: str(path.relative_to(ROOT)))
+def test_the_words_are_written_by_the_program(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert make.WRITTEN[path](text) == text, "run: python -m docs.language.make"
+    for word in ("travel", "is_true", "tolerance"):
+        without = re.sub(rf"^\| `{word}` .*\n" if path == make.PAGE else rf"[ |]{word}\b", "", text, flags=re.M)
+        assert without != text and make.WRITTEN[path](without) == text
 
 
 # VS Code --------------------------------------------------------------------------------------------------------------
@@ -47,18 +52,6 @@ def read_json(*path: str) -> Any:
 
 
 TEXTMATE = read_json("syntaxes", "pursue.tmLanguage.json")
-
-
-def words_of(rule: str) -> Set[str]:
-    alternatives = re.search(r"\(([a-zA-Z_|]+)\)", TEXTMATE["repository"][rule]["match"])
-    assert alternatives is not None
-    return set(alternatives.group(1).split("|"))
-
-
-def test_textmate_has_every_word() -> None:
-    assert words_of("statement") == BEGIN
-    assert words_of("constant") == CONSTANTS
-    assert words_of("keyword") == WORDS - BEGIN - CONSTANTS
 
 
 def rules() -> Iterator[Tuple[str, str]]:
@@ -101,7 +94,7 @@ SCOPES = {
 def scope_of(kind: str) -> str:
     if kind not in KEYWORDS:
         return SCOPES[kind]
-    if KEYWORDS[kind] in CONSTANTS:
+    if kind in VALUES:
         return "constant.language.pursue"
     return "keyword.control.pursue" if kind in STATEMENTS else "keyword.other.pursue"
 
@@ -155,25 +148,6 @@ def test_the_lock_names_no_place_of_a_machine() -> None:
 # Vim ------------------------------------------------------------------------------------------------------------------
 
 
-def test_vim_has_every_word() -> None:
-    text = (VIM / "syntax" / "pursue.vim").read_text(encoding="utf-8")
-    groups: Dict[str, Set[str]] = {}
-    for group, words in re.findall(r"^syntax keyword (\w+) (.*)$", text, re.M):
-        groups.setdefault(group, set()).update(words.split())
-    assert groups["pursueStatement"] == BEGIN
-    assert groups["pursueConstant"] == CONSTANTS
-    assert groups["pursueKeyword"] == WORDS - BEGIN - CONSTANTS
-
-
-def test_vim_indents_by_words_of_the_language() -> None:
-    text = (VIM / "indent" / "pursue.vim").read_text(encoding="utf-8")
-    opens = re.search(r"let s:statement = .*", text)
-    goes_on = re.search(r"let s:goes_on = [\s\S]*?\n\n", text)
-    assert opens is not None and goes_on is not None
-    assert set(re.findall(r"[a-zA-Z_]{2,}", opens.group().split("=", 1)[1])) == BEGIN
-    assert set(re.findall(r"[a-z_]{2,}", goes_on.group().split("=", 1)[1])) <= WORDS - BEGIN
-
-
 def test_vim_knows_the_file_names() -> None:
     assert "*.pur setfiletype pursue" in (VIM / "ftdetect" / "pursue.vim").read_text(encoding="utf-8")
 
@@ -190,7 +164,7 @@ def token_types(text: str) -> List[Tuple[str, str]]:
 
 def type_of(kind: str, value: str) -> str:
     if kind in KEYWORDS:
-        return "Keyword.Declaration" if kind in STATEMENTS else "Keyword.Constant" if value in CONSTANTS else "Keyword"
+        return "Keyword.Declaration" if kind in STATEMENTS else "Keyword.Constant" if kind in VALUES else "Keyword"
     names = {"NAME": "Literal.String", "POSE": "Comment.Special", "LINE_COMMENT": "Comment.Single", "WORD": "Name"}
     number = f"Literal.Number.{'Float' if '.' in value else 'Integer'}"
     more = {"BLOCK_COMMENT": "Comment.Multiline", "TAIL": "Comment.Preproc", "NUMBER": number}

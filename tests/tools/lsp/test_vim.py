@@ -10,12 +10,11 @@ from typing import Dict, Set, Tuple
 import pytest
 
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.kinds import KEYWORDS, STATEMENTS
+from pursue_gen.language.kinds import KEYWORDS, STATEMENTS, VALUES
 
 from .scenarios import ROOT, SCENARIOS
 
 VIM = shutil.which("vim")
-CONSTANTS = ("TRUE", "FALSE", "IS_TRUE", "IS_FALSE")
 GROUPS = {
     "NAME": "pursueName", "NUMBER": "pursueNumber", "TAIL": "pursueTail", "POSE": "pursuePose",
     "LINE_COMMENT": "pursueComment", "BLOCK_COMMENT": "pursueComment",
@@ -62,7 +61,7 @@ def expected(text: str) -> Set[Tuple[int, int, str]]:
     for token in document.tokens:
         word = (
             "pursueConstant"
-            if token.type in CONSTANTS
+            if token.type in VALUES
             else "pursueStatement"
             if token.type in STATEMENTS
             else "pursueKeyword"
