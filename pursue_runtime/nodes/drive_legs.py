@@ -37,7 +37,7 @@ from pursue_runtime.event_words import EVENTS, STATE
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.missions import own_source
 from pursue_runtime.nodes.alarm import Alarm, Later
-from pursue_runtime.nodes.node import REFUSED, Ending, run_node, subscribe
+from pursue_runtime.nodes.node import REFUSED, Ending, log, run_node, subscribe
 from pursue_runtime.nodes.recorder import CHUNK, stamp
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.orders import Order
@@ -54,8 +54,6 @@ PATIENCE = 5.0
 
 LAST_WORDS = 0.5
 """Seconds for which a robot that is called back stays connected: rospy sends messages in a thread of its own."""
-
-LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 
 
 class DriveLegs:
@@ -284,7 +282,7 @@ class DriveLegs:
                 self._finish()
 
     def _log(self, level: str, text: str) -> None:
-        self._lines.do(partial(LOGS[level], "%s", text))
+        self._lines.do(partial(log, level, text))
 
 
 def _ignore(_: Any) -> None:

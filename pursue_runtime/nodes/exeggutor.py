@@ -20,7 +20,7 @@ from pursue_runtime.event_words import EVENTS, ORDERED, Word, format_word
 from pursue_runtime.locations import is_end, is_movement, is_under_way, movement
 from pursue_runtime.locations import place_of as poi_of
 from pursue_runtime.nodes.alarm import Alarm, Later
-from pursue_runtime.nodes.node import Ending
+from pursue_runtime.nodes.node import Ending, log
 from pursue_runtime.nodes.publishing import Newcomers, ServedFirst, listeners
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.orders import Order, parse_orders
@@ -28,8 +28,6 @@ from pursue_runtime.poses import Table
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, LIVE, RUNNING, WON, SystemState
 from pursue_runtime.strategy import Command
-
-LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
 
 LOOKS = 0.2
 """Seconds of real time between two looks at tf."""
@@ -87,7 +85,7 @@ class Exeggutor:
 
     def _log(self, level: str, text: str) -> None:
         """Log a sentence a little later: a line takes as long as a reaction, and other orders may be due."""
-        self._log_lines.do(partial(LOGS[level], "%s", text))
+        self._log_lines.do(partial(log, level, text))
 
     # For the controller -----------------------------------------------------------------------------------------------
 

@@ -35,12 +35,13 @@ from pursue_runtime.nodes.node import (
     Diagnostics,
     Ending,
     NodeReport,
-    restart_process,
+    log,
     run_node,
     start_thread,
     subscribe,
 )
 from pursue_runtime.nodes.plain_words import PlainWords
+from pursue_runtime.nodes.process import restart_process
 from pursue_runtime.nodes.publishing import ServedFirst, is_connected
 from pursue_runtime.nodes.state_message import message_of
 from pursue_runtime.nodes.state_printer import StatePrinter
@@ -56,15 +57,8 @@ from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, STOPPED, WAITING, WON, SystemState, format_state
 from pursue_runtime.strategy import read_cover
 
-LOGS = {"debug": rospy.logdebug, "info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
-
 CLOCK = 10.0
 """Seconds of real time for which a mission that goes on waits for simulated time."""
-
-
-def log(level: str, text: str) -> None:
-    """Logs a sentence."""
-    LOGS[level]("%s", text)
 
 
 class Observer:

@@ -24,11 +24,10 @@ from pursue_runtime.nodes.node import (
     Ending,
     NodeReport,
     init_node,
-    lower_priority,
-    restart_process,
     subscribe,
     warn_of_ignored,
 )
+from pursue_runtime.nodes.process import lower_priority, restart_process
 from pursue_runtime.nodes.publishing import Newcomers, listeners
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.nodes.ui_page import UIPage
