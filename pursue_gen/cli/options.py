@@ -5,9 +5,8 @@ from __future__ import annotations
 import functools
 import inspect
 import math
-from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Tuple, get_type_hints
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, get_type_hints
 
 import typer
 
@@ -15,32 +14,30 @@ if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest
 
 
-class Ends(str, Enum):
-    """Who controls the ends of the controlled agents' movements and actions."""
-
-    REPORTED = "reported"
-    CONTROLLABLE = "controllable"
-
-
-class Controllers(str, Enum):
-    """How the commands are shared out."""
-
-    DISTRIBUTED = "distributed"
-    CENTRALIZED = "centralized"
-    GENERAL = "general"
+WORDS: Mapping[str, Sequence[str]] = {
+    "ends": ("reported", "controllable"),
+    "controllers": ("distributed", "centralized", "general"),
+    "solver": ("verifytga",),
+    "optimize": ("time", "none"),
+    "opponent": ("random", "worst", "still", "mixed"),
+    "side": ("world", "robots"),
+    "kind": ("reach", "respond", "avoid", "never-with", "catch", "patrol"),
+}
+"""What may stand behind the options that take one of some words, by the names of their parameters."""
 
 
-class Solver(str, Enum):
-    """Whose solver, instead of the built-in one."""
+def choice(name: str, default: Optional[str], help: str, *names: str) -> Any:
+    """An option that takes one of the WORDS of this parameter."""
+    words = WORDS[name]
 
-    VERIFYTGA = "verifytga"
+    def check(value: Optional[str]) -> Optional[str]:
+        if value is not None and value not in words:
+            raise typer.BadParameter(f"{value!r} is not one of {', '.join(map(repr, words))}.")
+        return value
 
-
-class Optimize(str, Enum):
-    """What the strategy is to have least of."""
-
-    TIME = "time"
-    NONE = "none"
+    return typer.Option(
+        default, *names, metavar=f"<{'|'.join(words)}>", callback=check, autocompletion=lambda: list(words), help=help
+    )
 
 
 def _seconds(text: Optional[str]) -> Optional[float]:
@@ -65,9 +62,10 @@ def _spot_distance(metres: float) -> float:
 
 SCENARIO = typer.Argument(..., metavar="SCENARIO", help="A scenario in PuRSUE-ML, by convention *.pur.")
 GAME = "SCENARIO | TGA.xml TCTL.q"
-ENDS = typer.Option(
+ENDS = choice(
+    "ends",
     None,
-    help="Who controls the end of a controlled agent's movement or action: reported (the robot tells when it is done; "
+    "Who controls the end of a controlled agent's movement or action: reported (the robot tells when it is done; "
     "the default) or controllable (the plan decides it: the original's game, and UPPAAL-TIGA's).",
 )
 REACTION = typer.Option(
@@ -83,13 +81,16 @@ REACH_OBJ = typer.Option(
     metavar="dedicated|all|ROBOT",
     help="Who gets the objective's commands: a controller of their own, all, or a robot's.",
 )
-SOLVER = typer.Option(
-    None, help="verifytga: UPPAAL-TIGA's, where you have it, instead of the built-in one; its strategy is proven, too."
+SOLVER = choice(
+    "solver",
+    None,
+    "verifytga: UPPAAL-TIGA's, where you have it, instead of the built-in one; its strategy is proven, too.",
 )
 VERIFYTGA = typer.Option(None, metavar="PATH", help="Where that program is, if not on PATH.")
-OPTIMIZE = typer.Option(
+OPTIMIZE = choice(
+    "optimize",
     None,
-    help="time: look for the strategy with the least worst-case time to the goal, for some two minutes or as --limit "
+    "time: look for the strategy with the least worst-case time to the goal, for some two minutes or as --limit "
     "says; none: take the first strategy. By default: a quick one that takes little work.",
 )
 WITHIN = typer.Option(
@@ -125,7 +126,7 @@ MARGIN = typer.Option(
 )
 JSON = typer.Option(False, "--json", help="Print JSON on stdout.")
 PLAN = typer.Option(None, metavar="FILE", help="Use this plan (UPPAAL-TIGA's format) instead of solving.")
-CONTROLLERS = typer.Option(Controllers.DISTRIBUTED, help="As for ws.")
+CONTROLLERS = choice("controllers", "distributed", "As for ws.")
 KEY = typer.Option(
     None, "--key", metavar="NAME|PATH", help="Sign with this key; with the only one there is by default."
 )
@@ -156,15 +157,15 @@ KEYS = typer.Option(
 )
 
 _REQUEST: Mapping[str, Tuple[Any, Any]] = {
-    "controllers": (Controllers, CONTROLLERS),
+    "controllers": (str, CONTROLLERS),
     "reach_obj": (str, REACH_OBJ),
-    "ends": (Optional[Ends], ENDS),
+    "ends": (Optional[str], ENDS),
     "reaction": (Optional[str], REACTION),
     "slack": (List[str], SLACK),
     "plan": (Optional[Path], PLAN),
-    "solver": (Optional[Solver], SOLVER),
+    "solver": (Optional[str], SOLVER),
     "verifytga": (Optional[Path], VERIFYTGA),
-    "optimize": (Optional[Optimize], OPTIMIZE),
+    "optimize": (Optional[str], OPTIMIZE),
     "within": (Optional[str], WITHIN),
     "whole": (bool, WHOLE),
     "limit": (Optional[str], LIMIT),
@@ -215,5 +216,4 @@ def _request(values: Dict[str, Any]) -> SolveRequest:
     """The request of parsed options; limits that are not given are the default ones."""
     from pursue_gen import api
 
-    given = {name: value.value if isinstance(value, Enum) else value for name, value in values.items()}
-    return api.request(seconds=given.pop("limit", None), **given)
+    return api.request(seconds=values.pop("limit", None), **values)
