@@ -261,4 +261,3 @@ def _bool(value: bool) -> str:
 
 def _rendered(jinja: jinja2.Environment, template: str, values: Mapping[str, Any]) -> bytes:
     return jinja.get_template(template).render(values).encode()
-

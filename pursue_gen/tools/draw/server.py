@@ -233,4 +233,3 @@ class _Handler(BaseHTTPRequestHandler):
 
     def log_message(self, format: str, *args: Any) -> None:
         """Nothing: what is served is no news, and clients must not write to the terminal."""
-
