@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Dict, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.files import reason_of
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import Invalid
 from pursue_gen.solving.request import SolveRequest
@@ -74,7 +75,7 @@ def read_bundle(file: Path, keys: Keys) -> Tuple[bytes, Bundle]:
     try:
         content = read_start(file, LIMIT)
     except (OSError, ValueError) as problem:
-        message = f"cannot read {file}: {getattr(problem, 'strerror', None) or problem}"
+        message = f"cannot read {file}: {reason_of(problem)}"
         hint = "name a bundle, such as my_floor.pursue"
         raise PursueError([error("CLI001", message, hint=hint)]) from None
     try:
