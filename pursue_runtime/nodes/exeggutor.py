@@ -175,32 +175,25 @@ class Exeggutor:
         self._log_lines.do(partial(self._give_again, name))  # rospy holds a lock here
 
     def _give_again(self, name: str) -> None:
-        with self._lock:
-            if name in self._robots:
-                self._robots[name].give_again()
-                self._act()
+        self._tell(name, Navigation.give_again)
 
     # From the robots --------------------------------------------------------------------------------------------------
 
     def _result(self, name: str, answer: Answer) -> None:
-        with self._lock:
-            robot = self._robots.get(name)
-            if robot is not None:
-                robot.on_result(answer, rospy.get_time())
-                self._act()
+        self._tell(name, lambda robot: robot.on_result(answer, rospy.get_time()))
 
     def _statuses(self, name: str, answers: List[Answer]) -> None:
-        with self._lock:
-            robot = self._robots.get(name)
-            if robot is not None:
-                robot.on_status(answers, rospy.get_time(), time.monotonic())
-                self._act()
+        self._tell(name, lambda robot: robot.on_status(answers, rospy.get_time(), time.monotonic()))
 
     def _place(self, name: str, position: Optional[Position]) -> None:
+        self._tell(name, lambda robot: robot.on_position(position, rospy.get_time()))
+
+    def _tell(self, name: str, news: Callable[[Navigation], None]) -> None:
+        """Pass something on to a robot's navigation, if that robot is taken, and do what is due then."""
         with self._lock:
             robot = self._robots.get(name)
             if robot is not None:
-                robot.on_position(position, rospy.get_time())
+                news(robot)
                 self._act()
 
     # What is due ------------------------------------------------------------------------------------------------------
