@@ -20,10 +20,11 @@ import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.arguments import KEYS
-from pursue_runtime.bundle import LIMIT, MISSION, mission_id
+from pursue_runtime.bundle import LIMIT
 from pursue_runtime.data import Package
 from pursue_runtime.event_words import STATE
 from pursue_runtime.folders import keys_folder, missions_folder
+from pursue_runtime.manifest import MISSION, mission_id
 from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.node import OK, WARN, Diagnostics, Ending, NodeReport, log, robot_name, run_node, subscribe

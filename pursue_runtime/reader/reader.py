@@ -17,17 +17,16 @@ from pursue_runtime.bundle import (
     COMMIT,
     LIMIT,
     ORDER_LENGTH,
-    OWN,
     PREPARE,
     Keys,
     Order,
     Refused,
-    mission_id,
     new_ticket,
     read_order,
     unpack,
 )
 from pursue_runtime.data import DataError, read_data
+from pursue_runtime.manifest import OWN, mission_id
 from pursue_runtime.model import Model
 from pursue_runtime.poses import POSES, read_poses
 from pursue_runtime.rate_limited_log import RateLimitedLog

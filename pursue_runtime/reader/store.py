@@ -14,8 +14,9 @@ import shutil
 import zipfile
 from typing import Callable, List, Optional
 
-from pursue_runtime.bundle import MANIFEST, MISSION, OWN, SIGNATURE, Bundle, mission_file, mission_id
+from pursue_runtime.bundle import MANIFEST, SIGNATURE, Bundle
 from pursue_runtime.folders import sync_folder
+from pursue_runtime.manifest import MISSION, OWN, mission_file, mission_id
 from pursue_runtime.reader.contents import (
     STATE,
     StoreError,

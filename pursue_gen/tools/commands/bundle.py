@@ -26,7 +26,7 @@ from pursue_gen.files import shell_quoted
 
 if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest
-    from pursue_runtime.bundle import Manifest
+    from pursue_runtime.manifest import Manifest
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,8 @@ def _print_bundle(file: Path, folder: Path) -> None:
     """Prints what is in a bundle as a table, once all of it is checked."""
     from pursue_gen.tools.transport.bundles import read_bundle
     from pursue_gen.tools.transport.keys import public_keys
-    from pursue_runtime.bundle import fingerprint, mission_id
+    from pursue_runtime.bundle import fingerprint
+    from pursue_runtime.manifest import mission_id
 
     known, findings = public_keys(folder)
     show(findings)

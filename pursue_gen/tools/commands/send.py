@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from pursue_gen.tools.transport.client import Robot
     from pursue_gen.tools.transport.keys import Ed25519PrivateKey
     from pursue_gen.tools.transport.sender import Row, Sent
-    from pursue_runtime.bundle import Manifest
+    from pursue_runtime.manifest import Manifest
 
 WHAT = typer.Argument(
     None,

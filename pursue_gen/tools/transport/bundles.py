@@ -16,7 +16,8 @@ from pursue_gen.tools.transport.poses_file import with_poses
 from pursue_gen.workspace.generate import generate, mission_of
 from pursue_gen.workspace.make import Extras, options_for
 from pursue_gen.workspace.spots import SPOT_DISTANCE
-from pursue_runtime.bundle import LIMIT, Bundle, Keys, Manifest, Refused, fingerprint, pack, unpack
+from pursue_runtime.bundle import LIMIT, Bundle, Keys, Refused, fingerprint, pack, unpack
+from pursue_runtime.manifest import Manifest
 from pursue_runtime.named_files import read_start
 
 SUFFIX = ".pursue"

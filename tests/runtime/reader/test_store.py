@@ -14,7 +14,8 @@ from typing import Any, Dict
 import pytest
 
 from pursue_runtime import bundle as mission_bundle
-from pursue_runtime.bundle import Bundle, mission_file, unpack
+from pursue_runtime.bundle import Bundle, unpack
+from pursue_runtime.manifest import mission_file
 from pursue_runtime.reader import contents
 from pursue_runtime.reader import store as mission_store
 from pursue_runtime.reader.contents import StoreError, find_damage, table
