@@ -37,7 +37,7 @@ from pursue_runtime.event_words import EVENTS, STATE
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.missions import own_source
 from pursue_runtime.nodes.alarm import Alarm, Later
-from pursue_runtime.nodes.node import REFUSED, Ending, log, run_node, subscribe
+from pursue_runtime.nodes.node import REFUSED, Ending, run_node, subscribe
 from pursue_runtime.nodes.recorder import CHUNK, stamp
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.orders import Order
@@ -78,7 +78,7 @@ class DriveLegs:
         with contextlib.suppress(DataError):
             self._bag.write(rospy.resolve_name(GAME), String(json.dumps(source.read("game.yaml"))), stamp())
         self._drives = rospy.Publisher(DRIVES, String, queue_size=100, latch=True)
-        self._lines = Later("log", self.ending)
+        self._log = Later("log", self.ending).log
         self._alarm = Alarm(self._act, self.ending)
         self._robot: Optional[Tuple[Driven, Settings, Session, RobotLink]] = None
         self._partner: Optional[RobotLink] = None  # of the robot that takes part in what is done
@@ -280,9 +280,6 @@ class DriveLegs:
                 self._carry_out(due)
                 time.sleep(LAST_WORDS if due.cancel else 0.0)
                 self._finish()
-
-    def _log(self, level: str, text: str) -> None:
-        self._lines.do(partial(log, level, text))
 
 
 def _ignore(_: Any) -> None:

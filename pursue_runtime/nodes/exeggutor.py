@@ -20,7 +20,7 @@ from pursue_runtime.event_words import EVENTS, ORDERED, Word, format_word
 from pursue_runtime.locations import is_end, is_movement, is_under_way, movement
 from pursue_runtime.locations import place_of as poi_of
 from pursue_runtime.nodes.alarm import Alarm, Later
-from pursue_runtime.nodes.node import Ending, log
+from pursue_runtime.nodes.node import Ending
 from pursue_runtime.nodes.publishing import Newcomers, ServedFirst, listeners
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.orders import Order, parse_orders
@@ -52,6 +52,7 @@ class Exeggutor:
         self._links: Dict[str, RobotLink] = {}
         self._ending = ending
         self._log_lines = Later("log", ending)
+        self._log = self._log_lines.log
         self._next_look = 0.0  # on the monotonic clock
         self._alarm = Alarm(self._on_alarm, ending)
         rospy.on_shutdown(self._call_back)
@@ -82,10 +83,6 @@ class Exeggutor:
                 position = positions.get(robot)
                 if position is not None:  # amcl does not publish it again while the robot stands
                     self._robots[robot].on_position(position, rospy.get_time())
-
-    def _log(self, level: str, text: str) -> None:
-        """Log a sentence a little later: a line takes as long as a reaction, and other orders may be due."""
-        self._log_lines.do(partial(log, level, text))
 
     # For the controller -----------------------------------------------------------------------------------------------
 

@@ -230,8 +230,9 @@ def master_is_gone() -> bool:
     return False
 
 
-def init_node(name: str, **options: Any) -> None:
-    """Connects the process to ROS as the node `name` (`options`: those of rospy.init_node).
+def init_node(name: str, known: Sequence[Argument] = (), **options: Any) -> None:
+    """Connects the process to ROS as the node `name` (`options`: those of rospy.init_node), and warns where one of its
+    `known` arguments was set as a parameter.
 
     Until `Ending` handles signals they end the process at once and in silence: rospy would raise from wherever it is.
     """
@@ -239,6 +240,7 @@ def init_node(name: str, **options: Any) -> None:
     for sign in (signal.SIGINT, signal.SIGTERM):
         signal.signal(sign, signal.SIG_DFL)
     rospy.init_node(name, disable_signals=True, **options)
+    warn_of_ignored(known)
 
 
 def _end_if_closed(server: Any) -> None:
@@ -268,8 +270,7 @@ def run_node(
     except ParameterError as problem:
         print(f"{name}: {problem}", file=sys.stderr)
         return REFUSED
-    init_node(name)
-    warn_of_ignored(known)
+    init_node(name, known)
     threading.Thread(target=warn_without_clock, daemon=True).start()
     try:
         return run(told)

@@ -35,7 +35,6 @@ from pursue_runtime.nodes.node import (
     Diagnostics,
     Ending,
     NodeReport,
-    log,
     run_node,
     start_thread,
     subscribe,
@@ -70,6 +69,7 @@ class Observer:
         self.lock = threading.RLock()
         self.ending = Ending()
         self.log_lines, self.after_reaction = Later("log", self.ending), Later("texts", self.ending)
+        self.log_soon = self.log_lines.log
         own = own_source(package, "model.yaml", told["config"])
         home = ros_home(os.environ) if self.settings.received else ""
         self.missions = Missions(own, package.name, home)
@@ -311,10 +311,6 @@ class Observer:
             with contextlib.suppress(rospy.ROSException):
                 self.plain_words.on_state(state)
         self.printer.on_state(state)
-
-    def log_soon(self, level: str, text: str) -> None:
-        """Log a sentence a little later: a line takes as long as a reaction."""
-        self.log_lines.do(partial(log, level, text))
 
     @staticmethod
     def send(publisher: rospy.Publisher, what: object) -> None:
