@@ -17,14 +17,7 @@ from pursue_gen.language.wording import objective_words, promise_words
 from pursue_gen.tools.play.advice import Holding
 from pursue_gen.tools.play.counter import CounterPlay
 from pursue_gen.tools.play.saving import save
-from pursue_gen.tools.play.situation import (
-    deed_text,
-    ending,
-    move_text,
-    overview,
-    situation,
-    window_text,
-)
+from pursue_gen.tools.play.situation import deed_text, ending, move_text, overview, situation, window_text
 from pursue_gen.tools.play.state import RUNNING, PlannedMove, PlayState, Setup
 from pursue_gen.tools.play.world import Offer, StrategyPlay
 from pursue_gen.vocabulary.words import Words
