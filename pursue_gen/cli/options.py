@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, get_type_hints
 
@@ -173,34 +174,55 @@ _REQUEST: Mapping[str, Tuple[Any, Any]] = {
 }
 """The options that make a SolveRequest: name of the parameter → its type and its declaration."""
 
+_PLACES: Mapping[str, Tuple[Any, Any]] = {
+    "poses": (Optional[Path], POSES),
+    "computed_poses": (bool, COMPUTED_POSES),
+    "spot_distance": (float, SPOT_DISTANCE),
+}
+"""The options that make `Poses`, in the order of its fields."""
+
+
+@dataclass(frozen=True)
+class Poses:
+    """Where robots are sent: a poses.yaml, whether missing poses are `computed`, metres between robots at one place."""
+
+    file: Optional[Path] = None
+    computed: bool = False
+    spot_distance: float = DEFAULT_DISTANCE
+
+
 REQUEST: Any = None
-"""Marks the parameter `request` of a command, for which `with_request` declares the options."""
+PLACES: Any = None
+"""Mark the parameters `request` and `places` of a command, for which `with_request` declares the options."""
 
 MISSION = tuple(name for name in _REQUEST if name != "whole")
 """The options of the commands that generate what robots run."""
 
 
 def with_request(*names: str, **own: Any) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Declare these options for a command, in the place of its parameter `request`, which gets a SolveRequest of them.
+    """Declare these options for a command, in the place of its parameter `request`, which gets a SolveRequest of them;
+    and those of `Poses` in the place of its parameter `places`, if it has that.
 
     `own`: declarations of this command that replace the shared ones.
     """
+    groups = {"request": {name: _REQUEST[name] for name in names}, "places": _PLACES}
 
     def decorate(command: Callable[..., None]) -> Callable[..., None]:
         @functools.wraps(command)
         def run(**arguments: Any) -> None:
+            if "places" in command.__annotations__:
+                arguments["places"] = Poses(*(arguments.pop(name) for name in _PLACES))
             values = {name: arguments.pop(name) for name in names}
             command(request=_request(values), **arguments)
 
-        run.__annotations__ = {name: kind for name, kind in command.__annotations__.items() if name != "request"}
+        run.__annotations__ = {name: kind for name, kind in command.__annotations__.items() if name not in groups}
         types = get_type_hints(run)
         parameters: List[inspect.Parameter] = []
         for parameter in inspect.signature(command).parameters.values():
-            if parameter.name != "request":
+            if parameter.name not in groups:
                 parameters.append(parameter.replace(annotation=types[parameter.name]))
                 continue
-            for name in names:
-                kind, option = _REQUEST[name]
+            for name, (kind, option) in groups[parameter.name].items():
                 default = own.get(name, option)
                 parameters.append(inspect.Parameter(name, parameter.kind, default=default, annotation=kind))
                 types[name] = kind
