@@ -143,7 +143,7 @@ class Crash(BaseException):
 
 
 class Disk:
-    """Takes the place of the module `os` (and of shutil) in the store: dies or fails at the n-th change."""
+    """Takes the place of `os` (and of shutil) in the store and in `folders`: dies or fails at the n-th change."""
 
     CHANGES = ("mkdir", "makedirs", "rename", "replace", "write", "fsync", "unlink", "rmtree", "open")
 

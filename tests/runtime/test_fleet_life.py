@@ -22,6 +22,7 @@ from hypothesis import strategies as st
 from pursue_gen.tools.transport import sender
 from pursue_gen.tools.transport.client import Answer, Robot, Status, Unreached
 from pursue_runtime import bundle as mission_bundle
+from pursue_runtime import folders
 from pursue_runtime.controller.follower import Follower
 from pursue_runtime.data import DataError
 from pursue_runtime.manifest import make_manifest
@@ -328,6 +329,7 @@ def world() -> Iterator[World]:
         patch.setattr(sender, "send_order", made.order)
         patch.setattr(sender, "_side_by_side", one_by_one)
         patch.setattr(mission_store, "os", _QuickDisk())
+        patch.setattr(folders, "os", _QuickDisk())
         try:
             yield made
         finally:
