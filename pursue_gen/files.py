@@ -30,7 +30,7 @@ def read_text(file: Path, what: str, most: int = named_files.TEXT) -> str:
         message = f"{file} is not text in UTF-8 (byte {problem.start + 1})"
         raise PursueError([error("CLI002", message, hint=f"name {what}")]) from None
     except (OSError, ValueError) as problem:
-        message = f"cannot read {file}: {_reason(problem)}"
+        message = f"cannot read {file}: {reason_of(problem)}"
         raise PursueError([error("CLI001", message, hint=f"name {what}")]) from None
 
 
@@ -77,7 +77,7 @@ def write_bytes(contents: Mapping[Path, bytes]) -> None:
             os.replace(name, file)  # of a link the link itself, if one has come meanwhile
             staged.pop(0)
     except OSError as problem:
-        message = f"cannot write {file}: {_reason(problem)}"
+        message = f"cannot write {file}: {reason_of(problem)}"
         raise PursueError([error("CLI003", message, hint="name another place with -o")]) from None
     finally:
         for name, _ in staged:
@@ -113,7 +113,8 @@ def shell_quoted(path: Path) -> str:
     return shlex.quote(str(path))
 
 
-def _reason(problem: Exception) -> str:
+def reason_of(problem: Exception) -> str:
+    """Why a file could not be read or written, in words."""
     return getattr(problem, "strerror", None) or str(problem)
 
 

@@ -27,25 +27,8 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey,
 from cryptography.hazmat.primitives.serialization import Encoding, PublicFormat
 
 from pursue_runtime.bounded import BadText, read_json
-from pursue_runtime.manifest import (
-    FORMAT,
-    ID_LENGTH,
-    MISSION,
-    OWN,
-    Manifest,
-    is_digest,
-    make_manifest,
-    mission_file,
-    mission_id,
-)
+from pursue_runtime.manifest import FORMAT, MISSION, OWN, Manifest, is_digest
 from pursue_runtime.named_files import read_text
-
-__all__ = [
-    "ABORT", "ACTIONS", "COMMIT", "FILES", "FORMAT", "ID_LENGTH", "LIMIT", "MANIFEST", "MISSION", "ORDER_LENGTH", "OWN",
-    "PREPARE", "SIGNATURE", "Bundle", "Keys", "Manifest", "Order", "Refused", "check_seal", "fingerprint", "is_digest",
-    "make_manifest", "mission_file", "mission_id", "new_ticket", "pack", "read_keys", "read_order", "read_public_key",
-    "unpack", "write_order", "write_public_key",
-]
 
 LIMIT = 64 * 2**20
 """The largest bundle in bytes, by default."""

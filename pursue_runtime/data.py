@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
-from typing import Any, Dict, NamedTuple
+from typing import Any, Dict, Iterator, NamedTuple
 
 from pursue_runtime import __version__
 from pursue_runtime.bounded import DATA, BadText, read_yaml
@@ -26,6 +27,17 @@ class Package(NamedTuple):
 
 class DataError(Exception):
     """A data file or a text in it cannot be used; the message says which, and why."""
+
+
+@contextlib.contextmanager
+def reading(what: str, where: str = "") -> Iterator[None]:
+    """Read the parts of data in the body: DataError is raised, and names them (`what`, and `where` in that), if one is
+    missing or of another kind."""
+    try:
+        yield
+    except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as problem:
+        place = f" in {where}" if where else ""
+        raise DataError(f"{what} lacks or misspells something{place}: {problem!r}") from problem
 
 
 def read_data(path: str) -> Dict[str, Any]:

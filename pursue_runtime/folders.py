@@ -27,3 +27,12 @@ def missions_folder(environment: Mapping[str, str]) -> str:
 def scenario_folder(environment: Mapping[str, str], scenario: str) -> str:
     """Return the folder of a scenario's journals, recordings and simulated clocks."""
     return os.path.join(ros_home(environment), "pursue", scenario)
+
+
+def sync_folder(folder: str) -> None:
+    """Make the names in this folder ("": the present one) survive a power cut. Raises OSError."""
+    handle = os.open(folder or ".", os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Any, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bounded import whole
-from pursue_runtime.data import DataError
+from pursue_runtime.data import reading
 from pursue_runtime.zones import EPSILON, Zone, holds, parse_zone
 
 
@@ -77,7 +77,7 @@ class Model:
     """The network of the mission, in system order."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
-        try:
+        with reading("model.yaml"):
             self.scenario = str(data["scenario"])
             self.reaction = float(Fraction(str(data.get("reaction", 0))))
             """Time units that the strategy allows a command; 0: not known."""
@@ -100,8 +100,6 @@ class Model:
             """What the automata of objectives watch, in the scenario's words; empty where there is one objective."""
             self.given_up = tuple(str(text) for text in objective.get("given_up") or ())
             """Optional objectives that the mission does not promise."""
-        except (KeyError, TypeError, ValueError, AttributeError, ZeroDivisionError) as problem:
-            raise DataError(f"model.yaml lacks or misspells something: {problem!r}") from problem
         self._by_name = {automaton.name: automaton for automaton in self.automata}
 
     def automaton(self, name: str) -> Automaton:

@@ -22,7 +22,7 @@ from typing import (
 )
 
 from pursue_runtime.bounded import BadText, exact, read_json
-from pursue_runtime.data import DataError, check_format
+from pursue_runtime.data import DataError, check_format, reading
 from pursue_runtime.locations import automaton_clock
 from pursue_runtime.state import RUNNING, SystemState
 from pursue_runtime.zones import EPSILON, INFINITY, Zone, due, parse_zone
@@ -190,17 +190,15 @@ def _left_out_clocks(data: Mapping[str, Any]) -> List[str]:
 
 def read_cover(data: Mapping[str, Any]) -> Cover:
     """What cover.yaml says. Raises DataError."""
-    try:
+    with reading("cover.yaml"):
         return Cover(data)
-    except (KeyError, TypeError, ValueError, AttributeError) as problem:
-        raise DataError(f"cover.yaml lacks or misspells something: {problem!r}") from problem
 
 
 class Strategy:
     """One controller's part of the strategy, from strategy.yaml."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
-        try:
+        with reading("strategy.yaml"):
             self.agents: List[str] = list(data["commands_agents"])
             self.objectives = frozenset(map(str, data.get("objectives", OBJECTIVES)))
             """Those of its agents that are no agents: the automata of objectives."""
@@ -214,8 +212,6 @@ class Strategy:
             """Where its commands lead, each location behind its agent."""
             zones = (zone for command in commands for zone in command.when)
             self.clocks = {clock for zone in zones for bound in zone for clock in (bound.left, bound.right) if clock}
-        except (KeyError, TypeError, ValueError, AttributeError) as problem:
-            raise DataError(f"strategy.yaml lacks or misspells something: {problem!r}") from problem
 
     def commands(self, state: SystemState) -> List[Command]:
         """The commands of this controller in this discrete state."""

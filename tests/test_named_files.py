@@ -187,7 +187,7 @@ OTHERS = {
     "pursue_runtime/missions.py": "the robot's own store of missions",
     "pursue_runtime/named_files.py": "the reader",
     "pursue_runtime/nodes/mission_test.py": "the workspace's own test",
-    "pursue_runtime/nodes/node.py": "facts of the system",
+    "pursue_runtime/nodes/process.py": "facts of the system",
     "pursue_runtime/observer/mark.py": "the mark beside the observer's own journal",
     "pursue_runtime/observer/records.py": "the observer's own journal",
     "pursue_runtime/reader/contents.py": "the robot's own store of missions",

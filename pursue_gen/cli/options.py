@@ -5,9 +5,9 @@ from __future__ import annotations
 import functools
 import inspect
 import math
-from enum import Enum
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Tuple, get_type_hints
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, get_type_hints
 
 import typer
 
@@ -15,32 +15,30 @@ if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest
 
 
-class Ends(str, Enum):
-    """Who controls the ends of the controlled agents' movements and actions."""
-
-    REPORTED = "reported"
-    CONTROLLABLE = "controllable"
-
-
-class Controllers(str, Enum):
-    """How the commands are shared out."""
-
-    DISTRIBUTED = "distributed"
-    CENTRALIZED = "centralized"
-    GENERAL = "general"
+WORDS: Mapping[str, Sequence[str]] = {
+    "ends": ("reported", "controllable"),
+    "controllers": ("distributed", "centralized", "general"),
+    "solver": ("verifytga",),
+    "optimize": ("time", "none"),
+    "opponent": ("random", "worst", "still", "mixed"),
+    "side": ("world", "robots"),
+    "kind": ("reach", "respond", "avoid", "never-with", "catch", "patrol"),
+}
+"""What may stand behind the options that take one of some words, by the names of their parameters."""
 
 
-class Solver(str, Enum):
-    """Whose solver, instead of the built-in one."""
+def choice(name: str, default: Optional[str], help: str, *names: str) -> Any:
+    """An option that takes one of the WORDS of this parameter."""
+    words = WORDS[name]
 
-    VERIFYTGA = "verifytga"
+    def check(value: Optional[str]) -> Optional[str]:
+        if value is not None and value not in words:
+            raise typer.BadParameter(f"{value!r} is not one of {', '.join(map(repr, words))}.")
+        return value
 
-
-class Optimize(str, Enum):
-    """What the strategy is to have least of."""
-
-    TIME = "time"
-    NONE = "none"
+    return typer.Option(
+        default, *names, metavar=f"<{'|'.join(words)}>", callback=check, autocompletion=lambda: list(words), help=help
+    )
 
 
 def _seconds(text: Optional[str]) -> Optional[float]:
@@ -65,9 +63,10 @@ def _spot_distance(metres: float) -> float:
 
 SCENARIO = typer.Argument(..., metavar="SCENARIO", help="A scenario in PuRSUE-ML, by convention *.pur.")
 GAME = "SCENARIO | TGA.xml TCTL.q"
-ENDS = typer.Option(
+ENDS = choice(
+    "ends",
     None,
-    help="Who controls the end of a controlled agent's movement or action: reported (the robot tells when it is done; "
+    "Who controls the end of a controlled agent's movement or action: reported (the robot tells when it is done; "
     "the default) or controllable (the plan decides it: the original's game, and UPPAAL-TIGA's).",
 )
 REACTION = typer.Option(
@@ -83,13 +82,16 @@ REACH_OBJ = typer.Option(
     metavar="dedicated|all|ROBOT",
     help="Who gets the objective's commands: a controller of their own, all, or a robot's.",
 )
-SOLVER = typer.Option(
-    None, help="verifytga: UPPAAL-TIGA's, where you have it, instead of the built-in one; its strategy is proven, too."
+SOLVER = choice(
+    "solver",
+    None,
+    "verifytga: UPPAAL-TIGA's, where you have it, instead of the built-in one; its strategy is proven, too.",
 )
 VERIFYTGA = typer.Option(None, metavar="PATH", help="Where that program is, if not on PATH.")
-OPTIMIZE = typer.Option(
+OPTIMIZE = choice(
+    "optimize",
     None,
-    help="time: look for the strategy with the least worst-case time to the goal, for some two minutes or as --limit "
+    "time: look for the strategy with the least worst-case time to the goal, for some two minutes or as --limit "
     "says; none: take the first strategy. By default: a quick one that takes little work.",
 )
 WITHIN = typer.Option(
@@ -125,7 +127,7 @@ MARGIN = typer.Option(
 )
 JSON = typer.Option(False, "--json", help="Print JSON on stdout.")
 PLAN = typer.Option(None, metavar="FILE", help="Use this plan (UPPAAL-TIGA's format) instead of solving.")
-CONTROLLERS = typer.Option(Controllers.DISTRIBUTED, help="As for ws.")
+CONTROLLERS = choice("controllers", "distributed", "As for ws.")
 KEY = typer.Option(
     None, "--key", metavar="NAME|PATH", help="Sign with this key; with the only one there is by default."
 )
@@ -156,15 +158,15 @@ KEYS = typer.Option(
 )
 
 _REQUEST: Mapping[str, Tuple[Any, Any]] = {
-    "controllers": (Controllers, CONTROLLERS),
+    "controllers": (str, CONTROLLERS),
     "reach_obj": (str, REACH_OBJ),
-    "ends": (Optional[Ends], ENDS),
+    "ends": (Optional[str], ENDS),
     "reaction": (Optional[str], REACTION),
     "slack": (List[str], SLACK),
     "plan": (Optional[Path], PLAN),
-    "solver": (Optional[Solver], SOLVER),
+    "solver": (Optional[str], SOLVER),
     "verifytga": (Optional[Path], VERIFYTGA),
-    "optimize": (Optional[Optimize], OPTIMIZE),
+    "optimize": (Optional[str], OPTIMIZE),
     "within": (Optional[str], WITHIN),
     "whole": (bool, WHOLE),
     "limit": (Optional[str], LIMIT),
@@ -172,34 +174,55 @@ _REQUEST: Mapping[str, Tuple[Any, Any]] = {
 }
 """The options that make a SolveRequest: name of the parameter → its type and its declaration."""
 
+_PLACES: Mapping[str, Tuple[Any, Any]] = {
+    "poses": (Optional[Path], POSES),
+    "computed_poses": (bool, COMPUTED_POSES),
+    "spot_distance": (float, SPOT_DISTANCE),
+}
+"""The options that make `Poses`, in the order of its fields."""
+
+
+@dataclass(frozen=True)
+class Poses:
+    """Where robots are sent: a poses.yaml, whether missing poses are `computed`, metres between robots at one place."""
+
+    file: Optional[Path] = None
+    computed: bool = False
+    spot_distance: float = DEFAULT_DISTANCE
+
+
 REQUEST: Any = None
-"""Marks the parameter `request` of a command, for which `with_request` declares the options."""
+PLACES: Any = None
+"""Mark the parameters `request` and `places` of a command, for which `with_request` declares the options."""
 
 MISSION = tuple(name for name in _REQUEST if name != "whole")
 """The options of the commands that generate what robots run."""
 
 
 def with_request(*names: str, **own: Any) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Declare these options for a command, in the place of its parameter `request`, which gets a SolveRequest of them.
+    """Declare these options for a command, in the place of its parameter `request`, which gets a SolveRequest of them;
+    and those of `Poses` in the place of its parameter `places`, if it has that.
 
     `own`: declarations of this command that replace the shared ones.
     """
+    groups = {"request": {name: _REQUEST[name] for name in names}, "places": _PLACES}
 
     def decorate(command: Callable[..., None]) -> Callable[..., None]:
         @functools.wraps(command)
         def run(**arguments: Any) -> None:
+            if "places" in command.__annotations__:
+                arguments["places"] = Poses(*(arguments.pop(name) for name in _PLACES))
             values = {name: arguments.pop(name) for name in names}
             command(request=_request(values), **arguments)
 
-        run.__annotations__ = {name: kind for name, kind in command.__annotations__.items() if name != "request"}
+        run.__annotations__ = {name: kind for name, kind in command.__annotations__.items() if name not in groups}
         types = get_type_hints(run)
         parameters: List[inspect.Parameter] = []
         for parameter in inspect.signature(command).parameters.values():
-            if parameter.name != "request":
+            if parameter.name not in groups:
                 parameters.append(parameter.replace(annotation=types[parameter.name]))
                 continue
-            for name in names:
-                kind, option = _REQUEST[name]
+            for name, (kind, option) in groups[parameter.name].items():
                 default = own.get(name, option)
                 parameters.append(inspect.Parameter(name, parameter.kind, default=default, annotation=kind))
                 types[name] = kind
@@ -215,5 +238,4 @@ def _request(values: Dict[str, Any]) -> SolveRequest:
     """The request of parsed options; limits that are not given are the default ones."""
     from pursue_gen import api
 
-    given = {name: value.value if isinstance(value, Enum) else value for name, value in values.items()}
-    return api.request(seconds=given.pop("limit", None), **given)
+    return api.request(seconds=values.pop("limit", None), **values)

@@ -26,37 +26,28 @@ def progress_line(quiet: bool = False, stream: Optional[TextIO] = None) -> Itera
 
     Where the stream is no terminal that can do that, it writes a line every ten seconds. None where it is `quiet`.
     """
-    out = sys.stderr if stream is None else stream
     if quiet:
         yield None
         return
-    if os.environ.get("TERM", "dumb") == "dumb" or not out.isatty():
-        yield _Lines(out).show
-        return
-    line = _Line(out)
+    line = _Paced(TerminalLine(sys.stderr if stream is None else stream))
     try:
         yield line.show
     finally:
-        line.erase()
+        line.line.erase()
 
 
-class _Line:
+class TerminalLine:
+    """A line of a terminal, redrawn in place; where that cannot be (`redrawn` is False), lines that stay."""
+
     def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
-        self._start = time.monotonic()
-        self._next = self._start + _PATIENCE
-        self._drawn = False
+        self.redrawn = os.environ.get("TERM", "dumb") != "dumb" and stream.isatty()
+        self._stream, self._drawn = stream, False
 
-    def show(self, progress: Progress) -> None:
-        """Draws it, unless that was done less than `_REDRAW` seconds ago."""
-        now = time.monotonic()
-        if now < self._next:
-            return
-        self._next = now + _REDRAW
-        self._drawn = True
-        text = in_words(progress, now - self._start)[: _columns(self._stream) - 1]
-        self._stream.write(f"\r{text}\033[K")
+    def show(self, text: str) -> None:
+        """Draws or writes the text, cut where the terminal ends."""
+        self._stream.write(f"\r{text[: _columns(self._stream) - 1]}\033[K" if self.redrawn else f"{text}\n")
         self._stream.flush()
+        self._drawn = self.redrawn
 
     def erase(self) -> None:
         """Leaves the line as it was."""
@@ -65,22 +56,21 @@ class _Line:
             self._stream.flush()
 
 
-class _Lines:
-    """Progress where lines stay, as in a log."""
+class _Paced:
+    """Progress on such a line, now and then."""
 
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
+    def __init__(self, line: TerminalLine) -> None:
+        self.line = line
         self._start = time.monotonic()
-        self._next = self._start + _INTERVAL
+        self._pause = _REDRAW if line.redrawn else _INTERVAL
+        self._next = self._start + (_PATIENCE if line.redrawn else _INTERVAL)
 
     def show(self, progress: Progress) -> None:
-        """Writes a line, unless that was done less than `_INTERVAL` seconds ago."""
+        """Shows it, unless that was done less than `_REDRAW` seconds ago (`_INTERVAL` where lines stay)."""
         now = time.monotonic()
-        if now < self._next:
-            return
-        self._next = now + _INTERVAL
-        self._stream.write(f"{in_words(progress, now - self._start)}\n")
-        self._stream.flush()
+        if now >= self._next:
+            self._next = now + self._pause
+            self.line.show(in_words(progress, now - self._start))
 
 
 def in_words(progress: Progress, elapsed: float) -> str:

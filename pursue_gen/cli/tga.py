@@ -10,14 +10,14 @@ import typer
 
 from pursue_gen.cli.console import guarded, suggest
 from pursue_gen.cli.inputs import scenario_from
-from pursue_gen.cli.options import REQUEST, SCENARIO, Ends, with_request
+from pursue_gen.cli.options import REQUEST, SCENARIO, choice, with_request
 from pursue_gen.files import shell_quoted, write_texts
 
 if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest
 
-IDEAL_ENDS = typer.Option(
-    Ends.CONTROLLABLE, help="reported: ends are the environment's, as in the default game of solve and ws."
+IDEAL_ENDS = choice(
+    "ends", "controllable", "reported: ends are the environment's, as in the default game of solve and ws."
 )
 
 

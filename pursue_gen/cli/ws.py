@@ -10,15 +10,16 @@ import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.on_map import placed_on
-from pursue_gen.cli.options import EXPLAIN, MISSION, REQUEST, ROBOT, SCENARIO, SPOT_DISTANCE, Controllers, with_request
+from pursue_gen.cli.options import EXPLAIN, MISSION, REQUEST, ROBOT, SCENARIO, SPOT_DISTANCE, choice, with_request
 from pursue_gen.files import shell_quoted
 
 if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest
 
-CONTROLLERS = typer.Option(
-    Controllers.DISTRIBUTED,
-    help="distributed: one per robot; centralized: one; general: one that decides the ends too (the original's).",
+CONTROLLERS = choice(
+    "controllers",
+    "distributed",
+    "distributed: one per robot; centralized: one; general: one that decides the ends too (the original's).",
 )
 
 

@@ -12,7 +12,7 @@ from typing import Any, Dict, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing.png_pixels import pixels
-from pursue_gen.files import read_text
+from pursue_gen.files import read_text, reason_of
 from pursue_runtime.bounded import SETTINGS, BadText, read_yaml
 from pursue_runtime.named_files import read_all
 from pursue_runtime.png import LARGEST, SIGNATURE, find_damage
@@ -133,9 +133,8 @@ def _content(file: Path) -> bytes:
     try:
         content = read_all(file, _LARGEST_FILE)
     except (OSError, ValueError) as problem:
-        reason = getattr(problem, "strerror", None) or str(problem)
         hint = "in the yaml file, image: and the name of a file"
-        raise unusable(file, f"it cannot be read: {reason}", hint) from None
+        raise unusable(file, f"it cannot be read: {reason_of(problem)}", hint) from None
     if not content.startswith((SIGNATURE, b"P2", b"P5")):
         raise unusable(file, "it is neither PGM nor PNG", "save it as one of these")
     return content

@@ -50,6 +50,11 @@ def poses(scenario: Scenario) -> Tuple[Mapping[str, Pose], bool]:
     return {poi.name: given.get(poi.name) or flat[poi.name] for poi in scenario.pois}, True
 
 
+def yaw_of(pose: Pose) -> float:
+    """The direction in which a pose looks (radians)."""
+    return math.atan2(2 * (pose.qw * pose.qz + pose.qx * pose.qy), 1 - 2 * (pose.qy * pose.qy + pose.qz * pose.qz))
+
+
 def _layout(scenario: Scenario, fixed: Mapping[str, Point]) -> Dict[str, Point]:
     """A place for each POI; those in `fixed` are kept."""
     places: Dict[str, Point] = dict(fixed)

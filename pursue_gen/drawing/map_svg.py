@@ -50,7 +50,7 @@ def draw(
     above, below = _room(scenario, places, paper.height)
     for agent in scenario.agents:
         lines = _wrapped(_description(agent, scenario), width - 150)
-        body += _legend(agent, looks[agent.name], lines, below)
+        body += _legend(looks[agent.name], lines, below)
         below += _LINE * len(lines) + 8
     notes = [_anywhere(scenario)] if _anywhere(scenario) else []
     notes += list(_conditions(scenario))
@@ -202,7 +202,7 @@ def _standing(scenario: Scenario, places: Mapping[str, Point], looks: Mapping[st
     return parts
 
 
-def _legend(agent: Agent, look: AgentLook, lines: List[str], top: float) -> List[str]:
+def _legend(look: AgentLook, lines: List[str], top: float) -> List[str]:
     """An agent's mark and line, its name, and what it is and can do."""
     stroke = {"stroke": look.colour, "stroke_width": 2.5, "stroke_dasharray": look.dash}
     line = tag("line", x1=34, y1=top + 7, x2=74, y2=top + 7, **stroke)

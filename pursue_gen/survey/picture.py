@@ -6,11 +6,11 @@ import math
 from typing import Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.drawing.floor import Floor
+from pursue_gen.drawing.layout import yaw_of
 from pursue_gen.drawing.look import ACCENT, INK, PAPER, QUIET, AgentLook, agent_looks, svg, tag, text
 from pursue_gen.drawing.map_svg import Paper, along
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.survey.make import Survey, SurveyedWay
-from pursue_gen.survey.times import yaw_of
 
 _WIDTH = 900.0
 _ROW = 20.0

@@ -11,10 +11,10 @@ import numpy as np
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
+from pursue_gen.drawing.layout import yaw_of
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Poi, Pose, Scenario
 from pursue_gen.survey.grid import Array, Grid, Point
-from pursue_gen.survey.times import yaw_of
 from pursue_gen.workspace.map_spots import NEAR, Ways
 
 _REACH = 4

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import List, Mapping, Tuple
 
+from pursue_gen.drawing.layout import yaw_of
 from pursue_gen.language.scenario import Pose
 from pursue_gen.survey.routes import Route
 
@@ -57,8 +58,3 @@ def turned(route: Route, ends: Tuple[Pose, Pose]) -> List[float]:
     headings = [math.atan2(b[1] - a[1], b[0] - a[0]) for a, b in zip(route.bends, route.bends[1:]) if a != b]
     directions = [yaw_of(ends[0]), *headings, yaw_of(ends[1])]
     return [abs(math.remainder(b - a, 2 * math.pi)) for a, b in zip(directions, directions[1:])]
-
-
-def yaw_of(pose: Pose) -> float:
-    """The direction in which a pose looks (radians)."""
-    return math.atan2(2 * (pose.qw * pose.qz + pose.qx * pose.qy), 1 - 2 * (pose.qy * pose.qy + pose.qz * pose.qz))

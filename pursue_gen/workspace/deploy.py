@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Dict, List, Mapping, Sequence, Tuple
 
 import jinja2
@@ -77,7 +78,7 @@ class Service:
     @property
     def command(self) -> List[str]:
         """For compose: `${NAME:-value}` where a variable may set it."""
-        arguments = [one.argument(_compose(one)) for one in self.settings]
+        arguments = [one.argument(f"${{{one.variable}:-{one.value}}}" if one.variable else "") for one in self.settings]
         return ["rosrun", self.package, self.node, *arguments, *([f"__ns:={self.namespace}"] if self.namespace else [])]
 
     @property
@@ -110,7 +111,7 @@ def docker_files(jinja: jinja2.Environment, values: Mapping[str, Any], packages:
         "noetic_packages": NOETIC_PACKAGES,
         "project": values["scenario"].lower(),
         "robots": [(machine, PORT + number) for number, machine in enumerate([BASE, *controllers])],
-        "json": _flow,
+        "json": partial(json.dumps, ensure_ascii=False),  # JSON is YAML in one line
         "master_health": ["python3", "-c", _MASTER_ANSWERS],
     }
     names_of_files = ("Dockerfile.debian", "Dockerfile.noetic", "compose.yaml", "lab.env", "robots.yaml", "README.md")
@@ -236,10 +237,6 @@ def _hosts(places: Mapping[str, str], master: str) -> Dict[str, List[str]]:
     return {host: [*units, *(f"pursue-{name}" for name in _TRANSPORT)] for host, units in found.items()}
 
 
-def _compose(setting: Setting) -> str:
-    return f"${{{setting.variable}:-{setting.value}}}" if setting.variable else ""
-
-
 def _unit_argument(setting: Setting) -> str:
     """As a word of ExecStart, where systemd puts the variables in."""
     return f'"{setting.argument("${" + setting.variable + "}" if setting.variable else "")}"'
@@ -250,15 +247,9 @@ def _variables(services: Sequence[Service]) -> Dict[str, str]:
     return {one.variable: one.value for service in services for one in service.settings if one.variable}
 
 
-def _flow(value: Any) -> str:
-    """A value as YAML in one line: JSON is YAML."""
-    return json.dumps(value, ensure_ascii=False)
-
-
 def _bool(value: bool) -> str:
     return "true" if value else "false"
 
 
 def _rendered(jinja: jinja2.Environment, template: str, values: Mapping[str, Any]) -> bytes:
     return jinja.get_template(template).render(values).encode()
-

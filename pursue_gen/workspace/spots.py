@@ -10,7 +10,7 @@ from itertools import compress, count, islice
 from typing import Callable, DefaultDict, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, counted, warning
-from pursue_gen.drawing.layout import poses
+from pursue_gen.drawing.layout import poses, yaw_of
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Poi, Pose, Scenario
 
@@ -214,8 +214,8 @@ def _line(pose: Pose, distance: float) -> Iterator[Pose]:
 
 def _at(pose: Pose, distance: float, angle: float) -> Pose:
     """The point so far from a pose, in a direction seen from its own (radians)."""
-    yaw = math.atan2(2 * (pose.qw * pose.qz + pose.qx * pose.qy), 1 - 2 * (pose.qy * pose.qy + pose.qz * pose.qz))
-    x, y = pose.x + distance * math.cos(yaw + angle), pose.y + distance * math.sin(yaw + angle)
+    direction = yaw_of(pose) + angle
+    x, y = pose.x + distance * math.cos(direction), pose.y + distance * math.sin(direction)
     return replace(pose, x=_rounded(x), y=_rounded(y))
 
 

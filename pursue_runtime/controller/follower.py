@@ -6,7 +6,7 @@ import time
 from typing import Any, Callable, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.controller.scheduler import CommandScheduler
-from pursue_runtime.data import DataError
+from pursue_runtime.data import DataError, reading
 from pursue_runtime.event_words import Word
 from pursue_runtime.missions import Missions, Source
 from pursue_runtime.poses import POSES, Poses, read_poses
@@ -127,10 +127,8 @@ class Follower:
         if (plan.get("mission") or self._missions.own.mission) != self.part.mission:
             return None
         self.plan = None
-        try:
+        with reading("it"):
             strategy = Strategy(plan["strategies"][self._package])
-        except (KeyError, TypeError) as problem:
-            raise DataError(f"it lacks or misspells something: {problem!r}") from problem
         return player.add_plan(int(plan["plan"]), strategy, now)
 
     def report(self) -> Tuple[Optional[SystemState], Optional[CommandScheduler], Optional[MissionPart], str]:

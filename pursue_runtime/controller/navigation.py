@@ -8,31 +8,13 @@ from __future__ import annotations
 from typing import Callable, List, Optional, Sequence, Tuple
 
 from pursue_runtime.controller.answers import meaning_of
-from pursue_runtime.controller.goal import (
-    CANCELLED,
-    OVER,
-    SUCCEEDED,
-    Answer,
-    Goal,
-    GoalTracker,
-    Movement,
-)
+from pursue_runtime.controller.goal import CANCELLED, OVER, SUCCEEDED, Answer, Goal, GoalTracker, Movement
 from pursue_runtime.controller.reports import RepeatedReport
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.trip import Trip
 from pursue_runtime.controller.view import Due, View
 from pursue_runtime.controller.whereabouts import Position, Whereabouts
-from pursue_runtime.event_words import (
-    BACK,
-    BLOCKED,
-    DISPLACED,
-    FAILED,
-    HELD,
-    RESUME,
-    STUCK,
-    RobotReport,
-    Word,
-)
+from pursue_runtime.event_words import BACK, BLOCKED, DISPLACED, FAILED, HELD, RESUME, STUCK, RobotReport, Word
 from pursue_runtime.locations import is_action, is_movement
 from pursue_runtime.orders import Order
 from pursue_runtime.sentences import in_words, marked

@@ -19,7 +19,7 @@ from typing import Any, Callable, List, Mapping, Optional, Tuple
 
 from tornado.web import Application, HTTPError, RequestHandler, stream_request_body
 
-from pursue_runtime.bundle import Order, mission_id
+from pursue_runtime.bundle import Order
 from pursue_runtime.http_server import LimitedServer, drop_chunks
 from pursue_runtime.manager.background import ServerError, Service
 from pursue_runtime.manager.manager import (
@@ -33,6 +33,7 @@ from pursue_runtime.manager.manager import (
     mission_message,
     parse_length,
 )
+from pursue_runtime.manifest import mission_id
 
 HEALTH, MISSION = "/health", "/mission"
 MAX_DISCARDED = 1 << 20  # bytes of a refused body that are read and thrown away, so that the client receives the answer

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 import threading
 import time
+from functools import partial
 from typing import Callable, List, Optional
 
 import rospy
 from rosgraph_msgs.msg import Clock
 
-from pursue_runtime.nodes.node import Ending, start_thread, subscribe
+from pursue_runtime.nodes.node import Ending, log, start_thread, subscribe
 
 
 class Alarm:
@@ -91,6 +92,10 @@ class Later:
         with self._changed:
             self._actions.append(action)
             self._wake()
+
+    def log(self, level: str, text: str) -> None:
+        """Log a sentence then: a line takes as long as a reaction, and other words or orders may be due."""
+        self.do(partial(log, level, text))
 
     def __enter__(self) -> None:
         """A reaction begins."""

@@ -8,7 +8,6 @@ a time; 64). Arguments: see ARGUMENTS.
 from __future__ import annotations
 
 import os
-import socket
 from typing import Dict, List, Mapping, Optional, Tuple
 
 import rospy
@@ -24,17 +23,8 @@ from pursue_runtime.manager.forwarder import Forwarder
 from pursue_runtime.manager.manager import LOCAL_MISSION, MISSION_STATUS, Manager, RequestLog, topic_names
 from pursue_runtime.manager.server import Limits, Server, tls
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import (
-    ERROR,
-    OK,
-    WARN,
-    Diagnostics,
-    Ending,
-    NodeReport,
-    lower_priority,
-    run_node,
-    subscribe,
-)
+from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, robot_name, run_node, subscribe
+from pursue_runtime.nodes.process import lower_priority
 from pursue_runtime.parameters import number, whole
 from pursue_runtime.slots import is_loopback
 from pursue_runtime.trusted_keys import KeyFolder
@@ -79,7 +69,7 @@ class CommunicationManager:
         self.background.start()
         self.log_address(host, exposed, context is not None)
         pulses = subscribe("/diagnostics", DiagnosticArray, lambda _: None, self.ending, queue_size=100)
-        Diagnostics(self.report, self.ending, Links(pulses, ending=self.ending, lost=self.master_lost).amend)
+        Diagnostics(self.report, self.ending, Links(pulses, ending=self.ending, lost=self.ending.without_master).amend)
 
     def make_forwarder(self, host: str, told: Mapping[str, str]) -> Tuple[Optional[Forwarder], List[str]]:
         """The socket and the topics that go there; none without topics. Raises ServerError and ParameterError."""
@@ -133,23 +123,12 @@ class CommunicationManager:
         trusted = self.manager.trusts_any_key and self.manager.reader_connected
         return NodeReport(trusted, {"error": ERROR, "warn": WARN}.get(how, OK), sentence, values)
 
-    def master_lost(self, why: str) -> None:
-        """End the node, which is then started again: another master would not know it."""
-        rospy.logerr("ends here: %s", why)
-        self.ending.end(1)
-
     def run(self) -> int:
         """Runs until it is ended; returns the exit status."""
         try:
             return self.ending.wait()
         finally:
             self.background.close()
-
-
-def robot_name() -> str:
-    """The name by which the desk knows this robot; pursue_reader finds it in the same way."""
-    given = str(rospy.get_param("~robot", "")) or rospy.get_namespace().strip("/")
-    return given or socket.gethostname()
 
 
 def main(package: Package) -> int:

@@ -20,9 +20,9 @@ from pursue_runtime.event_words import PLAN, format_word
 from pursue_runtime.folders import ros_home
 from pursue_runtime.missions import Missions, own_source
 from pursue_runtime.nodes.alarm import Alarm
-from pursue_runtime.nodes.exeggutor import LOGS, Exeggutor
+from pursue_runtime.nodes.exeggutor import Exeggutor
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, run_node, subscribe
+from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, log, run_node, subscribe
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.nodes.state_printer import StatePrinter
 from pursue_runtime.nodes.witness import Witness
@@ -45,7 +45,7 @@ class Controller:
         again = flag(given, "again")
         self.lock = threading.RLock()
         self.ending = Ending()
-        self.follower = Follower(missions, name, package.name, lambda level, text: LOGS[level]("%s", text), again)
+        self.follower = Follower(missions, name, package.name, log, again)
         self.observer = ""
         self.exegg = Exeggutor(self.ending)
         self.printer = StatePrinter(self.ending)
@@ -61,7 +61,7 @@ class Controller:
         self.witness = Witness(lambda: self.follower.newest)
         states = subscribe_states(self.update_state, self.ending, on_malformed=self.follower.count_malformed)
         subscribe(PLAN, String, self.learn, self.ending, queue_size=10, tcp_nodelay=True)
-        Diagnostics(self.report, self.ending, Links(states, ending=self.ending, lost=self.master_lost).amend)
+        Diagnostics(self.report, self.ending, Links(states, ending=self.ending, lost=self.ending.without_master).amend)
 
     def take_up(self) -> None:
         """Has the robots of the part that is played. Raises DataError where their settings are wrong."""
@@ -155,11 +155,6 @@ class Controller:
             if word:
                 self.exegg.announce(format_word(word))
             self.alarm.set(*scheduler.next_wakeup())
-
-    def master_lost(self, why: str) -> None:
-        """End the node: without a master no node can join, so robots get no further orders."""
-        rospy.logerr("ends here: %s", why)
-        self.ending.end(1)
 
     def report(self) -> NodeReport:
         """Return the report for /diagnostics: ready when the observer and this node are connected both ways."""

@@ -55,8 +55,6 @@ PATIENCE = 5.0
 LAST_WORDS = 0.5
 """Seconds for which a robot that is called back stays connected: rospy sends messages in a thread of its own."""
 
-LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
-
 
 class DriveLegs:
     """The node on ROS: one lock, the topics of one robot at a time, a bag."""
@@ -80,7 +78,7 @@ class DriveLegs:
         with contextlib.suppress(DataError):
             self._bag.write(rospy.resolve_name(GAME), String(json.dumps(source.read("game.yaml"))), stamp())
         self._drives = rospy.Publisher(DRIVES, String, queue_size=100, latch=True)
-        self._lines = Later("log", self.ending)
+        self._log = Later("log", self.ending).log
         self._alarm = Alarm(self._act, self.ending)
         self._robot: Optional[Tuple[Driven, Settings, Session, RobotLink]] = None
         self._partner: Optional[RobotLink] = None  # of the robot that takes part in what is done
@@ -282,9 +280,6 @@ class DriveLegs:
                 self._carry_out(due)
                 time.sleep(LAST_WORDS if due.cancel else 0.0)
                 self._finish()
-
-    def _log(self, level: str, text: str) -> None:
-        self._lines.do(partial(LOGS[level], "%s", text))
 
 
 def _ignore(_: Any) -> None:

@@ -29,8 +29,6 @@ from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, LIVE, RUNNING, WON, SystemState
 from pursue_runtime.strategy import Command
 
-LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
-
 LOOKS = 0.2
 """Seconds of real time between two looks at tf."""
 
@@ -54,6 +52,7 @@ class Exeggutor:
         self._links: Dict[str, RobotLink] = {}
         self._ending = ending
         self._log_lines = Later("log", ending)
+        self._log = self._log_lines.log
         self._next_look = 0.0  # on the monotonic clock
         self._alarm = Alarm(self._on_alarm, ending)
         rospy.on_shutdown(self._call_back)
@@ -84,10 +83,6 @@ class Exeggutor:
                 position = positions.get(robot)
                 if position is not None:  # amcl does not publish it again while the robot stands
                     self._robots[robot].on_position(position, rospy.get_time())
-
-    def _log(self, level: str, text: str) -> None:
-        """Log a sentence a little later: a line takes as long as a reaction, and other orders may be due."""
-        self._log_lines.do(partial(LOGS[level], "%s", text))
 
     # For the controller -----------------------------------------------------------------------------------------------
 
@@ -177,32 +172,25 @@ class Exeggutor:
         self._log_lines.do(partial(self._give_again, name))  # rospy holds a lock here
 
     def _give_again(self, name: str) -> None:
-        with self._lock:
-            if name in self._robots:
-                self._robots[name].give_again()
-                self._act()
+        self._tell(name, Navigation.give_again)
 
     # From the robots --------------------------------------------------------------------------------------------------
 
     def _result(self, name: str, answer: Answer) -> None:
-        with self._lock:
-            robot = self._robots.get(name)
-            if robot is not None:
-                robot.on_result(answer, rospy.get_time())
-                self._act()
+        self._tell(name, lambda robot: robot.on_result(answer, rospy.get_time()))
 
     def _statuses(self, name: str, answers: List[Answer]) -> None:
-        with self._lock:
-            robot = self._robots.get(name)
-            if robot is not None:
-                robot.on_status(answers, rospy.get_time(), time.monotonic())
-                self._act()
+        self._tell(name, lambda robot: robot.on_status(answers, rospy.get_time(), time.monotonic()))
 
     def _place(self, name: str, position: Optional[Position]) -> None:
+        self._tell(name, lambda robot: robot.on_position(position, rospy.get_time()))
+
+    def _tell(self, name: str, news: Callable[[Navigation], None]) -> None:
+        """Pass something on to a robot's navigation, if that robot is taken, and do what is due then."""
         with self._lock:
             robot = self._robots.get(name)
             if robot is not None:
-                robot.on_position(position, rospy.get_time())
+                news(robot)
                 self._act()
 
     # What is due ------------------------------------------------------------------------------------------------------

@@ -17,18 +17,8 @@ from pursue_runtime.data import DataError, Package
 from pursue_runtime.event_words import MARKERS, PLAN
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
-from pursue_runtime.nodes.node import (
-    ERROR,
-    OK,
-    WARN,
-    Diagnostics,
-    Ending,
-    NodeReport,
-    lower_priority,
-    restart_process,
-    run_node,
-    subscribe,
-)
+from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, run_node, subscribe
+from pursue_runtime.nodes.process import lower_priority, restart_process
 from pursue_runtime.nodes.robot_link import needed
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import text
@@ -63,7 +53,8 @@ class MarkersNode:
         states = subscribe_states(self.on_state, self.ending, on_malformed=self.membership.count_malformed)
         subscribe(PLAN, String, self.on_plan, self.ending, queue_size=10)
         pulses = subscribe("/diagnostics", rospy.AnyMsg, lambda _: None, self.ending, queue_size=100)
-        Diagnostics(self.report, self.ending, Links(states, pulses, ending=self.ending, lost=self.master_lost).amend)
+        links = Links(states, pulses, ending=self.ending, lost=self.ending.without_master)
+        Diagnostics(self.report, self.ending, links.amend)
 
     def on_state(self, state: SystemState, publisher: str) -> None:
         """Show a state of the mission."""
@@ -121,11 +112,6 @@ class MarkersNode:
             marker.scale.x = marker.scale.y = 0.0 if mark.kind == TEXT else mark.size
             marker.scale.z = 0.01 if mark.kind == DISC else mark.size
         return marker
-
-    def master_lost(self, why: str) -> None:
-        """End the node: without a master no node can join."""
-        rospy.logerr("ends here: %s", why)
-        self.ending.end(1)
 
     def report(self) -> NodeReport:
         """Return the report for /diagnostics."""

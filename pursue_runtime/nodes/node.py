@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import os
 import queue
 import signal
 import socket
@@ -12,20 +11,7 @@ import sys
 import threading
 import time
 import traceback
-from pathlib import Path
-from types import MappingProxyType
-from typing import (
-    Any,
-    Callable,
-    Dict,
-    Mapping,
-    NamedTuple,
-    NoReturn,
-    Optional,
-    Sequence,
-    Tuple,
-    Type,
-)
+from typing import Any, Callable, Dict, Mapping, NamedTuple, Optional, Sequence, Tuple, Type
 
 import rosgraph
 import rospy
@@ -40,6 +26,20 @@ from pursue_runtime.parameters import ParameterError
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 STALE = DiagnosticStatus.STALE  # what the node knows is old
+
+
+LOGS = {"debug": rospy.logdebug, "info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
+
+
+def log(level: str, text: str) -> None:
+    """Logs a sentence; the level is one of LOGS."""
+    LOGS[level]("%s", text)
+
+
+def robot_name() -> str:
+    """The name by which the desk knows this robot (~robot): its namespace, or this machine's name, if none is given."""
+    given = str(rospy.get_param("~robot", "")) or rospy.get_namespace().strip("/")
+    return given or socket.gethostname()
 
 
 def worse(level: int, other: int) -> int:
@@ -185,6 +185,12 @@ class Ending:
         """Ends the node with this exit status; the first call counts."""
         self._ends.put(status)
 
+    def without_master(self, why: str) -> None:
+        """Ends the node with status 1, and logs why: without a master no node can start or join, and another master
+        would not know this node."""
+        rospy.logerr("ends here: %s", why)
+        self.end(FAILED)
+
     def renew(self) -> None:
         """Ends the node, which is to begin anew: `renewed` is then True, and what it does last is `restart_process`."""
         self._ends.put(RENEWED)
@@ -224,26 +230,9 @@ def master_is_gone() -> bool:
     return False
 
 
-LOWER = 5
-"""By how much the nice value of nodes is raised that decide nothing about robots."""
-
-ANEW = "PURSUE_ANEW"
-"""In the environment of a node that has begun anew."""
-
-
-def restart_process(environment: Mapping[str, str] = MappingProxyType({})) -> NoReturn:
-    """Starts the node's program again in the same process: for roslaunch, which may end with it, it has never ended.
-
-    `environment` is added to that of the process.
-    """
-    for sign in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(sign, signal.SIG_DFL)
-    sys.stdout.flush()
-    os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, ANEW: "yes", **environment})
-
-
-def init_node(name: str, **options: Any) -> None:
-    """Connects the process to ROS as the node `name` (`options`: those of rospy.init_node).
+def init_node(name: str, known: Sequence[Argument] = (), **options: Any) -> None:
+    """Connects the process to ROS as the node `name` (`options`: those of rospy.init_node), and warns where one of its
+    `known` arguments was set as a parameter.
 
     Until `Ending` handles signals they end the process at once and in silence: rospy would raise from wherever it is.
     """
@@ -251,6 +240,7 @@ def init_node(name: str, **options: Any) -> None:
     for sign in (signal.SIGINT, signal.SIGTERM):
         signal.signal(sign, signal.SIG_DFL)
     rospy.init_node(name, disable_signals=True, **options)
+    warn_of_ignored(known)
 
 
 def _end_if_closed(server: Any) -> None:
@@ -280,8 +270,7 @@ def run_node(
     except ParameterError as problem:
         print(f"{name}: {problem}", file=sys.stderr)
         return REFUSED
-    init_node(name)
-    warn_of_ignored(known)
+    init_node(name, known)
     threading.Thread(target=warn_without_clock, daemon=True).start()
     try:
         return run(told)
@@ -308,27 +297,3 @@ def warn_without_clock(wait: float = 5.0) -> None:
                 "/use_sim_time is true, but nobody publishes /clock: start the simulator that does, or where there is"
                 " none: rosparam set /use_sim_time false, and launch again"
             )
-
-
-def lower_priority() -> None:
-    """Lower the priority of this process, once: nodes that decide about robots come first.
-
-    Where the kernel shares the processor among sessions (autogroup), nice counts within a session only, and roslaunch
-    starts each node in its own: then the priority of the session is lowered as well.
-    """
-    if ANEW not in os.environ:
-        os.nice(LOWER)
-        if os.getsid(0) == os.getpid():
-            with contextlib.suppress(OSError, ValueError):  # there are no such groups
-                _lower_session(Path("/proc/self/autogroup"))
-
-
-def _lower_session(autogroup: Path) -> None:
-    """Lower the priority of our session. Raises OSError and ValueError."""
-    level = int(autogroup.read_text().rpartition(" ")[2]) + LOWER
-    for _ in range(20):
-        try:
-            autogroup.write_text(str(min(level, 19)))
-            return
-        except BlockingIOError:  # the kernel lets one process do so in a tenth of a second
-            time.sleep(0.1)

@@ -35,12 +35,12 @@ from pursue_runtime.nodes.node import (
     Diagnostics,
     Ending,
     NodeReport,
-    restart_process,
     run_node,
     start_thread,
     subscribe,
 )
 from pursue_runtime.nodes.plain_words import PlainWords
+from pursue_runtime.nodes.process import restart_process
 from pursue_runtime.nodes.publishing import ServedFirst, is_connected
 from pursue_runtime.nodes.state_message import message_of
 from pursue_runtime.nodes.state_printer import StatePrinter
@@ -56,15 +56,8 @@ from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, STOPPED, WAITING, WON, SystemState, format_state
 from pursue_runtime.strategy import read_cover
 
-LOGS = {"debug": rospy.logdebug, "info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
-
 CLOCK = 10.0
 """Seconds of real time for which a mission that goes on waits for simulated time."""
-
-
-def log(level: str, text: str) -> None:
-    """Logs a sentence."""
-    LOGS[level]("%s", text)
 
 
 class Observer:
@@ -76,6 +69,7 @@ class Observer:
         self.lock = threading.RLock()
         self.ending = Ending()
         self.log_lines, self.after_reaction = Later("log", self.ending), Later("texts", self.ending)
+        self.log_soon = self.log_lines.log
         own = own_source(package, "model.yaml", told["config"])
         home = ros_home(os.environ) if self.settings.received else ""
         self.missions = Missions(own, package.name, home)
@@ -317,10 +311,6 @@ class Observer:
             with contextlib.suppress(rospy.ROSException):
                 self.plain_words.on_state(state)
         self.printer.on_state(state)
-
-    def log_soon(self, level: str, text: str) -> None:
-        """Log a sentence a little later: a line takes as long as a reaction."""
-        self.log_lines.do(partial(log, level, text))
 
     @staticmethod
     def send(publisher: rospy.Publisher, what: object) -> None:

@@ -15,10 +15,10 @@ import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 
 from pursue_runtime.controller.settings import Settings, read_settings
-from pursue_runtime.controller.whereabouts import Position, yaw_of
+from pursue_runtime.controller.whereabouts import Position
 from pursue_runtime.data import DataError
 from pursue_runtime.nodes.node import Ending, start_thread, subscribe
-from pursue_runtime.nodes.robot_link import needed
+from pursue_runtime.nodes.robot_link import needed, position_of
 from pursue_runtime.parameters import text
 
 PERIOD = 0.5
@@ -118,7 +118,7 @@ class _Watch:
 
     def _pose(self, message: PoseWithCovarianceStamped, robot: str) -> None:
         if message.header.frame_id.lstrip("/") == self._settings[robot].map_frame.lstrip("/"):
-            self._poses[robot] = _position(message.pose.pose.position, message.pose.pose.orientation)
+            self._poses[robot] = position_of(message.pose.pose.position, message.pose.pose.orientation)
 
     def _positions(self) -> Dict[str, Position]:
         """Those that are known, to a centimetre: tf's first."""
@@ -142,7 +142,7 @@ class _Watch:
         self._renewed[robot] = (last, since) if stamp == last else (stamp, now)
         if stamp == last and stamp > 0.0 and now > since + STALE:
             return None
-        return _position(found.transform.translation, found.transform.rotation)
+        return position_of(found.transform.translation, found.transform.rotation)
 
 
 def thinned(points: Sequence[Tuple[float, float]]) -> List[Tuple[float, float]]:
@@ -151,7 +151,3 @@ def thinned(points: Sequence[Tuple[float, float]]) -> List[Tuple[float, float]]:
         return []
     step = 1 + len(points) // MOST
     return [(round(x, 2), round(y, 2)) for x, y in [*points[:-1:step], *points[-1:]]]
-
-
-def _position(at: Any, turn: Any) -> Position:
-    return Position(at.x, at.y, yaw_of(turn.x, turn.y, turn.z, turn.w))

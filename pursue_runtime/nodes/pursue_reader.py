@@ -11,7 +11,6 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import socket
 import threading
 import time
 from typing import Dict, Tuple
@@ -21,13 +20,14 @@ import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.arguments import KEYS
-from pursue_runtime.bundle import LIMIT, MISSION, mission_id
+from pursue_runtime.bundle import LIMIT
 from pursue_runtime.data import Package
 from pursue_runtime.event_words import STATE
 from pursue_runtime.folders import keys_folder, missions_folder
+from pursue_runtime.manifest import MISSION, mission_id
 from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.links import Links
-from pursue_runtime.nodes.node import OK, WARN, Diagnostics, Ending, NodeReport, run_node, subscribe
+from pursue_runtime.nodes.node import OK, WARN, Diagnostics, Ending, NodeReport, log, robot_name, run_node, subscribe
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import number, whole
 from pursue_runtime.reader.contents import StoreError
@@ -37,15 +37,8 @@ from pursue_runtime.reader.store import KEEP, Store
 from pursue_runtime.state import SystemState
 from pursue_runtime.trusted_keys import KeyFolder
 
-LOGS = {"info": rospy.loginfo, "warn": rospy.logwarn, "err": rospy.logerr}
-
 RETRY = 10.0
 """Seconds until a store that cannot be used is tried again."""
-
-
-def log(level: str, text: str) -> None:
-    """Logs a sentence."""
-    LOGS[level]("%s", text)
 
 
 class Node:
@@ -66,7 +59,7 @@ class Node:
         self.orders = subscribe("local_mission", String, self.on_order, ending, queue_size=1, buff_size=1 << 20)
         topic = rospy.get_param("~state_topic", STATE)
         states = subscribe_states(self.on_state, ending, "/" + topic.lstrip("/"))
-        Diagnostics(self.report, ending, Links(states, ending=ending, lost=self.master_lost).amend)
+        Diagnostics(self.report, ending, Links(states, ending=ending, lost=ending.without_master).amend)
         trouble = self.reader.problem()
         log("err" if trouble else "info", trouble or f"{robot.name} takes missions")
         for node in without_package(nodes, installed):
@@ -100,11 +93,6 @@ class Node:
         check = self.reader.next_check(time.monotonic())
         self.alarm.set(None, KEYS_PERIOD if check is None else min(check, KEYS_PERIOD))
 
-    def master_lost(self, why: str) -> None:
-        """End the node, which is then started again: another master would not know it."""
-        rospy.logerr("ends here: %s", why)
-        self.ending.end(1)
-
     def report(self) -> NodeReport:
         """For /diagnostics. It is ready as soon as it is connected with communication_manager."""
         with self.lock:
@@ -115,12 +103,6 @@ class Node:
             values[name] = "" if status[name] is None else mission_id(status[name])
         ready = self.orders.get_num_connections() > 0
         return NodeReport(ready, WARN if trouble else OK, trouble or "takes missions", values)
-
-
-def robot_name() -> str:
-    """The name by which the desk knows this robot."""
-    given = str(rospy.get_param("~robot", "")) or rospy.get_namespace().strip("/")
-    return given or socket.gethostname()
 
 
 def mission_packages() -> Tuple[str, ...]:

@@ -272,7 +272,7 @@ class RobotLink(rospy.SubscribeListener):
             rospy.logwarn_throttle(10.0, what)
         elif not self._seen_by_tf:
             pose = message.pose.pose
-            self._place(_position(pose.position, pose.orientation))
+            self._place(position_of(pose.position, pose.orientation))
 
     def look(self) -> Optional[Position]:
         """Return where tf has the robot now; None where it does not know: `has_lost_position` if it did before."""
@@ -291,7 +291,7 @@ class RobotLink(rospy.SubscribeListener):
             what = f"tf does not know where {self._robot} is: {frames[0]} to {frames[1]} is not published any more"
             rospy.logwarn_throttle(10.0, what)
             return None
-        return _position(found.transform.translation, found.transform.rotation)
+        return position_of(found.transform.translation, found.transform.rotation)
 
     def _is_stale(self, stamp: float) -> bool:
         """Return True if the transform with this stamp (0: a static one) was not renewed for some time."""
@@ -306,5 +306,6 @@ def _answer(status: Any) -> Answer:
     return Answer(status.goal_id.id, status.goal_id.stamp.to_sec(), status.status, status.text)
 
 
-def _position(at: Any, orientation: Any) -> Position:
+def position_of(at: Any, orientation: Any) -> Position:
+    """The position that a message of geometry_msgs has, from its point and its quaternion."""
     return Position(at.x, at.y, yaw_of(orientation.x, orientation.y, orientation.z, orientation.w))

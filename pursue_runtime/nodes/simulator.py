@@ -20,18 +20,8 @@ from pursue_runtime.event_words import EVENTS, ORDERED, Word, format_word, parse
 from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
-from pursue_runtime.nodes.node import (
-    ERROR,
-    OK,
-    WARN,
-    Diagnostics,
-    Ending,
-    NodeReport,
-    lower_priority,
-    restart_process,
-    run_node,
-    subscribe,
-)
+from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, run_node, subscribe
+from pursue_runtime.nodes.process import lower_priority, restart_process
 from pursue_runtime.nodes.publishing import Newcomers, listeners
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import choice, names, whole
@@ -67,7 +57,7 @@ class SimulatorNode:
                 )
         states = subscribe_states(self.on_state, self.ending, on_malformed=self.membership.count_malformed)
         pulses = subscribe("/diagnostics", rospy.AnyMsg, lambda _: None, self.ending, queue_size=100)
-        links = Links(states, pulses, ending=self.ending, lost=self.master_lost)
+        links = Links(states, pulses, ending=self.ending, lost=self.ending.without_master)
         Diagnostics(self.report, self.ending, links.amend)
 
     def on_state(self, state: SystemState, publisher: str) -> None:
@@ -109,11 +99,6 @@ class SimulatorNode:
                 self.reported += 1
             moment, real = self.simulator.next_moments()
             self.alarm.set(moment, None if real is None else max(0.0, real - time.monotonic()))
-
-    def master_lost(self, why: str) -> None:
-        """End the node: without a master no node can start or join."""
-        rospy.logerr("ends here: %s", why)
-        self.ending.end(1)
 
     def report(self) -> NodeReport:
         """Return the report for /diagnostics: ready when the observer and this node are connected both ways, and each

@@ -16,19 +16,8 @@ from pursue_runtime.model import Model
 from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
-from pursue_runtime.nodes.node import (
-    ERROR,
-    OK,
-    WARN,
-    Diagnostics,
-    Ending,
-    NodeReport,
-    init_node,
-    lower_priority,
-    restart_process,
-    subscribe,
-    warn_of_ignored,
-)
+from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, init_node, subscribe
+from pursue_runtime.nodes.process import lower_priority, restart_process
 from pursue_runtime.nodes.publishing import Newcomers, listeners
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.nodes.ui_page import UIPage
@@ -294,8 +283,7 @@ def main(package: Package) -> int:
     arguments = rospy.myargv(sys.argv)[1:]
     told = read_told(arguments)  # --help ends here, and needs no roscore
     lower_priority()
-    init_node("UI")
-    warn_of_ignored(ARGUMENTS)
+    init_node("UI", ARGUMENTS)
     try:
         ending = Ending()
         membership = Membership(package, ending, told["config"])

@@ -14,9 +14,10 @@ import time
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.data import DataError
+from pursue_runtime.folders import sync_folder
 from pursue_runtime.observer.mark import MARK, Mark, MarkFile, Rank, read_mark
 from pursue_runtime.observer.mission import Mission
-from pursue_runtime.observer.records import FORMAT, Record, RecordFile, RecordsRead, read_records, sync_folder
+from pursue_runtime.observer.records import FORMAT, Record, RecordFile, RecordsRead, read_records
 from pursue_runtime.state import ENDED, WAITING, SystemState
 
 ADOPTED = "adopted"
@@ -266,7 +267,7 @@ class Journal:
                     os.rename(self._path, self._path + FAILED)
                 else:
                     os.close(os.open(self._path + FAILED, os.O_WRONLY | os.O_CREAT, 0o644))
-                sync_folder(self._path)
+                sync_folder(os.path.dirname(self._path))
             except OSError as another:
                 self._log("err", f"{self._path} cannot be marked as failed: {another}")
 

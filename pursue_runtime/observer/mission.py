@@ -72,9 +72,12 @@ class Mission(MissionStatus):
 
     def on_word(self, text: str, now: float) -> List[SystemState]:
         """Take a word from pursue/events; a word that is not possible changes nothing."""
-        orders = {START: self._start, PING: self._ping, STOP: self._stop, FINISH: self._finish}
-        if text.strip() in orders:
-            return orders[text.strip()](now)
+        if text.strip() == PING:
+            return [self.state(now)]
+        if text.strip() == STOP:
+            return self.stop(f"{STOP} was published", now)
+        if text.strip() in (START, FINISH):
+            return self._start(now) if text.strip() == START else self._finish(now)
         readable = len(text) <= MAX_WORD_LENGTH
         report = parse_report(text) if readable else None
         word = parse_word(text) if readable and report is None else None
@@ -156,12 +159,6 @@ class Mission(MissionStatus):
         self.seq = 1
         moves = self._evaluate(now, BEGUN)
         return [self.state(now), *self._take(moves, now, BEGUN)]
-
-    def _ping(self, now: float) -> List[SystemState]:
-        return [self.state(now)]
-
-    def _stop(self, now: float) -> List[SystemState]:
-        return self.stop(f"{STOP} was published", now)
 
     def _finish(self, now: float) -> List[SystemState]:
         if not self._life.may(life.WIN):

@@ -219,8 +219,4 @@ def is_uncovered(cover: Optional[Cover], position: Position, tolerance: float, p
 
 def _zones(cover: Cover, position: Position) -> List[List[Zone]]:
     """Return the zones of each entry that applies; none where a part of the plan has no decision."""
-    return cover.zones(_state(position))
-
-
-def _state(position: Position) -> SystemState:
-    return SystemState(0, 0.0, position.locations, position.values, position.clocks)
+    return cover.zones(SystemState(0, 0.0, *position))

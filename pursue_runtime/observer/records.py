@@ -14,6 +14,7 @@ import zlib
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.bounded import DATA, Bounds, read_json, whole
+from pursue_runtime.folders import sync_folder
 
 FORMAT = 2
 """The format of journals that have such records. Format 1 had the JSON objects alone."""
@@ -110,7 +111,7 @@ class RecordFile:
             os.fsync(descriptor)
             make_room()
             os.rename(new, path)
-            sync_folder(path)
+            sync_folder(os.path.dirname(path))
         except OSError:
             os.close(descriptor)
             raise
@@ -151,12 +152,3 @@ def write_all(descriptor: int, content: bytes) -> None:
     written = os.write(descriptor, content)
     if written != len(content):
         raise OSError(errno.ENOSPC, f"only {written} of {len(content)} bytes could be written")
-
-
-def sync_folder(path: str) -> None:
-    """Make the names in the folder of this file survive a power cut. Raises OSError."""
-    folder = os.open(os.path.dirname(path) or ".", os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)

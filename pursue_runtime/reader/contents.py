@@ -9,18 +9,8 @@ import os
 from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bounded import BadText, read_json
-from pursue_runtime.bundle import (
-    MANIFEST,
-    MISSION,
-    OWN,
-    SIGNATURE,
-    Keys,
-    Refused,
-    check_seal,
-    is_digest,
-    mission_file,
-    mission_id,
-)
+from pursue_runtime.bundle import MANIFEST, SIGNATURE, Keys, Refused, check_seal
+from pursue_runtime.manifest import MISSION, OWN, is_digest, mission_file, mission_id
 
 STATE = "state.json"
 

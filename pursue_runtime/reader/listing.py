@@ -22,4 +22,3 @@ def main(package: Package) -> int:
     for row in (("mission", "scenario", "what it is"), *rows):
         print("  {:<14}{:<24}{}".format(*row))
     return 0
-

@@ -9,7 +9,7 @@ import base64
 import binascii
 import hashlib
 import os
-from typing import Any, Callable, Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Any, Callable, Dict, FrozenSet, Iterable, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bounded import DATA, BadText, read_json
 from pursue_runtime.bundle import (
@@ -17,17 +17,16 @@ from pursue_runtime.bundle import (
     COMMIT,
     LIMIT,
     ORDER_LENGTH,
-    OWN,
     PREPARE,
     Keys,
     Order,
     Refused,
-    mission_id,
     new_ticket,
     read_order,
     unpack,
 )
 from pursue_runtime.data import DataError, read_data
+from pursue_runtime.manifest import OWN, mission_id
 from pursue_runtime.model import Model
 from pursue_runtime.poses import POSES, read_poses
 from pursue_runtime.rate_limited_log import RateLimitedLog
@@ -343,16 +342,13 @@ class Reader:
         """Raises Refused where the nodes of this machine could not read their part of a mission."""
         packages = {path.split("/")[0] for path in files}
         for package in packages & set(self.robot.packages):
-            for name in sorted({*FILES.get(package, CONTROLLER_FILES), *_names(package, files)}):
+            names = {path.split("/")[1] for path in files if path.split("/")[0] == package}
+            for name in sorted({*FILES.get(package, CONTROLLER_FILES), *names}):
                 try:
                     check_data(os.path.join(folder, package, name))
                 except Exception as problem:  # whatever a reader makes of such data
                     text = str(problem).replace(folder + os.sep, "")
                     raise Refused("bad_bundle", f"{package}/{name} cannot be used: {text}") from problem
-
-
-def _names(package: str, files: Iterable[str]) -> List[str]:
-    return [path.split("/")[1] for path in files if path.split("/")[0] == package]
 
 
 def check_data(path: str) -> None:

@@ -14,7 +14,9 @@ import shutil
 import zipfile
 from typing import Callable, List, Optional
 
-from pursue_runtime.bundle import MANIFEST, MISSION, OWN, SIGNATURE, Bundle, mission_file, mission_id
+from pursue_runtime.bundle import MANIFEST, SIGNATURE, Bundle
+from pursue_runtime.folders import sync_folder
+from pursue_runtime.manifest import MISSION, OWN, mission_file, mission_id
 from pursue_runtime.reader.contents import (
     STATE,
     StoreError,
@@ -141,7 +143,7 @@ class Store:
     def _sync(self) -> None:
         """What was renamed stays so in a power cut. Other processes see it already."""
         try:
-            _sync_folder(self.folder)
+            sync_folder(self.folder)
         except OSError as problem:
             self._log("warn", f"{self.folder} may be as it was before after a power cut: {problem.strerror}")
 
@@ -193,7 +195,7 @@ class Store:
         for path, content in files.items():
             _write(inside(new, path), content)
         for folder in (*(os.path.join(new, package) for package in packages), new):
-            _sync_folder(folder)
+            sync_folder(folder)
 
     def _new(self) -> str:
         self._count += 1
@@ -245,12 +247,3 @@ def _write(path: str, content: bytes) -> None:
         os.fsync(file)
     finally:
         os.close(file)
-
-
-def _sync_folder(folder: str) -> None:
-    """What the folder lists is on the disk."""
-    handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)

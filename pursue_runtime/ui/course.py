@@ -74,7 +74,7 @@ _Move = Tuple[float, str, str, bool]
 
 def _commands(strategies: Sequence[Strategy], here: Position) -> Iterator[_Move]:
     """The next command of each controller."""
-    now = SystemState(0, 0.0, here.locations, here.values, here.clocks)
+    now = SystemState(0, 0.0, *here)
     for strategy in strategies:
         found = strategy.next_command(now, 0.0)
         if found is not None:

@@ -9,7 +9,7 @@ import math
 import textwrap
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_runtime.data import DataError
+from pursue_runtime.data import DataError, reading
 from pursue_runtime.locations import action_of, is_action, movement, place_of
 from pursue_runtime.model import Model
 from pursue_runtime.sentences import in_words
@@ -59,13 +59,11 @@ Spots = Dict[str, Dict[str, Point]]
 
 def read_spots(settings: Mapping[str, Any], plan: FloorPlan) -> Spots:
     """Read the robots' spots in ui.yaml; none if it is of a version that had none. Raises DataError."""
-    try:
+    with reading("ui.yaml", "spots"):
         found = {
             str(robot): {str(place): (float(at[0]), float(at[1])) for place, at in table.items()}
             for robot, table in (settings.get("spots") or {}).items()
         }
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError) as problem:
-        raise DataError(f"ui.yaml lacks or misspells something in spots: {problem!r}") from problem
     if not all(math.isfinite(number) for table in found.values() for at in table.values() for number in at):
         raise DataError("ui.yaml has a spot that is not a finite number of metres; expected [x, y]")
     return {robot: {at: table[at] for at in table if at in plan.places} for robot, table in found.items()}

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_runtime.data import DataError
+from pursue_runtime.data import reading
 from pursue_runtime.event_words import START
 from pursue_runtime.locations import is_action, is_end, is_movement
 from pursue_runtime.model import Automaton, Model
@@ -43,10 +43,8 @@ class FloorPlan(NamedTuple):
 def read_floor_plan(poses: Mapping[str, Any], settings: Mapping[str, Any]) -> FloorPlan:
     """The map, from poses.yaml and ui.yaml. Raises DataError."""
     places = {name: (pose[0], pose[1]) for name, pose in read_poses(poses).places.items()}
-    try:
+    with reading("ui.yaml"):
         given = [(str(a), str(b), float(length), more) for a, b, length, *more in settings.get("connections", ())]
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError) as problem:
-        raise DataError(f"ui.yaml lacks or misspells something: {problem!r}") from problem
     known = [way for way in given if way[0] in places and way[1] in places]
     one_ways = tuple((a, b) for a, b, _, more in known if more == ["one_way"])
     return FloorPlan(places, tuple((a, b, length) for a, b, length, _ in known), one_ways)
@@ -297,8 +295,7 @@ class Page:
 
     def _unstarted(self) -> SystemState:
         """Before the first state."""
-        start = self._model.initial()
-        return SystemState(0, 0.0, start.locations, start.values, start.clocks, status=WAITING)
+        return SystemState(0, 0.0, *self._model.initial(), status=WAITING)
 
 
 def _round(number: float) -> float:

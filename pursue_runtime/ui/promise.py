@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import Any, Dict, FrozenSet, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_runtime.data import DataError
+from pursue_runtime.data import DataError, reading
 from pursue_runtime.locations import is_end
 from pursue_runtime.model import Model
 from pursue_runtime.simulator.simulator import ACTING, end_window
@@ -52,14 +52,11 @@ NOTHING = Promise()
 
 def read_promise(settings: Mapping[str, Any]) -> Promise:
     """The promise in ui.yaml; an empty one where it is of a version that had none. Raises DataError."""
-    try:
+    with reading("ui.yaml", "objectives, guarantee or not_needed"):
         given = [_objective(each) for each in settings.get("objectives", ())]
         most = settings.get("guarantee")
         number = None if most is None else float(most)
         unneeded = tuple(map(str, settings.get("not_needed", ())))
-    except (KeyError, TypeError, ValueError, AttributeError) as problem:
-        where = "objectives, guarantee or not_needed"
-        raise DataError(f"ui.yaml lacks or misspells something in {where}: {problem!r}") from problem
     if number is not None and not (math.isfinite(number) and number >= 0):
         raise DataError(f"ui.yaml: guarantee is {most!r}; expected a number of time units")
     return Promise(tuple(given), number, unneeded)

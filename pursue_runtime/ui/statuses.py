@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Dict, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_runtime.data import DataError
+from pursue_runtime.data import reading
 from pursue_runtime.model import Model
 from pursue_runtime.state import SystemState
 
@@ -24,10 +24,8 @@ class Status(NamedTuple):
 
 def read_statuses(settings: Mapping[str, Any]) -> Tuple[Status, ...]:
     """The statuses in ui.yaml; none where it is of a version that had none. Raises DataError."""
-    try:
+    with reading("ui.yaml", "statuses"):
         given = [(each["of"], each["label"], dict(each["texts"])) for each in settings.get("statuses", ())]
-    except (KeyError, TypeError, ValueError, AttributeError) as problem:
-        raise DataError(f"ui.yaml lacks or misspells something in statuses: {problem!r}") from problem
     return tuple(
         Status(str(of), str(label), {str(key): str(text) for key, text in texts.items()}) for of, label, texts in given
     )

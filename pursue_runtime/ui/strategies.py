@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, List, Mapping
 
-from pursue_runtime.data import DataError
+from pursue_runtime.data import reading
 from pursue_runtime.missions import Source
 from pursue_runtime.strategy import Strategy, read_strategies
 
@@ -22,8 +22,6 @@ def strategies_of(source: Source) -> List[Strategy]:
 
 def strategies_in(plan: Mapping[str, Any]) -> List[Strategy]:
     """The strategies of a new plan, as `parse_plan` returns it. Raises DataError."""
-    try:
+    with reading("not a plan: it"):
         parts = [*dict(plan["strategies"]).values(), *([plan["people"]] if plan.get("people") else [])]
         return [Strategy(part) for part in parts]
-    except (KeyError, TypeError, ValueError) as problem:
-        raise DataError(f"not a plan: it lacks or misspells something: {problem!r}") from problem

@@ -13,11 +13,11 @@ import hmac
 import html
 import ipaddress
 import json
-import os
 import re
 import secrets
 import socket
 import threading
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Callable, List, Mapping, Optional, Tuple
 from urllib.parse import urlsplit
@@ -95,7 +95,7 @@ class Web:
         self.first_message, self.on_message, self._present = first_message, on_message, present
         self._pages: Slots[PageSocket] = Slots(MAX_PAGES)
         try:
-            self._files = {path: (_read(folder, name), kind) for path, (name, kind) in FILES.items()}
+            self._files = {path: (Path(folder, name).read_bytes(), kind) for path, (name, kind) in FILES.items()}
             self._files.update(pictures)
             self._sockets = bind_sockets(port, host)
         except (OSError, UnicodeError) as problem:
@@ -217,11 +217,6 @@ class Web:
             return False
         own = socket.gethostname().lower()
         return is_address(name) or name in {"localhost", self.host.lower(), own, f"{own}.local"}
-
-
-def _read(folder: str, name: str) -> bytes:
-    with open(os.path.join(folder, name), "rb") as file:
-        return file.read()
 
 
 def _own_address() -> str:

@@ -19,16 +19,8 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 from ros_world import Ros, end, free_port, make_whole
 
 from pursue_gen.workspace.generate import mission_of
-from pursue_runtime.bundle import (
-    COMMIT,
-    OWN,
-    PREPARE,
-    Order,
-    make_manifest,
-    pack,
-    write_order,
-    write_public_key,
-)
+from pursue_runtime.bundle import COMMIT, PREPARE, Order, pack, write_order, write_public_key
+from pursue_runtime.manifest import OWN, make_manifest
 from tests.waiting import PATIENCE
 from tests.workspace.worlds import files
 

@@ -16,6 +16,7 @@ from pursue_runtime import bundle as mission_bundle
 from pursue_runtime.manager.background import Background, bind
 from pursue_runtime.manager.manager import Manager, RequestLog
 from pursue_runtime.manager.server import Limits, Server
+from pursue_runtime.manifest import make_manifest
 from pursue_runtime.trusted_keys import KeyFolder
 from tests.waiting import PATIENCE, connected, may_close, rest
 
@@ -38,7 +39,7 @@ class Desk:
         (folder / f"{mission_bundle.fingerprint(self.key.public_key())}.pub").write_text(text)
 
     def bundle(self, scenario: str = "example", files: Mapping[str, bytes] = FILES) -> "Sent":
-        manifest = mission_bundle.make_manifest(scenario, "0", ("controller_bot1",), files)
+        manifest = make_manifest(scenario, "0", ("controller_bot1",), files)
         return Sent(manifest.digest, mission_bundle.pack(manifest, files, self.key))
 
     def order(self, ticket: str, action: str = "prepare", mission: str = "a" * 64, body: bytes = b"",

@@ -14,6 +14,7 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tup
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 from pursue_runtime import bundle as desk_bundle
+from pursue_runtime.manifest import make_manifest
 from pursue_runtime.reader import reader as reader_core
 from pursue_runtime.reader.contents import StoreState, read_state
 from pursue_runtime.reader.reader import Reader
@@ -54,7 +55,7 @@ def mission(
         "observer/model.yaml": b"not: [of, this, machine]\n",
         **(more or {}),
     }
-    manifest = desk_bundle.make_manifest(name, "0", ("controller_bot1",), files)
+    manifest = make_manifest(name, "0", ("controller_bot1",), files)
     return Mission(manifest.digest, desk_bundle.pack(manifest, files, signer), files)
 
 
@@ -142,7 +143,7 @@ class Crash(BaseException):
 
 
 class Disk:
-    """Takes the place of the module `os` (and of shutil) in the store: dies or fails at the n-th change."""
+    """Takes the place of `os` (and of shutil) in the store and in `folders`: dies or fails at the n-th change."""
 
     CHANGES = ("mkdir", "makedirs", "rename", "replace", "write", "fsync", "unlink", "rmtree", "open")
 

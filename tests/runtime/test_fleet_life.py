@@ -22,8 +22,10 @@ from hypothesis import strategies as st
 from pursue_gen.tools.transport import sender
 from pursue_gen.tools.transport.client import Answer, Robot, Status, Unreached
 from pursue_runtime import bundle as mission_bundle
+from pursue_runtime import folders
 from pursue_runtime.controller.follower import Follower
 from pursue_runtime.data import DataError
+from pursue_runtime.manifest import make_manifest
 from pursue_runtime.missions import Missions, Source
 from pursue_runtime.reader import reader as reader_core
 from pursue_runtime.reader import store as mission_store
@@ -50,7 +52,7 @@ def made(name: str) -> Any:
     for bot in BOTS:
         files[f"controller_{bot}/strategy.yaml"] = f"# {name}\n".encode() + STRATEGY.replace(b"bot1", bot.encode())
         files[f"controller_{bot}/poses.yaml"] = POSES
-    manifest = mission_bundle.make_manifest(name, "0", tuple(f"controller_{bot}" for bot in BOTS), files)
+    manifest = make_manifest(name, "0", tuple(f"controller_{bot}" for bot in BOTS), files)
     return SimpleNamespace(digest=manifest.digest, bundle=mission_bundle.pack(manifest, files, DESK))
 
 
@@ -327,6 +329,7 @@ def world() -> Iterator[World]:
         patch.setattr(sender, "send_order", made.order)
         patch.setattr(sender, "_side_by_side", one_by_one)
         patch.setattr(mission_store, "os", _QuickDisk())
+        patch.setattr(folders, "os", _QuickDisk())
         try:
             yield made
         finally:

@@ -22,6 +22,7 @@ from pursue_runtime import bundle as mission_bundle
 from pursue_runtime.manager.background import Background, bind
 from pursue_runtime.manager.manager import Manager, RequestLog
 from pursue_runtime.manager.server import Limits, Server
+from pursue_runtime.manifest import OWN
 from pursue_runtime.reader import reader as reader_core
 from pursue_runtime.reader.contents import StoreError
 from pursue_runtime.reader.reader import Reader
@@ -139,7 +140,7 @@ def test_a_mission_under_way_is_played_to_its_end(machines: Any, missions: Any) 
     result = sent(places, missions[0])
     assert result.done, result
     assert {row.outcome for row in result.rows} == {"takes effect as soon as no mission is under way"}
-    assert [robot.current for robot in robots] == [mission_bundle.OWN] * 3
+    assert [robot.current for robot in robots] == [OWN] * 3
     for robot in robots:
         robot.state("won", 2)
     assert all(row.after.current == missions[0][0] for row in wait(places, missions[0][0], PATIENCE, 0.01))

@@ -9,11 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pursue_gen.drawing.layout import yaw_of
 from pursue_gen.language.scenario import Pose
 from pursue_gen.survey.graph import graph_of
 from pursue_gen.survey.grid import Point, grid_of
 from pursue_gen.survey.routes import Route, Routes
-from pursue_gen.survey.times import Drive, turned, window, yaw_of
+from pursue_gen.survey.times import Drive, turned, window
 from tests.survey.maps import ground_of, three_rooms
 
 

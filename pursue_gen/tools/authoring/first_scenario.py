@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Iterable, List, Optional
+from typing import List, Optional
 
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.language.formatter import format_text
@@ -135,11 +135,7 @@ def _assumption(given: Requirements) -> List[str]:
 
 def _agent(name: str, controllable: str, mobile: Optional[int], location: str, part: str) -> str:
     moves = "" if mobile is None else f"mobile {mobile}"
-    return _words((f'agent "{name}"', controllable, moves, f"location {location}", part))
-
-
-def _words(words: Iterable[str]) -> str:
-    return " ".join(word for word in words if word)
+    return " ".join(filter(None, (f'agent "{name}"', controllable, moves, f"location {location}", part)))
 
 
 def _goal(given: Requirements) -> List[str]:

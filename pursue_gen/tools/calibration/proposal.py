@@ -286,4 +286,3 @@ def statement(finding: Finding) -> str:
     if isinstance(what, Way):
         return f"travel {what.agent} from {what.a} to {what.b} takes {window_text(finding.proposed)}"
     return f'event "{what.event}" … duration {window_text(finding.proposed)}'
-

@@ -69,4 +69,3 @@ def compared(
 ) -> Tuple[Verdict, Verdict]:
     """The verdict as it is, slack included, and with the proposal, which needs no slack."""
     return verdict_of(scenario, request, progress), verdict_of(proposed, replace(request, slack=()), progress)
-

@@ -16,6 +16,8 @@ from math import ceil, exp, floor, lgamma, log, sqrt
 from statistics import NormalDist, fmean, stdev
 from typing import List, Optional, Sequence, Tuple
 
+from pursue_gen.thresholds import narrowed
+
 SHARE, CONFIDENCE = 0.99, 0.95
 """Of all later times so many are to be in a window; with so high a probability they are. Not measured."""
 
@@ -143,12 +145,8 @@ def _dropped(count: int, share: float, confidence: float) -> Optional[int]:
     """How many times may be left out at each end; None: there are too few."""
     if confidence_of(count, 0, share) < confidence:
         return None
-    dropped, too_many = 0, count  # the confidence falls with each one that is left out
-    while too_many - dropped > 1:
-        middle = (dropped + too_many) // 2
-        enough = confidence_of(count, middle, share) >= confidence
-        dropped, too_many = (middle, too_many) if enough else (dropped, middle)
-    return dropped
+    # The confidence falls with each one that is left out.
+    return narrowed(0, count, lambda dropped: confidence_of(count, dropped, share) < confidence)[0]
 
 
 @lru_cache(maxsize=None)

@@ -2,40 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Dict, Optional, Tuple
 
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
-from pursue_gen.cli.options import (
-    COMPUTED_POSES,
-    DEFAULT_DISTANCE,
-    EXPLAIN,
-    KEY,
-    KEYS,
-    MISSION,
-    POSES,
-    REQUEST,
-    SPOT_DISTANCE,
-    with_request,
-)
+from pursue_gen.cli.options import EXPLAIN, KEY, KEYS, MISSION, PLACES, REQUEST, Poses, with_request
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.files import shell_quoted
 
 if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest
-    from pursue_runtime.bundle import Manifest
-
-
-@dataclass(frozen=True)
-class Poses:
-    """Where robots are sent: a poses.yaml, whether missing poses are `computed`, metres between robots at one place."""
-
-    file: Optional[Path] = None
-    computed: bool = False
-    spot_distance: float = DEFAULT_DISTANCE
+    from pursue_runtime.manifest import Manifest
 
 
 @guarded
@@ -51,9 +30,7 @@ def bundle(
         None, "--check", metavar="FILE.pursue", help="Show what is in a bundle, and check all of it, instead."
     ),
     request: SolveRequest = REQUEST,
-    poses: Optional[Path] = POSES,
-    computed_poses: bool = COMPUTED_POSES,
-    spot_distance: float = SPOT_DISTANCE,
+    places: Poses = PLACES,
     explain: bool = EXPLAIN,
 ) -> None:
     """Write a mission as one signed file, which robots take: data only, no code.
@@ -79,7 +56,7 @@ def bundle(
     if target.suffix != SUFFIX:
         raise usage_error(f"a bundle cannot be called {target}", f"its name ends with {SUFFIX}")
     private = load_private(key, folder)  # before the work: it may be missing
-    manifest, files = mission_of_scenario(scenario, request, Poses(poses, computed_poses, spot_distance), explain)
+    manifest, files = mission_of_scenario(scenario, request, places, explain)
     write_bytes({target: sign(manifest, files, private)})
     print(target, manifest.digest, sep="\n")
     info(f"The mission of {manifest.scenario} is in {target}: {len(files)} files, signed.")
@@ -110,7 +87,8 @@ def _print_bundle(file: Path, folder: Path) -> None:
     """Prints what is in a bundle as a table, once all of it is checked."""
     from pursue_gen.tools.transport.bundles import read_bundle
     from pursue_gen.tools.transport.keys import public_keys
-    from pursue_runtime.bundle import fingerprint, mission_id
+    from pursue_runtime.bundle import fingerprint
+    from pursue_runtime.manifest import mission_id
 
     known, findings = public_keys(folder)
     show(findings)

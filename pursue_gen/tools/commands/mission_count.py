@@ -4,12 +4,13 @@ seconds. It goes on while one mission takes long, as where a new plan is looked 
 from __future__ import annotations
 
 import contextlib
-import os
 import signal
 import sys
 import threading
 import time
-from typing import Callable, Iterator, List
+from typing import Callable, Iterator
+
+from pursue_gen.cli.progress import TerminalLine
 
 _REDRAW, _INTERVAL = 0.5, 10.0
 """Seconds from one drawing to the next, and from one line to the next where nothing can be redrawn."""
@@ -24,16 +25,11 @@ def counting(all_: int, quiet: bool = False) -> Iterator[Callable[[int], None]]:
     if quiet:
         yield lambda done: None
         return
-    out, start, known, over = sys.stderr, time.monotonic(), [0], threading.Event()
-    redrawn = os.environ.get("TERM", "dumb") != "dumb" and out.isatty()
-    drawn: List[bool] = []
+    line, start, known, over = TerminalLine(sys.stderr), time.monotonic(), [0], threading.Event()
 
     def draw() -> None:
-        while not over.wait(_REDRAW if redrawn else _INTERVAL):
-            text = _in_words(known[0], all_, time.monotonic() - start)
-            out.write(f"\r{text}\033[K" if redrawn else f"{text}\n")
-            out.flush()
-            drawn[:] = [redrawn]
+        while not over.wait(_REDRAW if line.redrawn else _INTERVAL):
+            line.show(_in_words(known[0], all_, time.monotonic() - start))
 
     drawer = threading.Thread(target=draw, daemon=True)
     # Else a Ctrl-C that the main thread has blocked, as where it starts processes, would come by way of this one.
@@ -47,9 +43,7 @@ def counting(all_: int, quiet: bool = False) -> Iterator[Callable[[int], None]]:
     finally:
         over.set()
         drawer.join()
-        if any(drawn):
-            out.write("\r\033[K")
-            out.flush()
+        line.erase()
 
 
 def _in_words(done: int, all_: int, seconds: float) -> str:

@@ -4,26 +4,15 @@ from __future__ import annotations
 
 import shlex
 import sys
-from enum import Enum
 from pathlib import Path
 from typing import Optional
 
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
+from pursue_gen.cli.options import choice
 from pursue_gen.diagnostics import PursueError, usage_error
 from pursue_gen.tools.authoring.requirements import MOST_ROBOTS
-
-
-class Goal(str, Enum):
-    """What a first scenario can be about."""
-
-    REACH = "reach"
-    RESPOND = "respond"
-    AVOID = "avoid"
-    NEVER_WITH = "never-with"
-    CATCH = "catch"
-    PATROL = "patrol"
 
 
 @guarded
@@ -31,7 +20,7 @@ def new(
     name: str = typer.Argument(..., metavar="NAME", help="What it is called: letters, digits and _."),
     robots: Optional[int] = typer.Option(None, metavar="N", min=1, max=MOST_ROBOTS, help="How many robots."),
     places: Optional[str] = typer.Option(None, metavar="A,B,...", help="The places, neighbours side by side."),
-    kind: Optional[Goal] = typer.Option(None, help="What the goal is like."),
+    kind: Optional[str] = choice("kind", None, "What the goal is like."),
     yes: bool = typer.Option(False, "--yes", "-y", help="Ask nothing; take the suggestions for what is not given."),
     force: bool = typer.Option(False, "--force", help="Replace a file that is there already."),
     output: Optional[Path] = typer.Option(
@@ -55,7 +44,7 @@ def new(
         raise usage_error(f"{file} is there already", "choose another name, or replace it with --force")
     dialog = StreamDialog(sys.stdin, sys.stderr, quiet=yes)
     dialog.show("A few questions; Enter takes what stands in brackets, Ctrl-C leaves without writing anything.")
-    text = scenario_text(ask_requirements(dialog, None if kind is None else kind.value, places, robots), str(file))
+    text = scenario_text(ask_requirements(dialog, kind, places, robots), str(file))
     scenario = checked(text, str(file))
     problem: Optional[PursueError] = None
     try:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import sys
-from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 import typer
 
 from pursue_gen.cli.console import guarded
-from pursue_gen.cli.options import REQUEST, SCENARIO, with_request
+from pursue_gen.cli.options import REQUEST, SCENARIO, choice, with_request
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.tools.commands.dialog import LONGEST_LINE
 
@@ -20,22 +19,16 @@ if TYPE_CHECKING:
 _PROMPT = "> "
 
 
-class Side(str, Enum):
-    """Whom the person plays."""
-
-    WORLD = "world"
-    ROBOTS = "robots"
-
-
 @guarded
 @with_request("ends", "reaction", "slack", "limit", "memory")
 def play(
     scenario: Path = SCENARIO,
-    side: Optional[Side] = typer.Option(
+    side: Optional[str] = choice(
+        "side",
         None,
+        "Whom you play: world (everybody but the robots, where the objective can be met) or robots (where it cannot). "
+        "By default what fits.",
         "--as",
-        help="Whom you play: world (everybody but the robots, where the objective can be met) or robots (where it "
-        "cannot). By default what fits.",
     ),
     seed: int = typer.Option(1, metavar="S", min=0, help="For what is drawn: when movements end that you leave alone."),
     request: SolveRequest = REQUEST,
@@ -57,10 +50,10 @@ def play(
     with naming_costs(read, request), progress_line() as progress:
         session = session_of(read, rules, seed, request.options.limits, progress)
     is_robots = isinstance(session.game, CounterPlay)
-    if side is not None and (side is Side.ROBOTS) != is_robots:
+    if side is not None and (side == "robots") != is_robots:
         can, whom = ("cannot", "robots") if is_robots else ("can", "others")
         message = f"with these rules the objective {can} be met, so you can only play the {whom}"
-        raise usage_error(message, f"leave out --as {side.value}, or change the rules")
+        raise usage_error(message, f"leave out --as {side}, or change the rules")
     print("\n".join(opening(session)), flush=True)
     interactive = sys.stdin.isatty()
     while True:

@@ -12,7 +12,7 @@ import typer
 from pursue_gen.cli.console import guarded, info, show, suggest
 from pursue_gen.cli.inputs import scenario_from
 from pursue_gen.cli.on_map import placed_on
-from pursue_gen.cli.options import DEFAULT_DISTANCE, JSON, REQUEST, ROBOT, SCENARIO, with_request
+from pursue_gen.cli.options import DEFAULT_DISTANCE, JSON, REQUEST, ROBOT, SCENARIO, choice, with_request
 from pursue_gen.diagnostics import counted, error, usage_error
 from pursue_gen.files import shell_quoted
 from pursue_gen.outcomes import LimitHit, Lost, Unavailable
@@ -26,9 +26,10 @@ if TYPE_CHECKING:
 
 _NAMES = {"reported": "default", "controllable": "ideal"}
 """What a game is called, by who controls the ends in it."""
-_ENDS = typer.Option(
+_ENDS = choice(
+    "ends",
     None,
-    help="The tables of one game for all controllers: the default game (reported) or the ideal one (controllable: the "
+    "The tables of one game for all controllers: the default game (reported) or the ideal one (controllable: the "
     "thesis's comparison). Without it General is of the ideal game, the others of the default one.",
 )
 _MARK = 'name="generator" content="pursue-gen'

@@ -9,28 +9,17 @@ from typing import TYPE_CHECKING, Optional, Sequence, Tuple
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
-from pursue_gen.cli.options import (
-    COMPUTED_POSES,
-    EXPLAIN,
-    JSON,
-    KEY,
-    KEYS,
-    MISSION,
-    POSES,
-    REQUEST,
-    SPOT_DISTANCE,
-    with_request,
-)
+from pursue_gen.cli.options import EXPLAIN, JSON, KEY, KEYS, MISSION, PLACES, REQUEST, Poses, with_request
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.files import shell_quoted
-from pursue_gen.tools.commands.bundle import Poses, mission_of_scenario
+from pursue_gen.tools.commands.bundle import mission_of_scenario
 
 if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest
     from pursue_gen.tools.transport.client import Robot
     from pursue_gen.tools.transport.keys import Ed25519PrivateKey
     from pursue_gen.tools.transport.sender import Row, Sent
-    from pursue_runtime.bundle import Manifest
+    from pursue_runtime.manifest import Manifest
 
 WHAT = typer.Argument(
     None,
@@ -55,9 +44,7 @@ def send(
     key: Optional[str] = KEY,
     keys: Optional[Path] = KEYS,
     request: SolveRequest = REQUEST,
-    poses: Optional[Path] = POSES,
-    computed_poses: bool = COMPUTED_POSES,
-    spot_distance: float = SPOT_DISTANCE,
+    places: Poses = PLACES,
     explain: bool = EXPLAIN,
     as_json_: bool = JSON,
 ) -> None:
@@ -72,7 +59,6 @@ def send(
     from pursue_gen.tools.transport.send_outcome import after_waiting, success
     from pursue_gen.tools.transport.sender import wait as wait_for
 
-    places = Poses(poses, computed_poses, spot_distance)
     is_default = request.is_default and places == Poses()
     _check_usage(mission, status, back, is_default)
     robots = read_robots(to)

@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 import shlex
 import sys
-from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Dict, Optional
 
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
-from pursue_gen.cli.options import JSON, REQUEST, SCENARIO, with_request
+from pursue_gen.cli.options import JSON, REQUEST, SCENARIO, choice, with_request
 from pursue_gen.diagnostics import counted, usage_error
 from pursue_gen.files import shell_quoted
 from pursue_gen.outcomes import NO
@@ -22,18 +21,7 @@ if TYPE_CHECKING:
     from pursue_gen.tools.simulation.runs import Summary
 
 
-class OpponentKind(str, Enum):
-    """What uncontrollable agents do."""
-
-    RANDOM = "random"
-    WORST = "worst"
-    STILL = "still"
-    MIXED = "mixed"
-
-
-OPPONENT = typer.Option(
-    OpponentKind.MIXED, help="What uncontrollable agents do; mixed: one of the others in each mission."
-)
+OPPONENT = choice("opponent", "mixed", "What uncontrollable agents do; mixed: one of the others in each mission.")
 
 PLAN = typer.Option(None, metavar="FILE", help="Use this plan instead of solving.")
 OPTIONS = ("controllers", "reach_obj", "ends", "reaction", "slack", "plan", "optimize", "within", "limit", "memory")
@@ -48,7 +36,7 @@ def sim(
     faults: str = typer.Option(
         "none", metavar="NAMES", help="What goes wrong: names with commas between them, all, none; help: what there is."
     ),
-    opponent: OpponentKind = OPPONENT,
+    opponent: str = OPPONENT,
     until: Optional[float] = typer.Option(
         None, metavar="UNITS", help="When a mission is over, in time units; 1000 with a goal, else 200."
     ),
@@ -90,12 +78,12 @@ def sim(
         info(sentence)
     with counting(runs, as_json_) as count:
         how: Dict[str, Any] = {"jobs": jobs, "scheduler": scheduler, "progress": count}
-        summary = api.simulate(solved, runs, seed, opponent.value, faults, until, **how)
+        summary = api.simulate(solved, runs, seed, opponent, faults, until, **how)
     if not summary.remaining:
         info("the worst opponent acts at random: the game is too large, or its strategy in stages, to look far ahead")
     if timeline is not None:
         _draw(summary, seed, timeline)
-    facts = {"scenario": read.name, "seed": seed, "opponent": opponent.value, "faults": list(kinds)}
+    facts = {"scenario": read.name, "seed": seed, "opponent": opponent, "faults": list(kinds)}
     _print(summary, facts, as_json_)
     if summary.failed:
         raise typer.Exit(NO)

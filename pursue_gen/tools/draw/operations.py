@@ -25,13 +25,7 @@ from pursue_gen.tools.draw import fields
 from pursue_gen.tools.draw.fields import Values, refused
 from pursue_gen.tools.draw.places import lengths_per_metre, positions, with_all_positions
 from pursue_gen.tools.draw.poses import metres, with_position, with_spot
-from pursue_gen.tools.draw.statement_edits import (
-    added,
-    restated,
-    with_part,
-    without,
-    without_remark,
-)
+from pursue_gen.tools.draw.statement_edits import added, restated, with_part, without, without_remark
 
 ANYBODY = ("any robot", "no robot", "any agent", "no agent")
 """What may stand in the place of an agent's name in some statements."""

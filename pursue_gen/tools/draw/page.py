@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import threading
 from pathlib import Path
 from typing import Any, Callable, Dict, Mapping, Optional
@@ -35,7 +34,7 @@ class DrawPage:
     @property
     def picture(self) -> Optional[bytes]:
         """The floor plan as PNG."""
-        return None if self._floor is None else base64.b64decode(self._floor.uri.partition(",")[2])
+        return None if self._floor is None else self._floor.picture
 
     def answer(self, request: str, body: Mapping[str, Any]) -> Answer:
         """The answer to a request; {"refused": …} where it cannot be met, with the reason in words."""

@@ -7,6 +7,7 @@ import re
 from typing import Optional
 
 from pursue_gen.diagnostics import Span
+from pursue_gen.drawing.layout import yaw_of
 from pursue_gen.language.numbers import rounded_text
 from pursue_gen.language.poses import read_poses, robots_in
 from pursue_gen.language.scenario import Pose
@@ -44,10 +45,7 @@ def with_spot(comment: str, robot: str, x: float, y: float) -> Optional[str]:
 
 def heading(pose: Pose) -> float:
     """The direction in which a robot at this pose looks, in degrees from the x axis, above -180 and up to 180."""
-    yaw = math.degrees(
-        math.atan2(2 * (pose.qw * pose.qz + pose.qx * pose.qy), 1 - 2 * (pose.qy * pose.qy + pose.qz * pose.qz))
-    )
-    rounded = round(yaw, 1) + 0.0
+    rounded = round(math.degrees(yaw_of(pose)), 1) + 0.0
     return 180.0 if rounded == -180.0 else rounded
 
 

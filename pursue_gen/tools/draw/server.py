@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any, Dict, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import usage_error
+from pursue_gen.files import reason_of
 from pursue_gen.tools.draw.page import DrawPage
 from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.slots import Slots
@@ -55,7 +56,7 @@ class DrawServer(ThreadingHTTPServer):
         try:
             super().__init__((HOST, port), _Handler)
         except (OSError, OverflowError) as problem:
-            message = f"the page cannot be served on port {port}: {getattr(problem, 'strerror', None) or problem}"
+            message = f"the page cannot be served on port {port}: {reason_of(problem)}"
             raise usage_error(message, "choose another --port, 0 for any that is free") from None
         files = sorted(_STATIC.iterdir())
         self.files = {file.name: (file.read_bytes(), _KINDS[file.suffix]) for file in files if file.suffix in _KINDS}
@@ -233,4 +234,3 @@ class _Handler(BaseHTTPRequestHandler):
 
     def log_message(self, format: str, *args: Any) -> None:
         """Nothing: what is served is no news, and clients must not write to the terminal."""
-

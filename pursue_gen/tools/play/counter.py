@@ -17,26 +17,7 @@ from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import JointMove, is_bad, is_goal
 from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 from pursue_gen.thresholds import narrowed
-from pursue_gen.tools.play.state import (
-    CHANCE,
-    GRAIN,
-    LOST,
-    OTHERS,
-    ROBOTS,
-    PlannedMove,
-    PlayState,
-    Setup,
-    after,
-    beginning,
-    ended,
-    last_moment,
-    later,
-    open_moves,
-    overdue,
-    own_window,
-    passed,
-    taken,
-)
+from pursue_gen.tools.play.state import CHANCE, GRAIN, LOST, OTHERS, ROBOTS, PlannedMove, PlayState, Setup, after, later
 from pursue_gen.tools.play.world import Offer
 
 _FARTHEST = 32
@@ -66,8 +47,8 @@ class CounterPlay:
             return ()
         agents, game = self.setup.agents, self.setup.game
         found = [
-            Offer(self.setup.owner(move), self.setup.word(move), move, own_window(self.setup, play, move))
-            for move, _ in open_moves(self.setup, play, True)
+            Offer(self.setup.owner(move), self.setup.word(move), move, self.setup.own_window(play, move))
+            for move, _ in self.setup.open_moves(play, True)
             if self.setup.owner(move) in agents and not is_bad(game, move.target)
         ]
         return tuple(sorted(found, key=lambda offer: agents.index(offer.agent)))
@@ -89,21 +70,21 @@ class CounterPlay:
         answer = self._waited(play, rest)
         if answer is not None:
             return self._made(play, answer)
-        last = last_moment(self.setup, play)
+        last = self.setup.last_moment(play)
         if last is not None and (until is None or until > last):
-            return ended(self.setup, passed(play, last))
-        return play if until is None else passed(play, until)
+            return self.setup.ended(play.passed(last))
+        return play if until is None else play.passed(until)
 
     # What the robots want ---------------------------------------------------------------------------------------------
 
     def _order(self, play: PlayState) -> Optional[Answer]:
         """The robots' next move: what the person has ordered; before that, that the goal counts as soon as it can."""
         found: List[Answer] = []
-        for move, open_ in open_moves(self.setup, play, True):
+        for move, open_ in self.setup.open_moves(play, True):
             key = self.setup.owner(move), self.setup.word(move)
             for plan in play.plans:
                 delay = plan.at - play.now
-                if key == (plan.agent, plan.word) and own_window(self.setup, play, move).holds(delay):
+                if key == (plan.agent, plan.word) and self.setup.own_window(play, move).holds(delay):
                     found.append((move, delay))
             earliest = open_.earliest(GRAIN)
             if key[0] not in self.setup.agents and not is_bad(self.setup.game, move.target) and earliest is not None:
@@ -116,15 +97,15 @@ class CounterPlay:
         open_ = window(self.setup.game, play.position, move)
         for late in _lateness(reaction):
             if open_.holds(delay + late) and self._leaves_lost(play, move, delay + late):
-                return taken(self.setup, play, move, play.now + delay + late, ROBOTS)
+                return self.setup.taken(play, move, play.now + delay + late, ROBOTS)
         limit = delay + reaction if room is None else min(delay + reaction, room)
         answer = self._faster(play, limit)
         if answer is not None:
             return self._made(play, answer)
         for late in _lateness(reaction):  # too late to be obeyed
             if not open_.holds(delay + late) and delay + late <= limit and self._stays_lost(play, delay + late):
-                return replace(passed(play, play.now + delay + late), plans=())
-        return taken(self.setup, play, move, play.now + delay, ROBOTS)
+                return replace(play.passed(play.now + delay + late), plans=())
+        return self.setup.taken(play, move, play.now + delay, ROBOTS)
 
     # What the others do -----------------------------------------------------------------------------------------------
 
@@ -144,8 +125,8 @@ class CounterPlay:
             if (delay is None or moment <= delay) and self._leaves_lost(play, move, moment):
                 return move, moment
         if room is not None and (delay is None or room <= delay):
-            at_end = passed(play, play.now + room)
-            if overdue(self.setup, at_end) and ended(self.setup, at_end).status == LOST:
+            at_end = play.passed(play.now + room)
+            if self.setup.overdue(at_end) and self.setup.ended(at_end).status == LOST:
                 return None
         limit = delay
         if limit is None:
@@ -193,10 +174,10 @@ class CounterPlay:
     def _made(self, play: PlayState, answer: Answer) -> PlayState:
         move, delay = answer
         by = CHANCE if self.setup.is_end(move) else OTHERS
-        return taken(self.setup, play, move, play.now + delay, by)
+        return self.setup.taken(play, move, play.now + delay, by)
 
     def _theirs(self, play: PlayState) -> List[Tuple[JointMove, Window]]:
-        moves = open_moves(self.setup, play, False)
+        moves = self.setup.open_moves(play, False)
         return [pair for pair in moves if not pair[0].changes_nothing]
 
     def _preferred(self, driven: _Pairs) -> Iterator[Answer]:
@@ -254,7 +235,7 @@ def counter_game(setup: Setup, memory: int = 0, progress: Optional[Listener] = N
     """
     budget = Budget(Limits(memory=memory), progress, phase=EXPLAINING)
     oracle = PositionSolver(setup.network, setup.objective, setup.rules.reaction, budget)
-    return CounterPlay(setup, oracle, oracle.horizon(beginning(setup).entry, _FARTHEST) if setup.safety else None)
+    return CounterPlay(setup, oracle, oracle.horizon(setup.beginning().entry, _FARTHEST) if setup.safety else None)
 
 
 def _lateness(reaction: Fraction) -> Tuple[Fraction, ...]:

@@ -14,7 +14,7 @@ from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.tools.play.advice import Advisor
 from pursue_gen.tools.play.counter import counter_game
 from pursue_gen.tools.play.session import GameOf, Session
-from pursue_gen.tools.play.state import beginning, setup_of
+from pursue_gen.tools.play.state import setup_of
 from pursue_gen.tools.play.world import StrategyPlay
 from pursue_gen.vocabulary.words import words_of
 
@@ -39,4 +39,4 @@ def session_of(
     else:
         setup = setup_of(found.scenario, rules, found.solution.strategy)
         game = StrategyPlay(setup, Advisor(setup, found.solution.strategy), seed)
-    return Session(game, words_of(setup.scenario, setup.network), beginning(setup))
+    return Session(game, words_of(setup.scenario, setup.network), setup.beginning())

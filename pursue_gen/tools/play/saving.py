@@ -9,7 +9,7 @@ from pursue_gen import __version__
 from pursue_gen.files import write_texts
 from pursue_gen.language.numbers import time_text
 from pursue_gen.solving.rules import rules_text
-from pursue_gen.tools.play.state import LOST, ROBOTS, RUNNING, WON, PlayedMove, PlayState, Setup
+from pursue_gen.tools.play.state import LOST, ROBOTS, RUNNING, WON, PlayState, Setup
 from pursue_runtime.observer.records import FORMAT, format_record
 
 _START = 1000.0
@@ -33,15 +33,11 @@ def _trace(setup: Setup, play: PlayState) -> Iterator[str]:
     """What was begun by agents that nobody controls; ends are the simulator's business."""
     yield f"# A game of {setup.scenario.name} ({rules_text(setup.rules)}), played with pursue-gen {__version__}"
     others = {agent.name for agent in setup.scenario.agents if not agent.controllable}
-    begun = [deed for deed in play.deeds if deed.agent in others and not _ends(setup, deed)]
+    begun = [deed for deed in play.deeds if deed.agent in others and not setup.game.origins[deed.edges[0]].is_end]
     for deed in begun:
         yield f"- {{at: {time_text(deed.at)}, do: '{deed.agent}:{deed.word}'}}"
     if not begun:
         yield "[]"
-
-
-def _ends(setup: Setup, deed: PlayedMove) -> bool:
-    return setup.game.origins[deed.edges[0]].is_end
 
 
 def _journal(setup: Setup, play: PlayState) -> Iterator[Dict[str, Any]]:

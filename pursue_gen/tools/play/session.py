@@ -18,7 +18,7 @@ from pursue_gen.tools.play.advice import Holding
 from pursue_gen.tools.play.counter import CounterPlay
 from pursue_gen.tools.play.saving import save
 from pursue_gen.tools.play.situation import ending, overview, situation, window_text
-from pursue_gen.tools.play.state import RUNNING, PlannedMove, PlayState, Setup, taken
+from pursue_gen.tools.play.state import RUNNING, PlannedMove, PlayState, Setup
 from pursue_gen.tools.play.world import Offer, StrategyPlay
 from pursue_gen.vocabulary.words import Words
 
@@ -119,7 +119,7 @@ def _offered(session: Session, offer: Offer) -> Tuple[str, str]:
 def _intention(session: Session, world: StrategyPlay) -> str:
     play, event = session.play, world.strategy_event(session.play)
     while event is not None and session.setup.owner(event.move) not in session.setup.agents:
-        play = taken(session.setup, play, event.move, event.at, event.by)  # a person sees no difference
+        play = session.setup.taken(play, event.move, event.at, event.by)  # a person sees no difference
         event = None if play.over else world.strategy_event(play)
     if event is None:
         return "The strategy waits for what others do."

@@ -14,7 +14,7 @@ from pursue_gen.language.scenario import Connection
 from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.synthesis.game import Game
 from pursue_gen.tga.objectives import clock_of, stated
-from pursue_gen.tools.play.state import LOST, WON, PlayState, Setup, overdue
+from pursue_gen.tools.play.state import LOST, WON, PlayState, Setup
 from pursue_gen.vocabulary.losses import loss
 from pursue_gen.vocabulary.statuses import courses
 from pursue_gen.vocabulary.words import Words
@@ -98,7 +98,7 @@ def window_text(now: Fraction, open_: Window) -> str:
 
 def ending(setup: Setup, play: PlayState) -> str:
     """How a game ended, in a sentence."""
-    at, late = time_text(play.now), overdue(setup, play)
+    at, late = time_text(play.now), setup.overdue(play)
     if play.status == WON:
         done = dict.fromkeys(ref.shown for reach in setup.scenario.reach for ref in reach.events)
         what = f": {listed(done)}" if done else ""

@@ -15,14 +15,7 @@ from pursue_gen.explanation.position import Position
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.compile_game import compile_game
-from pursue_gen.synthesis.game import (
-    Game,
-    JointMove,
-    initial_state,
-    is_bad,
-    is_goal,
-    joint_moves,
-)
+from pursue_gen.synthesis.game import Game, JointMove, initial_state, is_bad, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import Command, Strategy, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.event_words import event_word
@@ -71,6 +64,94 @@ class Setup:
     def is_end(self, move: JointMove) -> bool:
         """True for the end of a movement or an action."""
         return self.game.origins[move.edges[0]].is_end
+
+    def beginning(self) -> PlayState:
+        """The play at time 0."""
+        return PlayState(Position(initial_state(self.game), (Fraction(0),) * len(self.game.clocks)))
+
+    def open_moves(self, play: PlayState, controllable: bool) -> Iterator[Tuple[JointMove, Window]]:
+        """The moves of one side from here on, with the delays (from now) after which they can be made."""
+        here = play.position
+        for move in joint_moves(self.game, here.state):
+            if move.controllable == controllable:
+                open_ = window(self.game, here, move)
+                if open_.earliest(GRAIN) is not None:  # else it is over, or would break an invariant
+                    yield move, open_
+
+    def own_window(self, play: PlayState, move: JointMove) -> Window:
+        """The delays (from now) in which a move can be made as far as its own automaton goes.
+
+        Another agent that has to move before ends the state of the game, but not what this one may do.
+        """
+        game, here = self.game, play.position
+        mine = game.automata[move.owner].invariants[here.state.locations[move.owner]]
+        result = Window()
+        for i, j, bound in (*((clock, 0, bound) for clock, bound in mine), *move.bounds):
+            if j == 0:
+                result = result.at_most(game.time(bound) - here.clocks[i - 1], is_strict(bound))
+            else:
+                result = result.at_least(-game.time(bound) - here.clocks[j - 1], is_strict(bound))
+        return result
+
+    def last_moment(self, play: PlayState) -> Optional[Fraction]:
+        """The time until which some agent has to move; None: none has to."""
+        room = longest(self.game, play.position)
+        return None if room is None else play.now + room
+
+    def taken(self, play: PlayState, move: JointMove, moment: Fraction, by: str) -> PlayState:
+        """The play after a move at a moment. Plans that cannot be carried out any more are dropped.
+
+        Where the objective can be lost by nobody's doing then, as where two meet that must not, it is lost at once.
+        """
+        there = after(play.entry, move, moment - play.since)
+        status = WON if is_goal(self.game, there.state) else LOST if is_bad(self.game, there.state) else RUNNING
+        deed = PlayedMove(moment, self.owner(move), self.word(move), by, there, move.edges)
+        fresh = PlayState(there, moment, moment, status, (*play.deeds, deed))
+        lost = None if fresh.over else self._broken(fresh)
+        if lost is not None:
+            return self.taken(fresh, lost, moment, OTHERS)
+        kept = (plan for plan in play.plans if not (plan.agent == deed.agent and plan.word == deed.word))
+        return replace(fresh, plans=() if fresh.over else tuple(plan for plan in kept if self.possible(fresh, plan)))
+
+    def _broken(self, play: PlayState) -> Optional[JointMove]:
+        """The move of an objective that is broken now, as the observer of a mission takes it; None where none is."""
+        watching = {name for name, _ in self.objective.bad}
+        for move, open_ in self.open_moves(play, False):
+            edge = self.game.origins[move.edges[0]]
+            if self.owner(move) in watching and edge.sync is None and open_.holds(Fraction(0)):
+                return move if is_bad(self.game, move.target) else None
+        return None
+
+    def possible(self, play: PlayState, plan: PlannedMove) -> bool:
+        """True if the plan can still be carried out, unless something else happens before."""
+        return any(
+            (self.owner(move), self.word(move)) == (plan.agent, plan.word)
+            and self.own_window(play, move).holds(plan.at - play.now)
+            for move in joint_moves(self.game, play.position.state)
+        )
+
+    def overdue(self, play: PlayState) -> Tuple[str, ...]:
+        """The automata at their bounds now that the others' side cannot move: then the robots ought to."""
+        here, game = play.position, self.game
+        bound = {
+            number
+            for number, automaton in enumerate(game.automata)
+            for clock, limit in automaton.invariants[here.state.locations[number]]
+            if game.time(limit) == here.clocks[clock - 1]
+        }
+        able = {move.owner for move, open_ in self.open_moves(play, False) if open_.holds(Fraction(0))}
+        return tuple(game.automata[number].name for number in sorted(bound - able))
+
+    def ended(self, play: PlayState) -> PlayState:
+        """The play where time cannot go on and no agent can move as it must: who is to blame has lost.
+
+        With a goal to reach, it is not reached: the robots have lost. Else whoever is overdue and could only be moved
+        by the robots' side has lost it for them.
+        """
+        names = self.overdue(play)
+        ours = {agent.name for agent in self.scenario.agents if agent.controllable}
+        blame = not self.safety or any(name in ours or name not in self.agents for name in names)
+        return replace(play, status=LOST if blame else STUCK)
 
 
 @dataclass(frozen=True)
@@ -129,6 +210,11 @@ class PlayState:
         """True when the game has ended."""
         return self.status != RUNNING
 
+    def passed(self, moment: Fraction) -> PlayState:
+        """The play at a later moment, when nothing has happened in between."""
+        assert moment >= self.now
+        return replace(self, now=moment)
+
 
 def setup_of(scenario: Scenario, rules: Rules, strategy: Optional[Strategy] = None) -> Setup:
     """The setup of a scenario; `strategy`: the one that is played, whose automata are in the network.
@@ -137,11 +223,6 @@ def setup_of(scenario: Scenario, rules: Rules, strategy: Optional[Strategy] = No
     network, objective = played(translate(scenario), rules), scenario_objective(scenario)
     network = network if strategy is None else with_automata_of(network, strategy)
     return Setup(scenario, rules, network, objective, compile_game(network, objective))
-
-
-def beginning(setup: Setup) -> PlayState:
-    """The play at time 0."""
-    return PlayState(Position(initial_state(setup.game), (Fraction(0),) * len(setup.game.clocks)))
 
 
 def later(position: Position, delay: Fraction) -> Position:
@@ -155,101 +236,3 @@ def after(here: Position, move: JointMove, delay: Fraction) -> Position:
     for clock in move.resets:
         clocks[clock - 1] = Fraction(0)
     return Position(move.target, tuple(clocks))
-
-
-def open_moves(setup: Setup, play: PlayState, controllable: bool) -> Iterator[Tuple[JointMove, Window]]:
-    """The moves of one side from here on, with the delays (from now) after which they can be made."""
-    here = play.position
-    for move in joint_moves(setup.game, here.state):
-        if move.controllable == controllable:
-            open_ = window(setup.game, here, move)
-            if open_.earliest(GRAIN) is not None:  # else it is over, or would break an invariant
-                yield move, open_
-
-
-def own_window(setup: Setup, play: PlayState, move: JointMove) -> Window:
-    """The delays (from now) in which a move can be made as far as its own automaton goes.
-
-    Another agent that has to move before ends the state of the game, but not what this one may do.
-    """
-    game, here = setup.game, play.position
-    mine = game.automata[move.owner].invariants[here.state.locations[move.owner]]
-    result = Window()
-    for i, j, bound in (*((clock, 0, bound) for clock, bound in mine), *move.bounds):
-        if j == 0:
-            result = result.at_most(game.time(bound) - here.clocks[i - 1], is_strict(bound))
-        else:
-            result = result.at_least(-game.time(bound) - here.clocks[j - 1], is_strict(bound))
-    return result
-
-
-def last_moment(setup: Setup, play: PlayState) -> Optional[Fraction]:
-    """The time until which some agent has to move; None: none has to."""
-    room = longest(setup.game, play.position)
-    return None if room is None else play.now + room
-
-
-def passed(play: PlayState, moment: Fraction) -> PlayState:
-    """The play at a later moment, when nothing has happened in between."""
-    assert moment >= play.now
-    return replace(play, now=moment)
-
-
-def taken(setup: Setup, play: PlayState, move: JointMove, moment: Fraction, by: str) -> PlayState:
-    """The play after a move at a moment. Plans that cannot be carried out any more are dropped.
-
-    Where the objective can be lost by nobody's doing then, as where two meet that must not, it is lost at once.
-    """
-    there = after(play.entry, move, moment - play.since)
-    status = WON if is_goal(setup.game, there.state) else LOST if is_bad(setup.game, there.state) else RUNNING
-    deed = PlayedMove(moment, setup.owner(move), setup.word(move), by, there, move.edges)
-    fresh = PlayState(there, moment, moment, status, (*play.deeds, deed))
-    lost = None if fresh.over else _broken(setup, fresh)
-    if lost is not None:
-        return taken(setup, fresh, lost, moment, OTHERS)
-    kept = (plan for plan in play.plans if not (plan.agent == deed.agent and plan.word == deed.word))
-    return replace(fresh, plans=() if fresh.over else tuple(plan for plan in kept if possible(setup, fresh, plan)))
-
-
-def _broken(setup: Setup, play: PlayState) -> Optional[JointMove]:
-    """The move of an objective that is broken now, as the observer of a mission takes it; None where none is."""
-    watching = {name for name, _ in setup.objective.bad}
-    for move, open_ in open_moves(setup, play, False):
-        edge = setup.game.origins[move.edges[0]]
-        if setup.owner(move) in watching and edge.sync is None and open_.holds(Fraction(0)):
-            return move if is_bad(setup.game, move.target) else None
-    return None
-
-
-def possible(setup: Setup, play: PlayState, plan: PlannedMove) -> bool:
-    """True if the plan can still be carried out, unless something else happens before."""
-    return any(
-        (setup.owner(move), setup.word(move)) == (plan.agent, plan.word)
-        and own_window(setup, play, move).holds(plan.at - play.now)
-        for move in joint_moves(setup.game, play.position.state)
-    )
-
-
-def overdue(setup: Setup, play: PlayState) -> Tuple[str, ...]:
-    """The automata at their bounds now that the others' side cannot move: then the robots ought to."""
-    here, game = play.position, setup.game
-    bound = {
-        number
-        for number, automaton in enumerate(game.automata)
-        for clock, limit in automaton.invariants[here.state.locations[number]]
-        if game.time(limit) == here.clocks[clock - 1]
-    }
-    able = {move.owner for move, open_ in open_moves(setup, play, False) if open_.holds(Fraction(0))}
-    return tuple(game.automata[number].name for number in sorted(bound - able))
-
-
-def ended(setup: Setup, play: PlayState) -> PlayState:
-    """The play where time cannot go on and no agent can move as it must: who is to blame has lost.
-
-    With a goal to reach, it is not reached: the robots have lost. Else whoever is overdue and could only be moved by
-    the robots' side has lost it for them.
-    """
-    names = overdue(setup, play)
-    ours = {agent.name for agent in setup.scenario.agents if agent.controllable}
-    blame = not setup.safety or any(name in ours or name not in setup.agents for name in names)
-    return replace(play, status=LOST if blame else STUCK)

@@ -15,21 +15,7 @@ from typing import List, Optional, Tuple
 from pursue_gen.explanation.policy import Window
 from pursue_gen.synthesis.game import JointMove
 from pursue_gen.tools.play.advice import Advisor
-from pursue_gen.tools.play.state import (
-    CHANCE,
-    GRAIN,
-    OTHERS,
-    ROBOTS,
-    PlannedMove,
-    PlayState,
-    Setup,
-    ended,
-    last_moment,
-    open_moves,
-    own_window,
-    passed,
-    taken,
-)
+from pursue_gen.tools.play.state import CHANCE, GRAIN, OTHERS, ROBOTS, PlannedMove, PlayState, Setup
 
 _STEPS = 100
 """Draws are multiples of 1/100 of a time unit where the window allows it: short to read. Not measured."""
@@ -72,11 +58,11 @@ class StrategyPlay:
             return ()
         agents = self.setup.agents
         found: List[Offer] = []
-        for move, _ in open_moves(self.setup, play, False):
+        for move, _ in self.setup.open_moves(play, False):
             owner = self.setup.owner(move)
             if owner in agents:
                 drawn = self._drawn(play, move) if self.setup.is_end(move) else None
-                found.append(Offer(owner, self.setup.word(move), move, own_window(self.setup, play, move), drawn))
+                found.append(Offer(owner, self.setup.word(move), move, self.setup.own_window(play, move), drawn))
         return tuple(sorted(found, key=lambda offer: (offer.drawn is not None, agents.index(offer.agent))))
 
     def planned(self, play: PlayState, plan: PlannedMove) -> PlayState:
@@ -93,12 +79,12 @@ class StrategyPlay:
 
         Where nothing would ever happen (and no time is named), the play itself.
         """
-        event, last = self.next_event(play), last_moment(self.setup, play)
+        event, last = self.next_event(play), self.setup.last_moment(play)
         if event is not None and (until is None or event.at <= until):
-            return self._after(play, taken(self.setup, play, event.move, event.at, event.by))
+            return self._after(play, self.setup.taken(play, event.move, event.at, event.by))
         if last is not None and (until is None or until > last):
-            return ended(self.setup, passed(play, last))
-        return play if until is None else passed(play, until)
+            return self.setup.ended(play.passed(last))
+        return play if until is None else play.passed(until)
 
     def _after(self, before: PlayState, play: PlayState) -> PlayState:
         """The play after a move, with what had been decided before it where that stands."""
@@ -122,7 +108,7 @@ class StrategyPlay:
         """What the person has planned; ends without a plan; and what needs no agent and comes at once."""
         plans = {(plan.agent, plan.word): plan.at for plan in play.plans}
         events: List[Event] = []
-        for move, open_ in open_moves(self.setup, play, False):
+        for move, open_ in self.setup.open_moves(play, False):
             key = self.setup.owner(move), self.setup.word(move)
             moment: Optional[Fraction] = None
             by = OTHERS

@@ -117,7 +117,7 @@ def read_zone(text: str) -> Zone:
 
 def in_time(zones: Iterable[Zone], clocks: Mapping[str, float], back: float, slack: float) -> bool:
     """True if the clocks are in one of the zones, or were within the last `back` time units, but for `slack`."""
-    return any(_in_time(zone, clocks, back, slack) for zone in zones)
+    return any(earliest <= latest for earliest, latest in (_stay(zone, clocks, back, slack) for zone in zones))
 
 
 def due_since(zones: Iterable[Zone], clocks: Mapping[str, float], back: float, least: float = 0.0) -> Optional[float]:
@@ -125,11 +125,6 @@ def due_since(zones: Iterable[Zone], clocks: Mapping[str, float], back: float, l
     None: they did not."""
     stays = (_stay(zone, clocks, back, 0.0) for zone in zones)
     return max((latest for earliest, latest in stays if latest - earliest >= least), default=None)
-
-
-def _in_time(zone: Zone, clocks: Mapping[str, float], back: float, slack: float) -> bool:
-    earliest, latest = _stay(zone, clocks, back, slack)
-    return earliest <= latest
 
 
 def _stay(zone: Zone, clocks: Mapping[str, float], back: float, slack: float) -> Tuple[float, float]:

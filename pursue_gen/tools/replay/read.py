@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import AbstractSet, Any, BinaryIO, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.files import reason_of
 from pursue_gen.tools.replay.bag import MAGIC, Damage, Message, read_bag
 from pursue_gen.tools.replay.journal import Journal, read_journal
 from pursue_gen.tools.replay.record import MissionRecord, RecordedWord, RobotOrder, ordered, read_word
@@ -66,7 +67,7 @@ def read_recording(file: Path, drives: bool = False) -> Union[MissionRecord, Jou
                 raise _unreadable(f"{file} is {what}", "RPL003", _CONVERT)
         content = read_all(file, LARGEST_JOURNAL)
     except (OSError, ValueError) as problem:
-        raise _unreadable(f"cannot read {file}: {getattr(problem, 'strerror', None) or problem}", "RPL001") from None
+        raise _unreadable(f"cannot read {file}: {reason_of(problem)}", "RPL001") from None
     if content.lstrip()[:1] == b"{" or RECORD.match(content):
         journal = read_journal(content)
         if isinstance(journal, str):

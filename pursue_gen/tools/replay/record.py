@@ -110,4 +110,3 @@ def read_word(at: float, text: str, node: str = "") -> RecordedWord:
 def ordered(states: Iterator[SystemState]) -> Tuple[SystemState, ...]:
     """The states by number: a bag has them in the order of their receipt."""
     return tuple(sorted(states, key=lambda state: state.seq))
-

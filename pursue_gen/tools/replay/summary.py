@@ -55,7 +55,7 @@ def verdict(findings: Findings) -> str:
     end += f" ({findings.reason})" if findings.reason and not findings.won else ""
     if findings.kept:
         return f"The mission kept to the model{' and' if findings.won else ', but'} {end}."
-    what = [f"left the model {_times(len(world))} (the world)"] if world else []
+    what = [f"left the model {'once' if len(world) == 1 else f'{len(world)} times'} (the world)"] if world else []
     what += [f"has {len(faults)} faults of nodes or of the recording"] if faults else []
     if not what:
         first = next(finding for finding in findings.findings if finding.level == UNRECORDED)
@@ -105,7 +105,3 @@ def _step(step: ReplayedStep, model: Model) -> str:
     if word is None:
         return what
     return f"{what}, {'command' if step.is_command else 'report'}{f' of {word.node}' if word.node else ''}"
-
-
-def _times(number: int) -> str:
-    return "once" if number == 1 else f"{number} times"

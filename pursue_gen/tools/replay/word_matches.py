@@ -182,4 +182,3 @@ def _impossible(state: SystemState, word: RecordedWord, moves: Moves) -> str:
     if next(moves.of(place, word.event, word.agent), None) is None:
         return f"it cannot happen in state {state.seq}; possible: {', '.join(moves.possible(place)) or 'nothing'}"
     return ""
-

@@ -76,7 +76,8 @@ def _picture(automaton: Automaton) -> List[str]:
 
 
 def _tables(automaton: Automaton) -> str:
-    locations = [_location_row(location, automaton) for location in automaton.locations]
+    begins = automaton.initial
+    locations = [(o.name, _invariant(o), "starts here" if o.name == begins else "") for o in automaton.locations]
     edges = [_edge_row(edge) for edge in automaton.edges]
     heads = ("from", "to", "event", "may be taken when", "sets", "who decides")
     first = table(("location", "invariant", ""), locations, f"Locations of {automaton.name}")
@@ -87,10 +88,6 @@ def _location(ident: str, location: Location, automaton: Automaton) -> str:
     invariant = _invariant(location)
     label = f"{location.name}\n{invariant}" if invariant else location.name
     return node(ident, label, peripheries=2 if location.name == automaton.initial else 1)
-
-
-def _location_row(location: Location, automaton: Automaton) -> Tuple[str, str, str]:
-    return location.name, _invariant(location), "starts here" if location.name == automaton.initial else ""
 
 
 def _invariant(location: Location) -> str:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from pursue_gen import __version__
 from pursue_gen.columns import columns
@@ -134,44 +134,33 @@ def as_json(table: CommandsTable) -> Dict[str, Any]:
     }
 
 
+def cells_of(table: CommandsTable, thesis: bool) -> List[List[object]]:
+    """Heads and rows: counts, each with its share of General's in percent; with the `thesis`'s figures beside ours."""
+    general = table.rows[0]
+    rows: List[List[object]] = [[row.controller, *_shared(row, general)] for row in table.rows]
+    if not (thesis and general.thesis):
+        return [["controller", "commands", "%", "lines", "%"], *rows]
+    for row, cells in zip(table.rows, rows):
+        cells += _shared(row.thesis, general.thesis) if row.thesis else ["-"] * 4
+    return [["controller", "commands", "%", "lines", "%", "thesis: commands", "%", "lines", "%"], *rows]
+
+
+def _shared(one: Union[Row, Figure], general: Union[Row, Figure]) -> List[object]:
+    """The commands and lines of a controller, each with its share as a table shows it."""
+    shares = _percent(one.commands, general.commands), _percent(one.lines, general.lines)
+    commands, lines = ("-" if share is None else f"{share:.1f}" for share in shares)
+    return [one.commands, commands, one.lines, lines]
+
+
 def render_table(table: CommandsTable) -> str:
     """The table as text, columns aligned, with the thesis's figures beside ours where it has some."""
-    general = table.rows[0]
-    heads = ["controller", "commands", "%", "lines", "%"]
-    cells = [
-        [
-            row.controller,
-            f"{row.commands:,}",
-            _percent_text(row.commands, general.commands),
-            f"{row.lines:,}",
-            _percent_text(row.lines, general.lines),
-        ]
-        for row in table.rows
-    ]
-    if general.thesis:
-        heads += ["thesis: commands", "%", "lines", "%"]
-        for row, line in zip(table.rows, cells):
-            line += _thesis_cells(row.thesis, general.thesis)
+    cells = [[f"{cell:,}" if isinstance(cell, int) else str(cell) for cell in row] for row in cells_of(table, True)]
     title = f"{table.scenario}: commands and lines per controller (reachObj's commands: {table.reach_obj}"
     if table.thesis_reach_obj and table.thesis_reach_obj != table.reach_obj:
         title += f"; in the thesis: {table.thesis_reach_obj}"
-    return "\n".join([title + ")", "", *columns([heads, *cells], ruled=True), "", *_NOTES[table.ends]]) + "\n"
-
-
-def _thesis_cells(figure: Optional[Figure], general: Figure) -> List[str]:
-    """The thesis's part of a row."""
-    if figure is None:
-        return ["-"] * 4
-    commands, lines = _percent_text(figure.commands, general.commands), _percent_text(figure.lines, general.lines)
-    return [f"{figure.commands:,}", commands, f"{figure.lines:,}", lines]
+    return "\n".join([title + ")", "", *columns(cells, ruled=True), "", *_NOTES[table.ends]]) + "\n"
 
 
 def _percent(part: int, whole: int) -> Optional[float]:
     """The share in percent, to one place; None of nothing."""
     return round(100 * part / whole, 1) if whole else None
-
-
-def _percent_text(part: int, whole: int) -> str:
-    """The share as the table shows it."""
-    percent = _percent(part, whole)
-    return "-" if percent is None else f"{percent:.1f}"

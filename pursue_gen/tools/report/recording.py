@@ -9,10 +9,8 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.tga.network import Network
 from pursue_gen.tools.replay.record import MissionRecord
 from pursue_gen.tools.simulation.mission import SimulatedMission
-from pursue_gen.tools.simulation.outcome import Settings
-from pursue_gen.tools.simulation.remaining import Remaining
 from pursue_gen.tools.simulation.runs import Case
-from pursue_gen.tools.simulation.stage import Stage, stage_of
+from pursue_gen.tools.simulation.stage import stage_of
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 
@@ -125,21 +123,8 @@ def from_states(
 def simulated(case: Case, seed: int) -> Recording:
     """One simulated mission: the same as `simulation.runs` plays with this seed."""
     stage = stage_of(case.scenario, case.won, case.options)
-    mission = _Recorded(stage, case.settings, seed, case.worst_times())
-    outcome = mission.run()
-    found = from_states(mission.states, case.scenario, case.won.network, f"simulated mission {seed}", outcome.time)
+    mission = SimulatedMission(stage, case.settings, seed, case.worst_times())
+    until, source = mission.run().time, f"simulated mission {seed}"
+    found = from_states(mission.recorder.states, case.scenario, case.won.network, source, until)
     assert found is not None, "a simulated mission starts at once"
     return found
-
-
-class _Recorded(SimulatedMission):
-    """A simulated mission that keeps what its observer publishes."""
-
-    def __init__(self, stage: Stage, settings: Settings, seed: int, remaining: Optional[Remaining]) -> None:
-        super().__init__(stage, settings, seed, remaining)
-        self.states: List[SystemState] = []
-
-    def publish(self, state: SystemState) -> None:
-        """A state of the mission."""
-        self.states.append(state)
-        super().publish(state)

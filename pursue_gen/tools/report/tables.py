@@ -10,7 +10,7 @@ from pursue_gen.language.numbers import at_most
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition.split import ALL, CENTRALIZED, DEDICATED, DISTRIBUTED
 from pursue_gen.solving.solution import Solution
-from pursue_gen.tools.report.commands import CommandsTable, Game, commands_table
+from pursue_gen.tools.report.commands import CommandsTable, Game, cells_of, commands_table
 from pursue_gen.tools.report.html import Section, table
 from pursue_gen.tools.report.thesis_figures import Times, thesis_times
 from pursue_gen.tools.simulation.outcome import Settings
@@ -102,19 +102,8 @@ def section(
 def _policy(one: CommandsTable, first: bool) -> str:
     owner = {DEDICATED: "a controller of their own has them", ALL: "every robot has them"}
     policy = owner.get(one.reach_obj, f"{one.reach_obj} has them")
-    heads = ["controller", "commands", "%", "lines", "%"]
     thesis = one.reach_obj == one.thesis_reach_obj
-    heads += ["thesis: commands", "%", "lines", "%"] if thesis else []
-    general = one.rows[0]
-    rows: List[List[object]] = []
-    for row in one.rows:
-        cells: List[object] = [row.controller, row.commands, _share(row.commands, general.commands)]
-        cells += [row.lines, _share(row.lines, general.lines)]
-        if thesis and general.thesis:
-            figure = row.thesis
-            cells += [figure.commands, _share(figure.commands, general.thesis.commands)] if figure else ["-", "-"]
-            cells += [figure.lines, _share(figure.lines, general.thesis.lines)] if figure else ["-", "-"]
-        rows.append(cells)
+    heads, *rows = cells_of(one, thesis)
     end = ", as in the thesis" if thesis and first else ""
     return table(heads, rows, f"The objective's commands: {policy}{end}")
 
@@ -150,10 +139,6 @@ def _safety(missions: Sequence[Measured]) -> str:
         return "<p>No missions were simulated.</p>"
     heads = ["controllers", "outcome", "missions", "watched for (units)"]
     return table(heads, rows, "Simulated missions, without faults")
-
-
-def _share(part: int, whole: int) -> str:
-    return f"{100 * part / whole:.1f}" if whole else "-"
 
 
 def _number(value: float) -> str:

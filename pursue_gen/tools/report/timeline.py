@@ -57,16 +57,16 @@ class Scale:
 
 def draw(recording: Recording, ident: str = _ID) -> str:
     """The timeline as an SVG document; `ident` begins the ids in it."""
-    words, looks = words_of(recording.scenario, recording.network), agent_looks(recording.agents)
-    scale = _scale(recording, words)
-    rows = _lanes(recording, words, looks, scale, ident)
+    looks = agent_looks(recording.agents)
+    scale = _scale(recording)
+    rows = _lanes(recording, looks, scale, ident)
     height = _TOP + _ROW * len(rows) + 40
     body = [patterns(looks, ident)]
     body += [
         tag("rect", x=0, y=_TOP + _ROW * k, width=scale.width, height=_ROW, fill="#f4f6f8")
         for k in range(1, len(rows), 2)
     ]
-    body += _axis(recording, scale, _TOP + _ROW * len(rows))
+    body += _axis(scale, _TOP + _ROW * len(rows))
     for number, lane in enumerate(rows):
         y = _TOP + _ROW * number
         look = looks.get(lane.agent)
@@ -77,7 +77,9 @@ def draw(recording: Recording, ident: str = _ID) -> str:
     body += _end(recording, scale, _TOP + _ROW * len(rows))
     title = f"{recording.scenario.name}: {recording.source}"
     description = f"{len(recording.steps)} steps in {_time(recording.end)} time units; {ending_text(recording)}"
-    return svg(scale.width, height, title, description, [*_heading(recording, title, description), *body], ident)
+    heading = text(12, 20, title, "pg-strong", "start")
+    subtitle = text(12 + 9.2 * len(title) + 16, 20, description, "pg-small", "start")
+    return svg(scale.width, height, title, description, [heading, subtitle, *body], ident)
 
 
 def section(recording: Recording, ident: str = _ID) -> Section:
@@ -104,15 +106,15 @@ def section(recording: Recording, ident: str = _ID) -> Section:
 # The frame ------------------------------------------------------------------------------------------------------------
 
 
-def _scale(recording: Recording, words: Words) -> Scale:
+def _scale(recording: Recording) -> Scale:
     longest = max(map(len, _names(recording)), default=4)
     left = _SIDE + 30 + 8.4 * min(longest, 21)
     end = max(recording.end, 1.0)
     bars = (
-        (len(_bar_label(recording, words, stay.what)) + 1) * _BOLD / (stay.end - stay.start)
+        (len(_bar_label(recording, stay.what)) + 1) * _BOLD / (stay.end - stay.start)
         for agent in recording.agents
         for stay in stays(recording, agent)
-        if stay.over and stay.end > stay.start and _bar_label(recording, words, stay.what)
+        if stay.over and stay.end > stay.start and _bar_label(recording, stay.what)
     )
     wanted = sorted(bars)
     roomy = end * wanted[int(_LABELLED * (len(wanted) - 1))] if wanted else 0.0
@@ -120,7 +122,7 @@ def _scale(recording: Recording, words: Words) -> Scale:
     return Scale(left, inner / end, left + inner + _RIGHT + 40, end)
 
 
-def _bar_label(recording: Recording, words: Words, location: str) -> str:
+def _bar_label(recording: Recording, location: str) -> str:
     """What stands above a movement or an action; nothing above a wait."""
     symbol = Symbol.of(location)
     first, *others = map(recording.scenario.shown, symbol.parts)
@@ -133,12 +135,7 @@ def _names(recording: Recording) -> List[str]:
     return [*lanes, *conditions(scenario), *_due(scenario).values()]
 
 
-def _heading(recording: Recording, title: str, description: str) -> Iterator[str]:
-    yield text(12, 20, title, "pg-strong", "start")
-    yield text(12 + 9.2 * len(title) + 16, 20, description, "pg-small", "start")
-
-
-def _axis(recording: Recording, scale: Scale, bottom: float) -> Iterator[str]:
+def _axis(scale: Scale, bottom: float) -> Iterator[str]:
     """The marks of the time axis, above and below."""
     step = nice_step(_TICK / scale.unit)
     count = int(scale.end / step + 1e-9)
@@ -163,13 +160,11 @@ def _end(recording: Recording, scale: Scale, bottom: float) -> Iterator[str]:
 # The lanes ------------------------------------------------------------------------------------------------------------
 
 
-def _lanes(
-    recording: Recording, words: Words, looks: Mapping[str, AgentLook], scale: Scale, ident: str
-) -> List[Lane]:
+def _lanes(recording: Recording, looks: Mapping[str, AgentLook], scale: Scale, ident: str) -> List[Lane]:
     lanes = []
     for number, agent in enumerate(recording.agents):
         fill = f"url(#{ident}-fill-{number})"
-        bars = tuple(_agent(recording, words, scale, agent, looks[agent], fill))
+        bars = tuple(_agent(recording, scale, agent, looks[agent], fill))
         lanes.append(Lane(recording.scenario.shown(agent), bars, agent))
     for status in courses(recording.scenario, recording.network):
         texts = ((step.at, status.text(step.locations, step.values) or "") for step in recording.steps)
@@ -186,12 +181,10 @@ def _lanes(
     return lanes
 
 
-def _agent(
-    recording: Recording, words: Words, scale: Scale, agent: str, look: AgentLook, fill: str
-) -> Iterator[str]:
+def _agent(recording: Recording, scale: Scale, agent: str, look: AgentLook, fill: str) -> Iterator[str]:
     """Movements and actions as bars, waits as lines, and what takes no time as marks."""
     found, taken, shown = stays(recording, agent), 0.0, recording.scenario.shown
-    labels = [_bar_label(recording, words, stay.what) for stay in found]
+    labels = [_bar_label(recording, stay.what) for stay in found]
     for number, (stay, label) in enumerate(zip(found, labels)):
         place = shown(Symbol.of(stay.what).parts[-1])
         x = scale.x(stay.start)

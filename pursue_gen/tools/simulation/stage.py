@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Dict, List, Mapping, Optional, Tuple
+from typing import Any, Dict, Mapping, Optional, Tuple
 
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.moves import Arena
@@ -62,7 +62,7 @@ def stage_of(scenario: Scenario, won: Solution, options: Options) -> Stage:
 def stage_from(files: Mapping[str, bytes], scenario: Scenario, won: Solution) -> Stage:
     """The stage of these files of a workspace."""
     data = _data(files)
-    strategies = {name: Strategy(data[f"{name}/strategy.yaml"]) for name in _controllers(data)}
+    strategies = {path.split("/")[0]: Strategy(data[path]) for path in data if path.endswith("/strategy.yaml")}
     people = Strategy(data["UI/people.yaml"]) if "UI/people.yaml" in data else None
     return Stage(
         scenario=scenario,
@@ -84,10 +84,6 @@ def _game(scenario: Scenario, won: Solution, strategies: Mapping[str, Strategy],
     nodes = {**strategies, **({"UI": people} if people else {})}
     orders = of_strategy(won.strategy, ((name, node.agents) for name, node in nodes.items()), won.reaction)
     return Game(scenario, won.network, won.objective, orders, given=True)
-
-
-def _controllers(data: Mapping[str, Any]) -> List[str]:
-    return [path.split("/")[0] for path in data if path.endswith("/strategy.yaml")]
 
 
 def _data(files: Mapping[str, bytes]) -> Dict[str, Any]:

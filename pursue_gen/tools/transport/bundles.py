@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Dict, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
+from pursue_gen.files import reason_of
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import Invalid
 from pursue_gen.solving.request import SolveRequest
@@ -15,7 +16,8 @@ from pursue_gen.tools.transport.poses_file import with_poses
 from pursue_gen.workspace.generate import generate, mission_of
 from pursue_gen.workspace.make import Extras, options_for
 from pursue_gen.workspace.spots import SPOT_DISTANCE
-from pursue_runtime.bundle import LIMIT, Bundle, Keys, Manifest, Refused, fingerprint, pack, unpack
+from pursue_runtime.bundle import LIMIT, Bundle, Keys, Refused, fingerprint, pack, unpack
+from pursue_runtime.manifest import Manifest
 from pursue_runtime.named_files import read_start
 
 SUFFIX = ".pursue"
@@ -74,7 +76,7 @@ def read_bundle(file: Path, keys: Keys) -> Tuple[bytes, Bundle]:
     try:
         content = read_start(file, LIMIT)
     except (OSError, ValueError) as problem:
-        message = f"cannot read {file}: {getattr(problem, 'strerror', None) or problem}"
+        message = f"cannot read {file}: {reason_of(problem)}"
         hint = "name a bundle, such as my_floor.pursue"
         raise PursueError([error("CLI001", message, hint=hint)]) from None
     try:

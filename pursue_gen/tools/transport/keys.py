@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Dict, List, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error, warning
-from pursue_gen.files import write_texts
+from pursue_gen.files import reason_of, write_texts
 from pursue_gen.outcomes import Unavailable
 
 try:
@@ -22,12 +22,7 @@ try:
     from cryptography.hazmat.backends import default_backend
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey as Ed25519PrivateKey
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
-    from cryptography.hazmat.primitives.serialization import (
-        Encoding,
-        NoEncryption,
-        PrivateFormat,
-        load_pem_private_key,
-    )
+    from cryptography.hazmat.primitives.serialization import Encoding, NoEncryption, PrivateFormat, load_pem_private_key
 except ImportError:
     _HINT = "pip install cryptography (Debian, Ubuntu: sudo apt install python3-cryptography)"
     _MISSING = "the Python package cryptography is missing, which signs missions"
@@ -70,7 +65,7 @@ def new_key(name: str, folder: Path, force: bool = False) -> Tuple[Path, Path]:
         hint = "choose another name; or replace it with --force: robots then need the new public key"
         raise PursueError([error("TRN005", f"{there} is there already", hint=hint)]) from None
     except OSError as problem:
-        message = f"cannot write {private}: {problem.strerror or problem}"
+        message = f"cannot write {private}: {reason_of(problem)}"
         raise PursueError([error("CLI003", message, hint="name another folder with --folder")]) from None
     try:
         write_texts({public: write_public_key(key.public_key(), name)})
@@ -152,7 +147,7 @@ def _read_private(file: Path, folder: Path) -> bytes:
     except (OSError, ValueError) as problem:
         names = key_names(folder)
         hint = f"there are: {', '.join(names)}" if names else "make one: pursue-gen keys new NAME"
-        message = f"cannot read the key {file}: {getattr(problem, 'strerror', None) or problem}"
+        message = f"cannot read the key {file}: {reason_of(problem)}"
         raise PursueError([error("TRN002", message, hint=hint)]) from None
 
 
@@ -164,7 +159,7 @@ def load_public(name: str, folder: Path) -> Ed25519PublicKey:
     try:
         key, _ = read_public_key(read_text(public, _LONGEST))
     except (OSError, UnicodeDecodeError, Refused) as problem:
-        message = f"{public} is not a public key: {getattr(problem, 'strerror', None) or problem}"
+        message = f"{public} is not a public key: {reason_of(problem)}"
         hint = f"remove it if {private} is there: keys show then makes it again"
         raise PursueError([error("TRN007", message, hint=hint)]) from None
     if private.exists() and fingerprint(load_private(name, folder).public_key()) != fingerprint(key):

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, Span, error
-from pursue_gen.files import compose_yaml, read_text, span_of
+from pursue_gen.files import compose_yaml, read_text, reason_of, span_of
 from pursue_gen.language.similar import closest
 from pursue_gen.tools.transport.client import PORT, Robot, plain
 from pursue_runtime.named_files import read_all
@@ -116,7 +116,7 @@ class _RobotsReader:
             read_all(place)  # OpenSSL would wait for a pipe
             ssl.create_default_context(cafile=str(place))
         except (OSError, ValueError) as problem:
-            why = "there is no certificate in it" if isinstance(problem, ssl.SSLError) else _reason(problem)
+            why = "there is no certificate in it" if isinstance(problem, ssl.SSLError) else reason_of(problem)
             message = f"the certificate {plain(str(place))} cannot be used: {why}"
             self._wrong("TRN026", message, entries["ca"][1], "name a file in PEM, which begins with -----BEGIN")
         return place
@@ -185,7 +185,3 @@ def _is_port(text: str) -> bool:
 
 def _is_boolean(text: str) -> bool:
     return text.lower() in ("true", "false", "yes", "no", "on", "off")
-
-
-def _reason(problem: Exception) -> str:
-    return str(getattr(problem, "strerror", None) or problem)

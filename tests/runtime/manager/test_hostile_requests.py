@@ -22,6 +22,7 @@ from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Se
 import pytest
 
 from pursue_runtime import bundle as mission_bundle
+from pursue_runtime.manifest import make_manifest
 from pursue_runtime.reader import reader as reader_core
 from pursue_runtime.reader.reader import Reader
 from pursue_runtime.reader.store import Store
@@ -182,7 +183,7 @@ class Attacker:
 
     def malformed(self) -> Hostile:
         """Signed by one who is trusted, and not a mission all the same."""
-        text = mission_bundle.make_manifest("evil", "0", (), {"a/b.yaml": b"format: 1\n"}).text()
+        text = make_manifest("evil", "0", (), {"a/b.yaml": b"format: 1\n"}).text()
         body = self.random.choice([
             self.bytes(2000) + b"x", zipped({"manifest.json": b"0" * (1 << 20)}, zipfile.ZIP_DEFLATED),
             zipped({"manifest.json": text, "signature.json": b"[" * 5000}), zipped({"../../evil.yaml": b"x"}),

@@ -121,7 +121,6 @@ def test_the_word_of_a_controller_that_does_not_receive_the_states_is_dropped(
 ) -> None:
     connected: List[str] = []
     monkeypatch.setattr(observer_module, "is_connected", lambda _, node: node in connected)
-    monkeypatch.setattr(observer_module, "log", lambda *_: None)
     observer.log_soon = lambda *_: None
     observer.last_report = {"controller_bot1": 50.0}
     message = String("bot1:bot1_a2b@4")

@@ -13,7 +13,7 @@ import pytest
 
 from pursue_gen.workspace.generate import mission_of
 from pursue_runtime import trusted_keys as pursue_guard
-from pursue_runtime.manifest import mission_id
+from pursue_runtime.manifest import make_manifest, mission_id
 from pursue_runtime.trusted_keys import KeyFolder, read_keys
 from tests import waiting
 from tests.runtime.reader_stage import (
@@ -207,7 +207,7 @@ def test_data_that_the_nodes_of_this_machine_cannot_read_are_refused(robot: Robo
 
 def test_a_mission_without_a_file_that_this_machine_needs_is_refused(robot: Robot) -> None:
     part = {"controller_bot1/strategy.yaml": STRATEGY}
-    manifest = desk_bundle.make_manifest("part", "0", ("controller_bot1",), part)
+    manifest = make_manifest("part", "0", ("controller_bot1",), part)
     answer = robot.order("prepare", manifest.digest, desk_bundle.pack(manifest, part, DESK))
     assert answer.code == "bad_bundle" and "poses.yaml" in answer.message
 
@@ -223,7 +223,7 @@ def test_what_a_workspace_holds_is_taken_by_every_machine(tmp_path: Path, name: 
     observed = [("observer", name) for name in ("model", "cover", "controllers")]
     for package, file in [*observed, ("UI", "ui"), ("UI", "strategies")]:
         bad = {**data, f"{package}/{file}.yaml": b"format: 1\n"} if file != "ui" else {**data, "UI/ui.yaml": b"7"}
-        worse = desk_bundle.make_manifest(name, "0", manifest.controllers, bad)
+        worse = make_manifest(name, "0", manifest.controllers, bad)
         answer = robot.order("prepare", worse.digest, desk_bundle.pack(worse, bad, DESK))
         assert answer.code == "bad_bundle" and f"{package}/{file}.yaml" in answer.message
 

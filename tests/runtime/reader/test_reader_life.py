@@ -13,6 +13,7 @@ from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
+from pursue_runtime import folders
 from pursue_runtime.reader import store as mission_store
 from pursue_runtime.reader.contents import find_damage
 from tests.runtime.reader_stage import OWN, STRANGER, Crash, Disk, Robot, message, mission
@@ -52,6 +53,7 @@ class Life(RuleBasedStateMachine):
             if at >= 0:
                 disk = Disk(at, fault or None)
                 patch.setattr(mission_store, "os", disk)
+                patch.setattr(folders, "os", disk)
                 patch.setattr(mission_store, "shutil", disk)
             answer = self.robot.reader.on_message(text, self.robot.now)
         if answer is None:
@@ -112,7 +114,9 @@ class Life(RuleBasedStateMachine):
         done = None
         with pytest.MonkeyPatch.context() as patch, contextlib.suppress(Crash):
             if at >= 0:
-                patch.setattr(mission_store, "os", Disk(at))
+                disk = Disk(at)
+                patch.setattr(mission_store, "os", disk)
+                patch.setattr(folders, "os", disk)
             done = self.robot.state(end, self.seq)
         if done is None:
             self.robot.restart()

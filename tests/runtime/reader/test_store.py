@@ -14,7 +14,9 @@ from typing import Any, Dict
 import pytest
 
 from pursue_runtime import bundle as mission_bundle
-from pursue_runtime.bundle import Bundle, mission_file, unpack
+from pursue_runtime import folders
+from pursue_runtime.bundle import Bundle, unpack
+from pursue_runtime.manifest import mission_file
 from pursue_runtime.reader import contents
 from pursue_runtime.reader import store as mission_store
 from pursue_runtime.reader.contents import StoreError, find_damage, table
@@ -112,6 +114,7 @@ def test_a_disk_that_takes_no_more_changes_nothing(robot: Robot, fault: int, mon
         disk = Disk(at, fault)
         with monkeypatch.context() as patch:
             patch.setattr(mission_store, "os", disk)
+            patch.setattr(folders, "os", disk)
             patch.setattr(mission_store, "shutil", disk)
             answer = robot.order("prepare", SECOND.digest, SECOND.bundle)
         if not disk.reached:
@@ -140,6 +143,7 @@ def test_wherever_it_is_killed_there_is_a_whole_mission(tmp_path: Path, monkeypa
         disk = Disk(at)
         with monkeypatch.context() as patch:
             patch.setattr(mission_store, "os", disk)
+            patch.setattr(folders, "os", disk)
             patch.setattr(mission_store, "shutil", disk)
             with contextlib.suppress(Crash):
                 robot.send(THIRD)

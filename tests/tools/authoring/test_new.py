@@ -12,6 +12,7 @@ from unittest import mock
 import pytest
 
 from pursue_gen.cli.app import main
+from pursue_gen.cli.options import WORDS
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import check, load, parse
 from pursue_gen.language.formatter import format_text
@@ -32,7 +33,6 @@ from pursue_gen.tools.authoring.requirements import (
     slow_enough,
 )
 from pursue_gen.tools.commands.dialog import StreamDialog
-from pursue_gen.tools.commands.new import Goal
 
 from .commands import pursue
 
@@ -353,4 +353,4 @@ def test_without_a_verdict_in_time_the_scenario_is_written_and_that_is_reported(
 
 
 def test_the_command_line_knows_every_kind() -> None:
-    assert [goal.value for goal in Goal] == list(KINDS)
+    assert WORDS["kind"] == tuple(KINDS)

@@ -15,7 +15,7 @@ from pursue_gen.solving.rules import IDEAL, Rules
 from pursue_gen.tools.play.counter import CounterPlay
 from pursue_gen.tools.play.games import session_of
 from pursue_gen.tools.play.session import GameOf, Session
-from pursue_gen.tools.play.state import GRAIN, PlannedMove, PlayState, beginning
+from pursue_gen.tools.play.state import GRAIN, PlannedMove, PlayState
 from pursue_gen.tools.play.world import Offer, StrategyPlay
 from pursue_gen.vocabulary.words import words_of
 
@@ -76,7 +76,7 @@ def game(name: str, ideal: bool = False, old: str = "", new: str = "") -> GameOf
 def session(name: str, old: str = "", new: str = "") -> Session:
     """A new session of it."""
     played = game(name, old=old, new=new)
-    return Session(played, words_of(played.setup.scenario, played.setup.network), beginning(played.setup))
+    return Session(played, words_of(played.setup.scenario, played.setup.network), played.setup.beginning())
 
 
 def world(name: str, seed: int, ideal: bool = False) -> StrategyPlay:

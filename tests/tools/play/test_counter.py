@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from players import do, robots, whims
 
-from pursue_gen.tools.play.state import LOST, RUNNING, WON, PlannedMove, PlayState, beginning
+from pursue_gen.tools.play.state import LOST, RUNNING, WON, PlannedMove, PlayState
 
 REACH = (
     ("cage", "", ""),
@@ -28,7 +28,7 @@ def test_in_a_lost_game_the_robots_never_reach_the_goal(
     name: str, old: str, new: str, wishes: List[Tuple[int, int]]
 ) -> None:
     played = robots(name, old, new)
-    table = beginning(played.setup)
+    table = played.setup.beginning()
     for whim in wishes:
         if table.over:
             break
@@ -45,7 +45,7 @@ def test_in_a_lost_safety_game_the_robots_lose_in_time(
 ) -> None:
     played = robots(name, old, new)
     assert played.horizon is not None
-    table = beginning(played.setup)
+    table = played.setup.beginning()
     for whim in wishes:
         table = table if table.over else do(played, table, whim)
     for _ in range(100):
@@ -58,7 +58,7 @@ def test_in_a_lost_safety_game_the_robots_lose_in_time(
 def test_where_losing_takes_long_it_stays_lost_all_the_same(wishes: List[Tuple[int, int]]) -> None:
     played = robots("ecobot/ecobot", "within 46", "within 45")
     assert played.horizon is None
-    table = beginning(played.setup)
+    table = played.setup.beginning()
     for whim in wishes:
         if not table.over:
             table = do(played, table, whim)
@@ -72,7 +72,7 @@ def order(table: PlayState, word: str, at: Fraction) -> PlayState:
 
 def test_an_order_is_carried_out_if_that_helps_nobody() -> None:
     played = robots("cage")
-    table = played.advance(order(beginning(played.setup), "keeper_yard2exit", Fraction(3)))
+    table = played.advance(order(played.setup.beginning(), "keeper_yard2exit", Fraction(3)))
     while table.deeds[-1].agent != "keeper":
         table = played.advance(table)
     assert table.deeds[-1].word == "keeper_yard2exit"
@@ -82,7 +82,7 @@ def test_an_order_is_carried_out_if_that_helps_nobody() -> None:
 
 def test_the_lion_gets_away_when_the_keeper_comes() -> None:
     played = robots("cage")
-    table = order(beginning(played.setup), "keeper_yard2cage", Fraction(2))
+    table = order(played.setup.beginning(), "keeper_yard2cage", Fraction(2))
     for _ in range(30):
         again = played.advance(table)
         if again == table:
@@ -97,7 +97,7 @@ def test_the_lion_gets_away_when_the_keeper_comes() -> None:
 
 def test_going_round_in_circles_is_noticed() -> None:
     played = robots("cage")
-    table = beginning(played.setup)
+    table = played.setup.beginning()
     assert played.repeats(table) is None
     for word in ("keeper_yard2exit", "keeper_exit2yard") * 3:
         while word not in {offer.word for offer in played.offers(table)}:

@@ -11,7 +11,7 @@ from players import do, whims
 
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Strategy, Zone
 from pursue_gen.tools.play.advice import Advisor
-from pursue_gen.tools.play.state import GRAIN, ROBOTS, WON, PlannedMove, beginning, setup_of
+from pursue_gen.tools.play.state import GRAIN, ROBOTS, WON, PlannedMove, setup_of
 from pursue_gen.tools.play.world import StrategyPlay
 from tests.two_stages import solved_in_stages
 
@@ -26,7 +26,7 @@ def test_what_was_decided_stands_when_the_visitor_leaves_meanwhile() -> None:
     met = 0
     for seed in range(20):
         game = played(seed)
-        table = game.advance(beginning(game.setup))  # the objective counts
+        table = game.advance(game.setup.beginning())  # the objective counts
         decided = game.advisor.decision(table)
         event = game.strategy_event(table)
         assert decided is not None and event is not None
@@ -57,7 +57,7 @@ def test_parts_that_are_played_at_the_same_time_do_not_wait_for_each_other() -> 
     ))  # fmt: skip
     for seed in range(20):
         game = StrategyPlay(setup, Advisor(setup, parts), seed)
-        table = game.advance(game.advance(beginning(setup)))
+        table = game.advance(game.advance(setup.beginning()))
         assert {deed.agent for deed in table.deeds} == set(places)
         assert all(1 < deed.at <= 1 + GRAIN + setup.rules.reaction for deed in table.deeds)
         assert game.advisor.decision(table) is None
@@ -71,7 +71,7 @@ def interval(clock: str, low: int, high: Fraction) -> Zone:
 @given(st.integers(0, 999), whims(most=25))
 def test_a_won_game_is_won_whatever_a_person_does(seed: int, wishes: List[Tuple[int, int]]) -> None:
     game = played(seed)
-    table = beginning(game.setup)
+    table = game.setup.beginning()
     for whim in wishes:
         if not table.over:
             table = do(game, table, whim)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from players import do, game, moments, whims, world
 
 from pursue_gen.tools.play.situation import situation
-from pursue_gen.tools.play.state import CHANCE, LOST, OTHERS, ROBOTS, RUNNING, WON, PlannedMove, beginning, last_moment
+from pursue_gen.tools.play.state import CHANCE, LOST, OTHERS, ROBOTS, RUNNING, WON, PlannedMove
 from pursue_gen.tools.play.world import StrategyPlay
 from pursue_gen.vocabulary.words import words_of
 
@@ -26,7 +26,7 @@ def test_a_won_game_is_won_whatever_a_person_does(
     name: str, ideal: bool, seed: int, wishes: List[Tuple[int, int]]
 ) -> None:
     played = world(name, seed, ideal)
-    table = beginning(played.setup)
+    table = played.setup.beginning()
     for whim in wishes:
         if not table.over:
             table = do(played, table, whim)
@@ -41,7 +41,7 @@ def test_a_won_game_is_won_whatever_a_person_does(
 @given(st.sampled_from(SAFE), st.integers(0, 999), whims(most=80))
 def test_a_safe_game_stays_safe_whatever_a_person_does(name: str, seed: int, wishes: List[Tuple[int, int]]) -> None:
     played = world(name, seed)
-    table = beginning(played.setup)
+    table = played.setup.beginning()
     for whim in wishes:
         table = do(played, table, whim)
         assert table.status == RUNNING
@@ -51,11 +51,11 @@ def test_a_safe_game_stays_safe_whatever_a_person_does(name: str, seed: int, wis
 @given(st.sampled_from(REACH + SAFE), st.integers(0, 999), whims(most=30))
 def test_every_step_is_in_its_window_and_in_order(name: str, seed: int, wishes: List[Tuple[int, int]]) -> None:
     played = world(name, seed)
-    table = beginning(played.setup)
+    table = played.setup.beginning()
     for whim in wishes:
         if table.over:
             break
-        last = last_moment(played.setup, table)
+        last = played.setup.last_moment(table)
         after = do(played, table, whim)
         assert table.now <= after.now
         assert last is None or after.now <= last
@@ -68,7 +68,7 @@ def test_every_step_is_in_its_window_and_in_order(name: str, seed: int, wishes: 
 
 def test_looking_again_and_again_changes_nothing() -> None:
     played = world("thesis/scenario_1", 7)
-    through, slowly = beginning(played.setup), beginning(played.setup)
+    through, slowly = played.setup.beginning(), played.setup.beginning()
     while not through.over:
         through = played.advance(through)
     while not slowly.over:
@@ -80,11 +80,11 @@ def test_the_seed_decides_what_nobody_says() -> None:
     plays = set()
     for seed in range(8):
         played = world("thesis/scenario_1", seed)
-        table = beginning(played.setup)
+        table = played.setup.beginning()
         while not table.over:
             table = played.advance(table)
         plays.add(tuple(deed.at for deed in table.deeds))
-        again = beginning(played.setup)
+        again = played.setup.beginning()
         while not again.over:
             again = played.advance(again)
         assert again == table
@@ -93,7 +93,7 @@ def test_the_seed_decides_what_nobody_says() -> None:
 
 def test_a_person_may_say_when_a_movement_ends() -> None:
     played = world("thesis/scenario_1", 1)
-    table = beginning(played.setup)
+    table = played.setup.beginning()
     while not (offers := [offer for offer in played.offers(table) if offer.drawn is not None]):
         table = played.advance(table)
     offer = offers[0]
@@ -108,7 +108,7 @@ def test_a_person_may_say_when_a_movement_ends() -> None:
 
 def test_what_is_planned_for_later_happens_then_and_not_before() -> None:
     played = world("thesis/catch_the_thief", 1)
-    table = beginning(played.setup)
+    table = played.setup.beginning()
     offer = played.offers(table)[0]
     table = played.planned(table, PlannedMove(offer.agent, offer.word, Fraction(7, 2)))
     while not any(deed.agent == "thief" for deed in table.deeds):
@@ -120,7 +120,7 @@ def test_what_is_planned_for_later_happens_then_and_not_before() -> None:
 
 def test_who_did_what_is_reported() -> None:
     played = world("thesis/scenario_1", 1)
-    table = beginning(played.setup)
+    table = played.setup.beginning()
     while not table.over:
         table = played.advance(table)
     assert {deed.by for deed in table.deeds} == {ROBOTS, CHANCE}
@@ -138,7 +138,7 @@ def test_a_strategy_that_does_nothing_would_lose() -> None:
             return None
 
     lazy = replace(played, advisor=Nobody())
-    table = beginning(lazy.setup)
+    table = lazy.setup.beginning()
     offer = next(offer for offer in lazy.offers(table) if offer.word == "newBox")
     table = lazy.planned(table, PlannedMove(offer.agent, offer.word, Fraction(2)))
     while not table.over:
@@ -149,7 +149,7 @@ def test_a_strategy_that_does_nothing_would_lose() -> None:
 @pytest.mark.parametrize("name", SAFE)
 def test_where_nobody_does_anything_nothing_happens(name: str) -> None:
     played = world(name, 1)
-    table = beginning(played.setup)
+    table = played.setup.beginning()
     for _ in range(20):
         after = played.advance(table)
         if after == table:
@@ -162,7 +162,7 @@ def test_where_nobody_does_anything_nothing_happens(name: str) -> None:
 def test_a_partner_is_busy_as_long_as_the_one_who_does_it() -> None:
     played = world("museum/film", 1)
     words = words_of(played.setup.scenario, played.setup.network)
-    table = beginning(played.setup)
+    table = played.setup.beginning()
     while "doing showFilm at hall" not in "".join(situation(played.setup, words, table)):
         table = played.advance(table)
     lines = [line.split(None, 1) for line in situation(played.setup, words, table)]

@@ -24,17 +24,16 @@ from pursue_gen.tools.transport.client import Robot
 from pursue_runtime.bundle import (
     ABORT,
     COMMIT,
-    OWN,
     PREPARE,
     Order,
     Refused,
     fingerprint,
-    make_manifest,
     new_ticket,
     pack,
     read_order,
     unpack,
 )
+from pursue_runtime.manifest import OWN, make_manifest
 from tests.waiting import PATIENCE
 
 KEY = Ed25519PrivateKey.from_private_bytes(bytes(range(32)))

@@ -25,7 +25,8 @@ from pursue_gen.tools.transport.bundles import make_mission, placed, read_bundle
 from pursue_gen.tools.transport.keys import load_private, new_key, public_keys
 from pursue_gen.tools.transport.poses_file import read_poses, with_poses
 from pursue_gen.workspace.spots import SPOT_DISTANCE
-from pursue_runtime.bundle import Bundle, Manifest, fingerprint, make_manifest, mission_file
+from pursue_runtime.bundle import Bundle, fingerprint
+from pursue_runtime.manifest import Manifest, make_manifest, mission_file
 from tests.tools.authoring.commands import Outcome, pursue
 
 SCENARIOS = Path(__file__).resolve().parents[3] / "scenarios"

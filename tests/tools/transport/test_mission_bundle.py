@@ -24,6 +24,7 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 from pursue_gen.workspace.packages import runtime_package
 from pursue_runtime import bundle as mb
+from pursue_runtime.manifest import OWN, Manifest, is_digest, make_manifest, mission_id
 
 KEY = Ed25519PrivateKey.from_private_bytes(bytes(range(32)))
 OTHER = Ed25519PrivateKey.from_private_bytes(bytes(range(1, 33)))
@@ -38,8 +39,8 @@ PATHS = st.builds(lambda package, name: f"{package}/{name}.yaml", NAMES, DATA_NA
 FILE_SETS = st.dictionaries(PATHS, st.binary(max_size=200), min_size=1, max_size=6)
 
 
-def manifest_of(files: Mapping[str, bytes]) -> mb.Manifest:
-    return mb.make_manifest("thief", "0.1.0", ("controller_bot",), files)
+def manifest_of(files: Mapping[str, bytes]) -> Manifest:
+    return make_manifest("thief", "0.1.0", ("controller_bot",), files)
 
 
 def packed(files: Mapping[str, bytes] = FILES, key: Ed25519PrivateKey = KEY) -> bytes:
@@ -85,14 +86,14 @@ def signed_by_hand(there: Mapping[str, bytes], **changes: object) -> bytes:
 
 @given(FILE_SETS, NAMES, st.lists(NAMES, max_size=3))
 def test_what_is_packed_comes_out_whole(files: Dict[str, bytes], scenario: str, controllers: List[str]) -> None:
-    manifest = mb.make_manifest(scenario, "1.2.3", tuple(controllers), files)
+    manifest = make_manifest(scenario, "1.2.3", tuple(controllers), files)
     content = mb.pack(manifest, files, KEY)
     bundle = mb.unpack(content, KEYS)
     assert (bundle.manifest, dict(bundle.files)) == (manifest, files)
     assert bundle.digest == manifest.digest == hashlib.sha256(manifest.text()).hexdigest()
     assert bundle.signed_by == mb.fingerprint(KEY.public_key())
     backwards = dict(reversed(list(files.items())))
-    assert mb.pack(mb.make_manifest(scenario, "1.2.3", tuple(controllers), backwards), backwards, KEY) == content
+    assert mb.pack(make_manifest(scenario, "1.2.3", tuple(controllers), backwards), backwards, KEY) == content
 
 
 def test_the_bytes_are_these_on_every_system() -> None:
@@ -347,7 +348,7 @@ def forged(**changes: object) -> str:
 
 
 DIGESTS = st.binary(min_size=32, max_size=32).map(bytes.hex)
-OWN_TOO = st.one_of(DIGESTS, st.just(mb.OWN))
+OWN_TOO = st.one_of(DIGESTS, st.just(OWN))
 ORDERS = st.one_of(
     st.builds(mb.Order, st.sampled_from(mb.ACTIONS), OWN_TOO, st.text(max_size=60), st.just(TICKET)),
     st.builds(mb.Order, st.just(mb.PREPARE), DIGESTS, NAMES, st.just(TICKET), st.integers(1, 2**40), DIGESTS),
@@ -463,6 +464,6 @@ def test_a_folder_of_keys_is_read_with_what_is_wrong_in_it(tmp_path: Path) -> No
 
 def test_short_names_of_missions() -> None:
     digest = manifest_of(FILES).digest
-    assert mb.mission_id(digest) == digest[:12] and mb.mission_id(mb.OWN) == "own"
-    assert mb.is_digest(digest) and not mb.is_digest(digest.upper()) and not mb.is_digest(None)
-    assert not mb.is_digest(digest + "\n")
+    assert mission_id(digest) == digest[:12] and mission_id(OWN) == "own"
+    assert is_digest(digest) and not is_digest(digest.upper()) and not is_digest(None)
+    assert not is_digest(digest + "\n")

@@ -19,7 +19,7 @@ from pursue_gen.cli.app import main
 from pursue_gen.tools.commands.uploads import upload_lines
 from pursue_gen.tools.transport.client import Robot, Status
 from pursue_gen.tools.transport.send_checks import mission_digest, previous
-from pursue_runtime.bundle import OWN, mission_id
+from pursue_runtime.manifest import OWN, mission_id
 from tests.waiting import PATIENCE
 
 SCENARIO = str(Path(__file__).resolve().parents[3] / "scenarios" / "thesis" / "scenario_1.pur")

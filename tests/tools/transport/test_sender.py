@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.tools.transport.client import Robot, Status
 from pursue_gen.tools.transport.sender import Sent, look, send, wait
-from pursue_runtime.bundle import OWN
+from pursue_runtime.manifest import OWN
 from tests.waiting import PATIENCE
 
 NEW, CONTENT = bundle("catch")
