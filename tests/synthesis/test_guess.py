@@ -16,6 +16,7 @@ from pursue_gen.language import parse
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.proof.checker import verify
 from pursue_gen.solving.due_moves import patrols
+from pursue_gen.solving.group_games import NEEDED, Group, GroupGames
 from pursue_gen.solving.rules import DEFAULT, Rules, played
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.compile_game import compile_game
@@ -353,3 +354,45 @@ def test_the_same_game_gives_the_same_strategy() -> None:
     game = compile_game(network, objective, DEFAULT.reaction)
     first, second = (to_strategy(game, NATIVE.guess(game).blocks) for _ in range(2))
     assert first == second and len(list(islice(first.blocks, 10))) > 5
+
+
+HOSPITAL = """poi "entrance"
+poi "hall"
+poi "ward1"
+poi "ward2"
+poi "pharmacy"
+poi "lab"
+connect entrance and hall distance 4
+connect hall and ward1 distance 6
+connect hall and ward2 distance 8
+connect hall and pharmacy distance 5
+connect hall and lab distance 7
+event "call1" location ward1
+event "help1" location ward1 duration 3
+event "call2" location ward2
+event "help2" location ward2 duration 3
+event "order" location lab
+event "pick" location pharmacy duration 2
+event "drop" location lab duration 2
+rule "drugs": pick before drop
+agent "bob" controllable mobile 1 location entrance can_do help1, help2
+agent "cart" controllable mobile 1 location pharmacy can_do pick, drop
+agent "nurse1" location ward1 can_do call1
+agent "nurse2" location ward2 can_do call2
+agent "doc" location lab can_do order
+objective: if call1 then help1 within 120
+objective: if call2 then help2 within 120
+objective: if order then drop within 160
+objective: bob never_with cart
+objective: patrol entrance every 240 by bob
+"""
+
+
+def test_clocks_that_a_game_does_not_have_tell_no_plays_apart() -> None:
+    # Zones have room for 7 clocks, and this game has 6: what was said of the seventh made a policy wait and act at once.
+    network, objective = game_of(HOSPITAL)
+    group = Group(frozenset(("bob", "cart")), objective.bad)
+    game = GroupGames(network, objective).game(group, frozenset(), NEEDED)
+    strategy, _ = guess(game, objective, DEFAULT.reaction)
+    assert len(game.clocks) == 6 and strategy is not None
+    assert verify(game, objective, strategy, DEFAULT.reaction, closed=True).ok
