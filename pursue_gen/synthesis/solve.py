@@ -80,9 +80,10 @@ def solve(
     `soonest`: for a quick strategy, with more work (see `Engine.solve`). `without_pauses`: against an environment that
     takes none (see `tga.pauses`): what is won so is won, and the strategy names the clocks that it leaves out; what is
     lost so may be won. The other way round, a call that only begins a pause makes commands stale, but not those of a
-    strategy that leaves its clock out: lost is what is lost where such calls are no moves, and between the two nothing
-    is known. `first`: the least work for the game as it is, before searches take turns (see `Engine`); None: all that
-    the limits give it, as searches in turn would use up more than half of that in vain.
+    strategy that leaves its clock out: what is lost with the only pause and without it is lost; where there are
+    several, what is lost where such calls are no moves, and between the two nothing is known. `first`: the least work
+    for the game as it is, before searches take turns (see `Engine`); None: all that the limits give it, as searches in
+    turn would use up more than half of that in vain.
 
     `reaction` is the delay of a command in time units; `progress` is called a few times a second. Raises PursueError
     for networks that the game does not support, LimitHit at a limit, where the engine does not hold the game, and where
@@ -97,12 +98,12 @@ def solve(
         heard = part if without_pauses or not reaction else with_calls_that_are_heard(part)
         if heard is part:
             return Verdict(False, None, stats)
-        work = stats.work
-        for each, free in ((heard, False), (network, True)):
+        work, alone = stats.work, len(pauses(part)) == 1  # a strategy names that one clock, or leaves it out
+        for each, free in ((network, True),) if alone else ((heard, False), (network, True)):
             left = replace(limits.since(start), work=limits.work and max(1, limits.work - work))
             other = solve(each, objective, reaction, engine, left, progress, whole, soonest, free, first)
             work += other.stats.work
-            if other.won is free:
+            if alone or other.won is free:
                 return replace(other, stats=replace(other.stats, work=work))
         message = "no verdict: it is lost to calls that change nothing, but make the robots' commands late"
         hint = "give the limits of time a reaction delay more for each command that is needed"

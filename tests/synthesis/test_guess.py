@@ -389,7 +389,7 @@ objective: patrol entrance every 240 by bob
 
 
 def test_clocks_that_a_game_does_not_have_tell_no_plays_apart() -> None:
-    # Zones have room for 7 clocks, and this game has 6: what was said of the seventh made a policy wait and act at once.
+    # Zones have room for 7 clocks, this game has 6: what was said of the seventh made a policy wait and act at once.
     network, objective = game_of(HOSPITAL)
     group = Group(frozenset(("bob", "cart")), objective.bad)
     game = GroupGames(network, objective).game(group, frozenset(), NEEDED)

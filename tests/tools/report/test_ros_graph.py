@@ -64,7 +64,8 @@ def calls(files: Dict[str, bytes], package: str, script: str, call: str) -> Set[
     """The fixed topics that a node's code names in such calls: its own module, and those that it shares."""
     found = re.search(r"from pursue_runtime.nodes import (\w+)", files[f"src/{package}/scripts/{script}"].decode())
     assert found is not None
-    modules = [found.group(1), "node", *(["exeggutor"] if found.group(1) == "controller" else [])]
+    beside = {"controller": ["exeggutor"], "ui": ["ui_state"]}.get(found.group(1), [])
+    modules = [found.group(1), "node", *beside]
     paths = [f"src/pursue_runtime/src/pursue_runtime/nodes/{module}.py" for module in modules]
     code = "\n".join(files[path].decode() for path in paths)
     for name, what in SHARED.items():
