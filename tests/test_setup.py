@@ -336,4 +336,4 @@ def test_ci_goes_on_to_the_tests_where_they_were_built(ci: Path) -> None:
         (ci / "pursue_gen" / built).touch()  # as good as built: it can be imported
     done = called([ci / ".ci" / "run"], ci, {**os.environ, "PYTHONPATH": str(ci)})
     assert done.returncode == 0, done.stdout
-    assert (ci / "calls").read_text(encoding="utf-8").split() == ["setup", "test", "--retry", "sanitize"]
+    assert (ci / "calls").read_text(encoding="utf-8").split() == ["setup", "test", "--retry", "-m", "sanitize"]
