@@ -60,7 +60,8 @@ template <class Z>
 bool is_canonical(const Z& z) {
     for (int i = 0; i < Z::size; ++i) {
         if (z.at(i, i) != LE_ZERO) return false;
-        if (z.at(0, i) > LE_ZERO && z.at(0, i) < INF<typename Z::raw_t>) return false;  // none: of padding nothing is known
+        // No bound at all: padding of which a policy knows nothing, see synthesis/native/forward.hpp.
+        if (z.at(0, i) > LE_ZERO && z.at(0, i) < INF<typename Z::raw_t>) return false;
         for (int j = 0; j < Z::size; ++j)
             for (int k = 0; k < Z::size; ++k)
                 if (z.at(i, j) > add(z.at(i, k), z.at(k, j))) return false;
