@@ -220,7 +220,8 @@ def _why_it_may_stop_time(
     """Why time may have to stop because of an automaton that nobody commands.
 
     At the end of each stay the environment must be able to lead it away, whatever the variables are; and every stay but
-    the first may last a time unit, so that these moves leave time its way. `places`: where it may be.
+    the first may last a time unit, so that these moves leave time its way. Each stay begins with its clocks at 0, but
+    one at the network's start may not. `places`: where it may be.
     """
     stays = {location.name: location for location in automaton.locations if location.invariant}
     if places.isdisjoint(stays):
@@ -245,9 +246,31 @@ def _why_it_may_stop_time(
         if any(bound.bound < 1 for bound in stays[name].invariant):
             return f"has no time to stay in {name}"
         ways = [edge for edge in automaton.edges if edge.source == name != edge.target and _is_free(edge)]
+        if stay is not None and (name != automaton.initial or not network.start):
+            stay = _with_what_has_passed(arena, stay, clocks, automaton, name, network)
         if stay is None or _left_at(arena, stay, bounds, ways):
             return f"may have to leave {name} and not be able to"
     return ""
+
+
+def _with_what_has_passed(
+    arena: Arena, stay: Dbm, clocks: AbstractSet[str], automaton: Automaton, place: str, network: Network
+) -> Optional[Dbm]:
+    """The points of a stay of the automaton at the place that began with these clocks at 0: any other of its clocks
+    shows as much as they do, unless a move of the stay has reset it alone, and then less by what they show at that move
+    at most."""
+    loops = [edge for edge in automaton.edges if edge.source == edge.target == place]
+    foreign = {name for other in network.automata if other is not automaton for e in other.edges for name in e.resets}
+    found: Optional[Dbm] = stay
+    for bounding in sorted(clocks):
+        for other in sorted(arena.clock.keys() - foreign - {bounding}):
+            most = raw(0, strict=False)
+            for edge in loops:
+                zone = stay.constrained_all(arena.limits(edge.guard.clocks))
+                if zone is not None and other in edge.resets and bounding not in edge.resets:
+                    most = max(most, zone.m[arena.clock[bounding] * arena.dim])
+            found = found and found.constrained(arena.clock[bounding], arena.clock[other], most)
+    return found
 
 
 def _left_at(arena: Arena, stay: Dbm, bounds: Sequence[Bound], ways: Sequence[Edge]) -> List[Dbm]:

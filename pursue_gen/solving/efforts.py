@@ -35,7 +35,7 @@ class Effort:
 EFFORTS = (
     Effort(1_000_000, few=True),
     Effort(10_000_000, game=150_000, joins=False, nobody=True),
-    Effort(30_000_000, game=1_000_000),
+    Effort(30_000_000, game=1_600_000),
     Effort(40_000_000, game=4_000_000, joins=False, pairs=True, varied=True),
     Effort(80_000_000, game=10_000_000, joins=False, varied=True),
     Effort(80_000_000, game=4_000_000),

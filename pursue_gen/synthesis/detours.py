@@ -93,7 +93,7 @@ def _of(
                 or there not in bounded
                 or any(edge.source != here for edge in into[there])
                 or any(edge.target != here or edge.controllable or not is_own(edge) for edge in ends)
-                or not may_be_left(automaton, bounded[there])
+                or not may_be_left(automaton, bounded[there], network)
             ):
                 continue
             others = [edge for edge in into[here] if edge not in begins]

@@ -18,6 +18,7 @@ from pursue_gen.proof.checker import verify
 from pursue_gen.proof.independence import named_part, why_it_matters
 from pursue_gen.proof.relaxed_reachability import live
 from pursue_gen.solving.rules import DEFAULT, IDEAL, Rules, played
+from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
@@ -237,6 +238,54 @@ def test_whoever_may_stop_time_or_is_seen_is_kept(walker: Automaton, why: str) -
     free = replace(network, automata=(goal, _walker(IN, OUT)))
     assert {a.name for a in cone_of_influence(free, REACH).automata} == {"A"}
     assert why_it_matters(free, REACH, part_of(free, {"A"}, {"w"})) == ""
+
+
+REST = Edge("there", "here", Guard((ClockBound("y", ">", 2),)), resets=("y",), controllable=False)
+
+
+def _waves(*bounds: ClockBound, resets: Tuple[str, ...] = ("y",)) -> Edge:
+    return Edge("there", "there", Guard(bounds), resets=resets, controllable=False)
+
+
+@pytest.mark.parametrize(
+    ("walker", "may_stop"),
+    [
+        (_walker(IN, REST), False),
+        (_walker(replace(IN, resets=("z", "y")), REST), False),
+        (_walker(IN, REST, _waves(ClockBound("z", "<", 3))), False),
+        (_walker(IN, REST, _waves(resets=("z", "y"))), False),
+        (_walker(IN, REST, bound=2), True),
+        (_walker(IN, REST, _waves()), True),
+        (_walker(IN, REST, _waves(ClockBound("z", "<=", 3))), True),
+        (_walker(IN, REST, _waves(ClockBound("z", "<", 4))), True),
+        (_walker(IN, replace(REST, guard=Guard((ClockBound("y", "<", 9),)))), True),
+    ],
+)
+def test_who_has_rested_by_the_end_of_a_stay_does_not_stop_time(walker: Automaton, may_stop: bool) -> None:
+    def matters(network: Network) -> bool:
+        kept = {automaton.name for automaton in cone_of_influence(network, REACH).automata}
+        assert (why_it_matters(network, REACH, part_of(network, {"A"}, set())) != "") == (kept == {"A", "walker"})
+        return kept == {"A", "walker"}
+
+    network = Network(("y", "z"), (), (), (GOAL, walker))
+    assert matters(network) == may_stop
+    other = Automaton("other", (Location("on"),), "on", (Edge("on", "on", resets=("y",), controllable=False),))
+    seen = replace(network, automata=(*network.automata, other))
+    assert cone_of_influence(seen, REACH).automata == seen.automata
+    assert why_it_matters(seen, REACH, part_of(seen, {"A", "other"}, set())).startswith("walker")
+    there = replace(network, automata=(GOAL, replace(walker, initial="there")))
+    assert matters(there) == may_stop
+    assert matters(replace(there, start=(Constraint("z", None, Fraction(3), False),)))
+
+
+@pytest.mark.parametrize("does", ["", "can_do shout", "can_do mop"])
+def test_a_visitor_who_is_assumed_to_leave_in_time_does_not_matter(does: str) -> None:
+    """What somebody does at the place itself and takes its time goes on in the stay, which is not seen through."""
+    visitor = f'agent "guest" mobile 2 location hall {does}\nassume: guest leaves shop within 30'
+    scenario = _scenario(visitor)
+    assert _named(scenario) == {"bot", "reachObj", *(["guest"] if "mop" in does else [])}
+    won = solve_scenario(scenario, DEFAULT)
+    assert verify(won.network, won.objective, won.strategy, won.reaction).ok
 
 
 def test_whoever_starts_beyond_its_time_is_kept() -> None:

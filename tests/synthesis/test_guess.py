@@ -108,6 +108,44 @@ def test_a_robot_waits_where_it_will_be_needed(objective: str) -> None:
     assert verify(network, wanted, strategy, DEFAULT.reaction, closed=True).ok
 
 
+GREENHOUSE = """
+poi "shed"
+poi "path"
+poi "herbs"
+poi "gate"
+connect shed and path distance 5
+connect path and herbs distance 6
+connect path and gate distance 2
+event "pick" location herbs duration 6
+event "bring" location gate duration 1
+event "want" location gate
+event "dry" location herbs
+event "water" location herbs duration 2
+event "refill" location shed duration 2
+rule "tank": refill before water
+rule "harvest": pick before bring
+agent "hose" controllable mobile 1 location shed can_do refill, water
+agent "picker" controllable mobile 1 location path can_do pick, bring
+agent "sensor" location herbs can_do dry
+agent "customer" location gate can_do want
+assume: customer does want after 60
+assume: customer waits 60 between want
+objective: if want then bring within {within}
+objective: if dry then water within 120
+objective: hose never_with picker at path
+"""
+
+
+def test_a_robot_does_beforehand_what_has_to_come_first() -> None:
+    """To go to the herbs, pick and come to the gate takes some 30 time units; she may want the next ones after 60."""
+    network, objective, strategy = guessed(GREENHOUSE.format(within=25))
+    assert strategy is not None
+    assert verify(network, objective, strategy, DEFAULT.reaction, closed=True).ok
+    assert guessed(GREENHOUSE.format(within=12))[2] is None
+    early = GREENHOUSE.format(within=25).replace("assume: customer does want after 60\n", "")
+    assert guessed(early)[2] is None, "it has nothing at first"
+
+
 def test_a_robot_that_comes_too_late_to_its_post_is_not_won() -> None:
     fast = LINE.replace("mobile 3", "mobile 1")
     assert guessed(f"{fast}objective: always not guest at b or bot1 at b\n")[2] is not None

@@ -267,8 +267,9 @@ class Dispatch {
         const int post = tasks_.guarded(r, d), robot = duties_.robots()[r];
         if (post < 0 && charges_first(d, r, duty)) return charges(d, enabled, robot, way);
         const int fact = post >= 0 ? post : duty >= 0 ? duties_.done(duty % count_) : tasks_.home(r);
-        if (fact < 0) return -1;
-        const int next = begins(d, enabled, robot, fact, way);
+        const bool prepares = fact < 0 && guess_.idle == Idle::prepares;
+        if (fact < 0 && !prepares) return -1;
+        const int next = prepares ? this->prepares(d, enabled, r, way) : begins(d, enabled, robot, fact, way);
         return next < 0 || can_charge(ended(joints_[next].target(d), robot), robot) ? next : charges(d, enabled, robot, way);
     }
 
@@ -278,6 +279,39 @@ class Dispatch {
         if (duties_.cost(fact) == Duties::NEVER || duties_.cost(fact) == 0) return -1;
         way = duties_.way(fact, robot);
         return command(d, enabled, robot, duties_.first(fact));
+    }
+
+    // The same for an action that has to come before one that robot r is not asked for yet.
+    int prepares(const Discrete& d, const std::vector<int>& enabled, std::size_t r, std::set<int>& way) {
+        const int robot = duties_.robots()[r];
+        for (const int a : duties_.watching())
+            for (const Edge& edge : game_.automata[a].edges) {
+                if (!tasks_.is_for(r, a) || edge.source != d[a] || duties_.is_timed(a, d[a]) || !duties_.is_timed(a, edge.target))
+                    continue;
+                Discrete asked = d;
+                asked[a] = edge.target;
+                if (!needs_another(asked, robot, a)) continue;
+                duties_.look(asked, robot);
+                way = duties_.way(duties_.done(a), robot);
+                return command(d, enabled, robot, duties_.first(duties_.done(a)));
+            }
+        return -1;
+    }
+
+    // Whether a robot does something at a place on its way to the duty of automaton a before it does the duty.
+    bool needs_another(Discrete d, int robot, int a) {
+        std::vector<int> enabled;
+        std::set<int> way;
+        for (int step = 0; step < STEPS_AHEAD; ++step) {
+            joints_.enabled(d, enabled);
+            const int next = begins(d, enabled, robot, duties_.done(a), way);
+            if (next < 0) return false;
+            const Discrete after = ended(joints_[next].target(d), robot);
+            if (!duties_.is_open(after, a)) return false;
+            if (after[robot] == d[robot]) return true;
+            d = after;
+        }
+        return false;
     }
 
     // The same to where it charges next.

@@ -8,8 +8,9 @@ namespace pursue {
 // Which duty is next for a robot.
 enum class Next { in_turn, soonest_due, nearest };
 
-// What a robot does that owes nothing: it stays, goes back to where it began, or to its post.
-enum class Idle { stays, goes_home, goes_to_post };
+// What a robot does that owes nothing: it stays, goes back to where it began, or to its post, or does what has to come before
+// what it will be asked for.
+enum class Idle { stays, goes_home, goes_to_post, prepares };
 
 struct Guess {
     Next next = Next::in_turn;
@@ -37,6 +38,7 @@ inline const std::vector<Guess> GUESSES = {
     {Next::nearest, false},                       {Next::nearest, false, Idle::goes_home},
     {Next::in_turn, true, Idle::stays, 4},        {Next::soonest_due, true, Idle::stays, 4},
     {Next::in_turn, true, Idle::stays, 1, false, false, {}, 0, false, false, true},
+    {Next::in_turn, true, Idle::prepares},        {Next::in_turn, true, Idle::prepares, 16},
 };
 
 // Likewise, where patrols wait until they are due, as late as is won.
