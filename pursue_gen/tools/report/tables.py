@@ -11,7 +11,7 @@ from pursue_gen.partition.split import ALL, CENTRALIZED, DEDICATED, DISTRIBUTED
 from pursue_gen.solving.solution import Solution
 from pursue_gen.tools.report.commands import CommandsTable, Game, cells_of, commands_table
 from pursue_gen.tools.report.html import Section, rendered, table
-from pursue_gen.tools.report.thesis_figures import Times, thesis_times
+from pursue_gen.tools.report.thesis_figures import ThesisTable, thesis_table
 from pursue_gen.tools.simulation.outcome import Settings
 from pursue_gen.tools.simulation.outcome_table import END_TEXTS, driven_words
 from pursue_gen.tools.simulation.runs import Case, Summary, case_of, simulate
@@ -76,7 +76,7 @@ def section(
 ) -> Section:
     """The tables on the page."""
     robots = tuple(agent.name for agent in scenario.agents if agent.is_robot)
-    thesis = thesis_times(scenario.name, robots)
+    thesis = thesis_table(scenario.name, robots)
     ideal, others = [[_policy(one, False) for one in tables[1:] if bool(one.ends) is ends] for ends in (True, False)]
     body = rendered(
         "tables",
@@ -102,7 +102,7 @@ def _policy(one: CommandsTable, first: bool) -> str:
     return table(heads, rows, f"The objective's commands: {policy}{end}")
 
 
-def _times(won: Solution, missions: Sequence[Measured], thesis: Optional[Times]) -> str:
+def _times(won: Solution, missions: Sequence[Measured], thesis: Optional[ThesisTable]) -> str:
     heads = ["", "least", "median", "worst", *(["thesis (seconds)"] if thesis else [])]
     worst = won.guarantee.worst if won.guarantee else None
     rows: List[List[object]] = [["guaranteed", "", "", "not found out" if worst is None else at_most(worst)]]
@@ -112,7 +112,7 @@ def _times(won: Solution, missions: Sequence[Measured], thesis: Optional[Times])
         label = f"simulated, {one.controllers} ({one.summary.missions} missions)"
         found = [_number(v) for row in reached for v in (row.least, row.median, row.worst)] or ["not reached", "", ""]
         if thesis:
-            seconds = thesis.centralized if one.controllers == CENTRALIZED else thesis.distributed
+            seconds = thesis.times.centralized if one.controllers == CENTRALIZED else thesis.times.distributed
             found.append("not reached" if seconds is None else _number(seconds))
         rows.append([label, *found])
     return table(heads, rows, "In time units from the start")
