@@ -8,7 +8,7 @@ monotonic clock. An action goes on from the moment in which it is sent to the wo
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Callable, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import Callable, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Set, Tuple
 
 from pursue_runtime.controller.goal import Goal, Movement
 from pursue_runtime.controller.navigation import Log, Navigation

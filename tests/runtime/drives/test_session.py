@@ -95,7 +95,8 @@ class Robot:
 
     def answer(self, goal: str, status: int) -> None:
         """A result of move_base."""
-        self.session.navigation.on_result(Answer(goal, self.now, status, "no way" if status == ABORTED else ""), self.now)
+        answer = Answer(goal, self.now, status, "no way" if status == ABORTED else "")
+        self.session.navigation.on_result(answer, self.now)
 
 
 def robot(
