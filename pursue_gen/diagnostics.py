@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Dict, Iterable, List, Optional, Tuple
 
+from pursue_runtime.sentences import listed as listed
+
 _WIDEST = 160
 """The most characters of a source line in a message."""
 
@@ -86,12 +88,6 @@ def counted(number: object, noun: str) -> str:
 def units(amount: object) -> str:
     """`1 unit`, `2 units`."""
     return counted(amount, "unit")
-
-
-def listed(names: Iterable[str]) -> str:
-    """`a`, `a and b`, `a, b and c`."""
-    *others, last = names
-    return f"{', '.join(others)} and {last}" if others else last
 
 
 def in_order(diagnostics: Iterable[Diagnostic]) -> Tuple[Diagnostic, ...]:

@@ -13,7 +13,7 @@ import math
 import re
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any, Callable, Dict, Iterator, List, NamedTuple, NoReturn, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, List, NamedTuple, NoReturn, Optional, Tuple, Union
 
 import yaml
 
@@ -100,6 +100,15 @@ def read_json(content: Union[str, bytes], bounds: Bounds = DATA) -> Any:
     except (ValueError, RecursionError) as problem:
         raise BadText(_reason(problem)) from None
     return value
+
+
+def json_object(content: Union[str, bytes], bounds: Bounds = DATA) -> Optional[Dict[str, Any]]:
+    """The object in a JSON text; None for anything else."""
+    try:
+        value = read_json(content, bounds)
+    except BadText:
+        return None
+    return value if isinstance(value, dict) else None
 
 
 def _text(content: Union[str, bytes], bounds: Bounds) -> str:

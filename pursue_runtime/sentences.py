@@ -7,7 +7,7 @@ names there, or their labels; all other words stay as they are.
 from __future__ import annotations
 
 from string import Formatter
-from typing import Callable, List, Optional, Protocol, Set, Tuple
+from typing import Callable, Iterable, List, Optional, Protocol, Set, Tuple
 
 
 class Names(Protocol):
@@ -34,6 +34,12 @@ def marked(name: str) -> str:
 def quoted(text: str) -> str:
     """Return any text as a part of a sentence: nothing in it is marked."""
     return text.replace("{", "{{").replace("}", "}}")
+
+
+def listed(names: Iterable[str], last: str = "and") -> str:
+    """`a`, `a and b`, `a, b and c`; at least one."""
+    *others, end = names
+    return f"{', '.join(others)} {last} {end}" if others else end
 
 
 def as_sentence(text: str) -> str:

@@ -23,10 +23,7 @@ class KeyFolder:
         """Return the current keys by fingerprint; `problems` lists the files that hold none."""
         stamp = self._scan()
         if stamp != self._stamp:
-            try:
-                self._keys, self.problems = read_keys(self.folder)
-            except OSError as problem:
-                self._keys, self.problems = {}, [f"cannot read {self.folder}: {problem.strerror}"]
+            self._keys, self.problems = read_keys(self.folder)
             self._stamp = stamp  # last: another thread may call this meanwhile
         return self._keys
 

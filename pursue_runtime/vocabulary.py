@@ -3,7 +3,7 @@ model). The desk has the same words from here."""
 
 from __future__ import annotations
 
-from typing import NamedTuple, Optional, Sequence, Tuple
+from typing import NamedTuple, Optional, Tuple
 
 from pursue_runtime.event_words import START
 from pursue_runtime.locations import is_action, is_end, is_movement, is_under_way
@@ -94,11 +94,6 @@ def awaited(model: Model, automaton: Automaton, location: str) -> str:
     """What ends what an agent does there, as in `arrive at b`; "" where it does nothing."""
     end = next((edge for edge in automaton.edges_from(location) if is_end(edge.source, edge.target)), None)
     return "" if end is None else deed(model, automaton, end).do
-
-
-def listed(names: Sequence[str], last: str = "and") -> str:
-    """`a`, `a and b`, `a, b and c`; at least one."""
-    return f"{', '.join(names[:-1])} {last} {names[-1]}" if len(names) > 1 else names[0]
 
 
 def not_promised(model: Model) -> str:

@@ -7,7 +7,7 @@ import inspect
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, get_type_hints
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, get_type_hints
 
 import typer
 
@@ -63,62 +63,11 @@ def _spot_distance(metres: float) -> float:
 
 SCENARIO = typer.Argument(..., metavar="SCENARIO", help="A scenario in PuRSUE-ML, by convention *.pur.")
 GAME = "SCENARIO | TGA.xml TCTL.q"
-ENDS = choice(
-    "ends",
-    None,
-    "Who controls the end of a controlled agent's movement or action: reported (the robot tells when it is done; "
-    "the default) or controllable (the plan decides it: the original's game, and UPPAAL-TIGA's).",
-)
-REACTION = typer.Option(
-    None, metavar="UNITS", help="How late a command may take effect, in time units: 0.1 (the default), 1/20, 0 …"
-)
-SLACK = typer.Option(
-    [],
-    metavar="[AGENT=]UNITS",
-    help="A robot, or with AGENT= this one, may end so much later than the model; repeatable.",
-)
-REACH_OBJ = typer.Option(
-    "dedicated",
-    metavar="dedicated|all|ROBOT",
-    help="Who gets the objective's commands: a controller of their own, all, or a robot's.",
-)
-SOLVER = choice(
-    "solver",
-    None,
-    "verifytga: UPPAAL-TIGA's, where you have it, instead of the built-in one; its strategy is proven, too.",
-)
-VERIFYTGA = typer.Option(None, metavar="PATH", help="Where that program is, if not on PATH.")
-OPTIMIZE = choice(
-    "optimize",
-    None,
-    "time: look for the strategy with the least worst-case time to the goal, for some two minutes or as --limit "
-    "says; none: take the first strategy. By default: a quick one that takes little work.",
-)
-WITHIN = typer.Option(
-    None, metavar="UNITS", help="Can the goal be reached within so many time units? A strategy that does, or status 4."
-)
-WHOLE = typer.Option(
-    False,
-    "--whole",
-    help="An experiment: solve the whole game in one piece, agents and rules included that cannot matter.",
-)
 EXPLAIN = typer.Option(
     True,
     "--explain/--no-explain",
     help="Where the objective cannot be met: look for what would change that; where a limit is hit: for what makes the "
     "scenario so large.",
-)
-LIMIT = typer.Option(
-    None,
-    metavar="SECONDS|none",
-    help="Give up after so much processor time (none: never); 60 by default.",
-    callback=_seconds,
-)
-MEMORY = typer.Option(
-    None,
-    metavar="MIB",
-    min=0,
-    help="Give up when so much memory is in use (0: no limit); by default 1024, or 80 % of what is available.",
 )
 MARGIN = typer.Option(
     False,
@@ -126,16 +75,8 @@ MARGIN = typer.Option(
     help="Find the margin however long it takes, and the game's: the largest reaction for which it can be won at all.",
 )
 JSON = typer.Option(False, "--json", help="Print JSON on stdout.")
-PLAN = typer.Option(None, metavar="FILE", help="Use this plan (UPPAAL-TIGA's format) instead of solving.")
-CONTROLLERS = choice("controllers", "distributed", "As for ws.")
 KEY = typer.Option(
     None, "--key", metavar="NAME|PATH", help="Sign with this key; with the only one there is by default."
-)
-POSES = typer.Option(
-    None, metavar="FILE", help="Where the points are on the robots' map: a file like config/poses.yaml of a workspace."
-)
-COMPUTED_POSES = typer.Option(
-    False, "--computed-poses", help="Points without a pose get a computed one: for simulated robots only."
 )
 DEFAULT_DISTANCE = 0.8
 """SPOT_DISTANCE of workspace.spots, which takes long to import."""
@@ -157,29 +98,81 @@ KEYS = typer.Option(
     None, "--keys", metavar="DIR", help="Where the keys are; ~/.config/pursue/keys by default (XDG_CONFIG_HOME)."
 )
 
-_REQUEST: Mapping[str, Tuple[Any, Any]] = {
-    "controllers": (str, CONTROLLERS),
-    "reach_obj": (str, REACH_OBJ),
-    "ends": (Optional[str], ENDS),
-    "reaction": (Optional[str], REACTION),
-    "slack": (List[str], SLACK),
-    "plan": (Optional[Path], PLAN),
-    "solver": (Optional[str], SOLVER),
-    "verifytga": (Optional[Path], VERIFYTGA),
-    "optimize": (Optional[str], OPTIMIZE),
-    "within": (Optional[str], WITHIN),
-    "whole": (bool, WHOLE),
-    "limit": (Optional[str], LIMIT),
-    "memory": (Optional[int], MEMORY),
-}
-"""The options that make a SolveRequest: name of the parameter → its type and its declaration."""
 
-_PLACES: Mapping[str, Tuple[Any, Any]] = {
-    "poses": (Optional[Path], POSES),
-    "computed_poses": (bool, COMPUTED_POSES),
-    "spot_distance": (float, SPOT_DISTANCE),
-}
-"""The options that make `Poses`, in the order of its fields."""
+class _Request:
+    """The options that make a SolveRequest."""
+
+    controllers: str = choice("controllers", "distributed", "As for ws.")
+    reach_obj: str = typer.Option(
+        "dedicated",
+        metavar="dedicated|all|ROBOT",
+        help="Who gets the objective's commands: a controller of their own, all, or a robot's.",
+    )
+    ends: Optional[str] = choice(
+        "ends",
+        None,
+        "Who controls the end of a controlled agent's movement or action: reported (the robot tells when it is done; "
+        "the default) or controllable (the plan decides it: the original's game, and UPPAAL-TIGA's).",
+    )
+    reaction: Optional[str] = typer.Option(
+        None, metavar="UNITS", help="How late a command may take effect, in time units: 0.1 (the default), 1/20, 0 …"
+    )
+    slack: List[str] = typer.Option(
+        [],
+        metavar="[AGENT=]UNITS",
+        help="A robot, or with AGENT= this one, may end so much later than the model; repeatable.",
+    )
+    plan: Optional[Path] = typer.Option(
+        None, metavar="FILE", help="Use this plan (UPPAAL-TIGA's format) instead of solving."
+    )
+    solver: Optional[str] = choice(
+        "solver",
+        None,
+        "verifytga: UPPAAL-TIGA's, where you have it, instead of the built-in one; its strategy is proven, too.",
+    )
+    verifytga: Optional[Path] = typer.Option(None, metavar="PATH", help="Where that program is, if not on PATH.")
+    optimize: Optional[str] = choice(
+        "optimize",
+        None,
+        "time: look for the strategy with the least worst-case time to the goal, for some two minutes or as --limit "
+        "says; none: take the first strategy. By default: a quick one that takes little work.",
+    )
+    within: Optional[str] = typer.Option(
+        None,
+        metavar="UNITS",
+        help="Can the goal be reached within so many time units? A strategy that does, or status 4.",
+    )
+    whole: bool = typer.Option(
+        False,
+        "--whole",
+        help="An experiment: solve the whole game in one piece, agents and rules included that cannot matter.",
+    )
+    limit: Optional[str] = typer.Option(
+        None,
+        metavar="SECONDS|none",
+        help="Give up after so much processor time (none: never); 60 by default.",
+        callback=_seconds,
+    )
+    memory: Optional[int] = typer.Option(
+        None,
+        metavar="MIB",
+        min=0,
+        help="Give up when so much memory is in use (0: no limit); by default 1024, or 80 % of what is available.",
+    )
+
+
+class _Places:
+    """The options that make `Poses`, in the order of its fields."""
+
+    poses: Optional[Path] = typer.Option(
+        None,
+        metavar="FILE",
+        help="Where the points are on the robots' map: a file like config/poses.yaml of a workspace.",
+    )
+    computed_poses: bool = typer.Option(
+        False, "--computed-poses", help="Points without a pose get a computed one: for simulated robots only."
+    )
+    spot_distance: float = SPOT_DISTANCE
 
 
 @dataclass(frozen=True)
@@ -195,7 +188,7 @@ REQUEST: Any = None
 PLACES: Any = None
 """Mark the parameters `request` and `places` of a command, for which `with_request` declares the options."""
 
-MISSION = tuple(name for name in _REQUEST if name != "whole")
+MISSION = tuple(name for name in get_type_hints(_Request) if name != "whole")
 """The options of the commands that generate what robots run."""
 
 
@@ -205,13 +198,13 @@ def with_request(*names: str, **own: Any) -> Callable[[Callable[..., None]], Cal
 
     `own`: declarations of this command that replace the shared ones.
     """
-    groups = {"request": {name: _REQUEST[name] for name in names}, "places": _PLACES}
+    groups = {"request": (_Request, names), "places": (_Places, tuple(get_type_hints(_Places)))}
 
     def decorate(command: Callable[..., None]) -> Callable[..., None]:
         @functools.wraps(command)
         def run(**arguments: Any) -> None:
             if "places" in command.__annotations__:
-                arguments["places"] = Poses(*(arguments.pop(name) for name in _PLACES))
+                arguments["places"] = Poses(*(arguments.pop(name) for name in groups["places"][1]))
             values = {name: arguments.pop(name) for name in names}
             command(request=_request(values), **arguments)
 
@@ -222,10 +215,11 @@ def with_request(*names: str, **own: Any) -> Callable[[Callable[..., None]], Cal
             if parameter.name not in groups:
                 parameters.append(parameter.replace(annotation=types[parameter.name]))
                 continue
-            for name, (kind, option) in groups[parameter.name].items():
-                default = own.get(name, option)
-                parameters.append(inspect.Parameter(name, parameter.kind, default=default, annotation=kind))
-                types[name] = kind
+            declared, wanted = groups[parameter.name]
+            for name in wanted:
+                types[name] = get_type_hints(declared)[name]
+                default = own.get(name, getattr(declared, name))
+                parameters.append(inspect.Parameter(name, parameter.kind, default=default, annotation=types[name]))
         # typer reads both.
         run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined] # only inspect knows it
         run.__annotations__ = types

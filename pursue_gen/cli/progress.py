@@ -45,9 +45,9 @@ class TerminalLine:
 
     def show(self, text: str) -> None:
         """Draws or writes the text, cut where the terminal ends."""
+        self._drawn = self.redrawn  # first: a Ctrl-C may come behind what is written
         self._stream.write(f"\r{text[: _columns(self._stream) - 1]}\033[K" if self.redrawn else f"{text}\n")
         self._stream.flush()
-        self._drawn = self.redrawn
 
     def erase(self) -> None:
         """Leaves the line as it was."""

@@ -6,7 +6,7 @@ import json
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Dict, List, Mapping, Optional, Tuple
+from typing import TYPE_CHECKING, Dict, Iterable, List, Optional, Tuple
 
 import typer
 
@@ -24,13 +24,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Given:
-    """What is surveyed, with what was told of its robots."""
+    """What is surveyed, with what was told of its robots; `copy`: the name of the copy, "" for none."""
 
     floor: Path
     scenario: Path
     sizes: Told
     radius: Optional[float]
     speed: List[str]
+    copy: str
 
 
 @guarded
@@ -76,11 +77,8 @@ def survey(
     target = output or scenario.with_name(f"{scenario.stem}_surveyed.pur")
     for file in [*([] if dry_run else [target]), *([picture] if picture else [])]:
         check_new(file, force)
-    metres = {"--radius": radius, "--clearance": clearance}
-    _check_numbers({name: value for name, value in metres.items() if value is not None}, 0.0)
-    _check_numbers({"--start": start, "--reserve": reserve, "--tolerance": tolerance}, 0.0)
-    _check_numbers({"--time-unit": time_unit, "--turning": turning, "--acceleration": acceleration}, 0.001)
-    _check_numbers({"--unit": unit}, 0.001)
+    _check_numbers(0.0, radius=radius, clearance=clearance, start=start, reserve=reserve, tolerance=tolerance)
+    _check_numbers(0.001, time_unit=time_unit, turning=turning, acceleration=acceleration, unit=unit)
     _check_packages()
     from pursue_gen.survey.make import Options
     from pursue_gen.survey.times import Drive
@@ -88,15 +86,18 @@ def survey(
 
     drive = Drive({}, time_unit, turning, acceleration, start, reserve / 100, tolerance)
     options = Options(clearance=clearance, unit=unit, ways=ways, keep=tuple(map(_pair, keep)), drive=drive)
-    given = _Given(floor, scenario, read_sizes(robot), radius, speed)
-    read, copy, found, size = _surveyed(given, options, "" if dry_run else str(target))
+    given = _Given(floor, scenario, read_sizes(robot), radius, speed, "" if dry_run else str(target))
+    read, copy, found, size = _surveyed(given, options)
     files = {} if dry_run else {target: copy}
     if picture is not None:
         files[picture] = _picture(read, found, floor, size)
     write_bytes(files)
-    _print(found, as_json_)
-    for file in files:
-        info(f"wrote {file}")
+    _print(found, as_json_, files)
+    _go_on(found, as_json_, None if dry_run else target)
+
+
+def _go_on(found: Survey, as_json_: bool, copy: Optional[Path]) -> None:
+    """Prints what comes next; ends the command with status 3 where the `copy` would have errors."""
     if found.errors:
         show(() if as_json_ else found.errors)
         info("The copy has errors. Mend the scenario, first what the map says above, and survey it again:")
@@ -104,8 +105,8 @@ def survey(
         raise ended(Invalid(found.errors))
     if any(way.kept and way.metres is None for way in found.ways):
         info("Ways that could not be measured are as you wrote them: mend what the map says above, and survey again.")
-    elif not dry_run:
-        suggest(f"pursue-gen solve {shell_quoted(target)}")
+    elif copy is not None:
+        suggest(f"pursue-gen solve {shell_quoted(copy)}")
 
 
 def _check_packages() -> None:
@@ -120,7 +121,7 @@ def _check_packages() -> None:
     del numpy, scipy
 
 
-def _surveyed(given: _Given, options: Options, copy_name: str) -> Tuple[Scenario, bytes, Survey, float]:
+def _surveyed(given: _Given, options: Options) -> Tuple[Scenario, bytes, Survey, float]:
     """The scenario, its copy, the survey, and the radius of the largest robot."""
     from pursue_gen.drawing.ground import read_ground
     from pursue_gen.language.parser import read_text
@@ -136,7 +137,7 @@ def _surveyed(given: _Given, options: Options, copy_name: str) -> Tuple[Scenario
     drive = replace(options.drive, speeds=_speeds(given.speed, robots))
     sizes = sizes_of(scenario).with_radius(given.radius)
     ground = read_ground(given.floor, whole=True)
-    found = surveyed(scenario, ground, given.floor.name, replace(options, robots=sizes, drive=drive), copy_name)
+    found = surveyed(scenario, ground, given.floor.name, replace(options, robots=sizes, drive=drive), given.copy)
     copy = found.text.replace("\n", "\r\n") if "\r\n" in text else found.text
     return scenario, copy.encode("utf-8"), found, sizes.largest.radius
 
@@ -148,22 +149,25 @@ def _picture(scenario: Scenario, found: Survey, floor: Path, radius: float) -> b
     return drawn(scenario, found, read_floor(floor), radius).encode("utf-8")
 
 
-def _print(found: Survey, as_json_: bool) -> None:
+def _print(found: Survey, as_json_: bool, files: Iterable[Path]) -> None:
     from pursue_gen.survey.survey_table import as_data, table
 
     if as_json_:
         findings = [as_json(finding) for finding in (*found.findings, *found.errors)]
         print(json.dumps({**as_data(found), "findings": findings}, indent=1))
-        return
-    show(found.findings)
-    for line in table(found):
-        print(line)
+    else:
+        show(found.findings)
+        print(*table(found), sep="\n")
+    for file in files:
+        info(f"wrote {file}")
 
 
-def _check_numbers(values: Mapping[str, float], least: float) -> None:
+def _check_numbers(least: float, **values: Optional[float]) -> None:
+    """Raises PursueError (exit status 2) for options with values below `least`, or too large."""
     for name, value in values.items():
-        if not least <= value <= 1000:
-            raise usage_error(f"{name} is {value:g}", f"expected a number from {least:g} to 1000")
+        if value is not None and not least <= value <= 1000:
+            option = f"--{name.replace('_', '-')}"
+            raise usage_error(f"{option} is {value:g}", f"expected a number from {least:g} to 1000")
 
 
 def _pair(text: str) -> Tuple[str, str]:

@@ -20,11 +20,9 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 from pursue_gen.diagnostics import Diagnostic, PursueError, Span, error, in_order, warning
 from pursue_gen.files import compose_yaml, read_text, span_of
 from pursue_gen.language.similar import closest
+from pursue_runtime.reader.packages import UI_NODES
 
 HERE = "localhost"
-UI_NODES = ("UI", "simulator", "sim_clock", "recorder")
-"""The nodes of the package UI."""
-
 _HOST = re.compile(r"(?=.{1,253}\Z)[A-Za-z0-9]([A-Za-z0-9_-]*[A-Za-z0-9])?(\.[A-Za-z0-9]([A-Za-z0-9_-]*[A-Za-z0-9])?)*")
 _USER = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*", re.ASCII)
 _PATH = re.compile(r"~?/[A-Za-z0-9_./+-]*", re.ASCII)  # ssh gives it to a shell

@@ -46,7 +46,8 @@ def read_part(source: Source) -> MissionPart:
 
 
 class Follower:
-    """Follows the mission of the received states. Without data for that mission, nothing is commanded.
+    """Follows the mission of the received states. Without data for that mission, nothing is commanded. `filter` says
+    which of them count.
 
     `name`: the node's; `package`: under which new plans have its strategy; `again`: it waits for the
     next mission where it came too late; `clock`: of real time.
@@ -65,9 +66,8 @@ class Follower:
         self.scheduler: Optional[CommandScheduler] = None
         self.trouble = self._logged = ""
         self._missions, self._name, self._package, self._log = missions, name, package, log
-        self._filter = StateFilter("", missions.own.mission, again, clock)
-        self._filter.check = self._problem
-        self.count_malformed = self._filter.count_malformed
+        self.filter = StateFilter("", missions.own.mission, again, clock)
+        self.filter.check = self._problem
         self._source: Optional[Source] = None  # where the part was read
         self.plan: Optional[Mapping[str, Any]] = None  # the newest, of whatever mission, until it is learned
 
@@ -77,37 +77,22 @@ class Follower:
 
     def on_state(self, state: SystemState) -> str:
         """Take a state, read the part of its mission if that is another one, and return its class (see StateFilter)."""
-        refused, verdict = self.refused, self._filter.classify(state)
+        refused, verdict = self.filter.refused, self.filter.classify(state)
         if verdict == REFUSED:
-            if self.refused != refused:
-                self._log("err", f"refused {self.refused}")
+            if self.filter.refused != refused:
+                self._log("err", f"refused {self.filter.refused}")
             return verdict
-        if self._filter.clock_set_back and self.part is not None:
+        if self.filter.clock_set_back and self.part is not None:
             self._log("warn", "the observer's clock was set back: earlier states do not count any more")
             self._use(self.part._replace())  # a new scheduler: earlier commands are over
         if verdict == OTHER or (verdict != OLD and (self.part is None or self._moved(state))):
             self._change(state.mission)
-            verdict = self._filter.classify(state) if self.part else OTHER
+            verdict = self.filter.classify(state) if self.part else OTHER
         if verdict == OLD and self.scheduler:
             self.scheduler.counts["old"] += 1
         elif verdict != OLD and state.status == WAITING:
             self.plan = None  # new plans are of missions that run
         return verdict
-
-    @property
-    def refused(self) -> str:
-        """Return why the last state was refused, "" if it was not."""
-        return self._filter.refused
-
-    @property
-    def malformed(self) -> int:
-        """Return how many messages were no states."""
-        return self._filter.malformed
-
-    @property
-    def newest(self) -> Optional[SystemState]:
-        """Return the newest state of any mission."""
-        return self._filter.newest
 
     def reject(self, why: str) -> None:
         """Play nothing: the part that was read cannot be used, for the reason `why`."""
@@ -133,8 +118,8 @@ class Follower:
 
     def report(self) -> Tuple[Optional[SystemState], Optional[CommandScheduler], Optional[MissionPart], str]:
         """Return the newest state of any mission, the scheduler, the part, and what is wrong ("": nothing)."""
-        state = self._filter.newest
-        over = state is not None and state.status in ENDED and not self._filter.joined
+        state = self.filter.newest
+        over = state is not None and state.status in ENDED and not self.filter.joined
         return state, self.scheduler, self.part, self.trouble or ("waits for the next mission" if over else "")
 
     def _change(self, mission: str) -> None:
@@ -165,4 +150,4 @@ class Follower:
         self.part, self.trouble = part, ""
         self.scheduler = CommandScheduler(part.strategy, self._name) if part and part.strategy is not None else None
         if part:
-            self._filter.mission = part.mission
+            self.filter.mission = part.mission

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any, Dict, List, NamedTuple, Optional
 
-from pursue_runtime.bounded import BadText, read_json
+from pursue_runtime.bounded import json_object
 
 DRIVES = "pursue/drives"
 """The topic (std_msgs/String)."""
@@ -55,11 +55,8 @@ def format_drive(drive: Drive) -> str:
 
 def parse_drive(text: str) -> Optional[Drive]:
     """The drive in a text that `format_drive` has written; None for anything else."""
-    try:
-        data = read_json(text)
-    except BadText:
-        return None
-    if not isinstance(data, dict) or data.get("format") != _FORMAT or data.get("outcome") not in OUTCOMES:
+    data = json_object(text)
+    if data is None or data.get("format") != _FORMAT or data.get("outcome") not in OUTCOMES:
         return None
     values: List[Any] = [data.get(key) for key in ("robot", "from", "to", "start", "end")]
     robot, a, b, start, end = values

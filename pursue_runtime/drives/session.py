@@ -8,13 +8,13 @@ monotonic clock. An action goes on from the moment in which it is sent to the wo
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Callable, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import Callable, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Set, Tuple
 
-from pursue_runtime.controller.goal import Answer, Goal, Movement
+from pursue_runtime.controller.goal import Goal, Movement
 from pursue_runtime.controller.navigation import Log, Navigation
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.view import View
-from pursue_runtime.controller.whereabouts import Place, Position
+from pursue_runtime.controller.whereabouts import Place
 from pursue_runtime.drives.actions import DONE, MOST_FAILURES, Act, Acts, location_of
 from pursue_runtime.drives.report import ARRIVED, FAILED, INTERRUPTED, LATE, Drive
 from pursue_runtime.drives.tour import Way, next_way, towards
@@ -83,7 +83,7 @@ class _Leg:
 
 
 class Session:
-    """The drives and actions of one robot.
+    """The drives and actions of one robot; its `navigation` takes results, statuses and positions.
 
     It begins with a drive to `start`, which does not count, unless it is there; so it goes on after a failed one, to
     where that began, or to another place. A robot whose goal another node cancels is left to that; a drive on which
@@ -109,7 +109,7 @@ class Session:
         self.is_over = False
         self.problem = ""  # why it ended before all was driven
         self.measured: Dict[Way, List[float]] = {way: [] for way in plan.ways}
-        self._nav = Navigation(robot, settings, log)
+        self.navigation = Navigation(robot, settings, log)
         self._places, self._start, self._log = places, start, log
         self._failures: Dict[Way, int] = {}
         self._why_failed: Dict[Way, str] = {}
@@ -126,7 +126,7 @@ class Session:
     @property
     def goal(self) -> str:
         """The id of the goal in progress, "" if none."""
-        return self._nav.goal
+        return self.navigation.goal
 
     @property
     def place(self) -> str:
@@ -139,18 +139,6 @@ class Session:
         return self._leg.location if self._leg is not None else ""
 
     # From the robot ---------------------------------------------------------------------------------------------------
-
-    def on_result(self, answer: Answer, now: float) -> None:
-        """Takes a result of move_base."""
-        self._nav.on_result(answer, now)
-
-    def on_status(self, answers: Sequence[Answer], now: float, real: float) -> None:
-        """Takes move_base's status."""
-        self._nav.on_status(answers, now, real)
-
-    def on_position(self, position: Optional[Position], now: float) -> None:
-        """Takes a position on the map; None: it is not published any more."""
-        self._nav.on_position(position, now)
 
     def on_word(self, text: str) -> None:
         """Takes a word on pursue/events: a robot may report by one that it has arrived, from wherever, or failed; and
@@ -181,7 +169,7 @@ class Session:
         assert leg is not None, "a drive has begun"
         goal: Optional[Goal] = None
         if leg.act is None:
-            due = self._nav.due(now, real)
+            due = self.navigation.due(now, real)
             goal, self._word = due.goal, self._word or due.word
         elif not leg.goals:
             leg.goals = 1
@@ -205,7 +193,7 @@ class Session:
             return None
         if self._leg is None:
             return self._next_at
-        moment = self._nav.next_moments()[0] if self._leg.act is None else None
+        moment = self.navigation.next_moments()[0] if self._leg.act is None else None
         limit = self._leg.start + self.plan.limit
         return limit if moment is None else min(moment, limit)
 
@@ -254,13 +242,13 @@ class Session:
             return False
         leg = self._leg
         way_there = Movement(leg.location, self._places[leg.b])
-        self._nav.on_state(View(way_there.location, way_there, seq=self._seq), now)
-        self._nav.start(way_there, now)
+        self.navigation.on_state(View(way_there.location, way_there, seq=self._seq), now)
+        self.navigation.start(way_there, now)
         return True
 
     def _ended(self, leg: _Leg, word: str, now: float) -> Due:
         report = parse_report(word)
-        if report is None and leg.act is None and self._nav.was_taken_back:
+        if report is None and leg.act is None and self.navigation.was_taken_back:
             drive = self._end(leg, INTERRUPTED, "another node sent it elsewhere on its way", now)
             self._place = leg.b  # it is there all the same
             return Due(drive=drive)
@@ -285,7 +273,7 @@ class Session:
         arrived = outcome == ARRIVED
         self._place = leg.b if arrived else ""
         self._acts.arrived()
-        self._nav.on_state(View(self._place, seq=self._seq), now)
+        self.navigation.on_state(View(self._place, seq=self._seq), now)
         if arrived and leg.counts:
             self.measured.setdefault((leg.a, leg.b), []).append(drive.seconds)
             count = sum(min(len(times), self.plan.times) for times in self.measured.values())

@@ -12,7 +12,7 @@ import re
 import time
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
-from pursue_runtime.bounded import DATA, BadText, read_json
+from pursue_runtime.bounded import DATA, json_object
 from pursue_runtime.bundle import LIMIT, ORDER_LENGTH, Order, Refused, read_order
 from pursue_runtime.rate_limited_log import RateLimitedLog
 from pursue_runtime.trusted_keys import KeyFolder
@@ -64,11 +64,8 @@ class RequestRefused(Exception):
 
 def parse_status(text: str) -> Optional[Dict[str, Any]]:
     """The reader's status from its topic; None for anything else that is published there."""
-    try:
-        status = read_json(text, DATA._replace(size=STATUS_LENGTH))
-    except BadText:
-        return None
-    if not isinstance(status, dict) or status.get("format") != 1:
+    status = json_object(text, DATA._replace(size=STATUS_LENGTH))
+    if status is None or status.get("format") != 1:
         return None
     named = isinstance(status.get("robot"), str) and isinstance(status.get("ticket"), str)
     return status if named else None

@@ -58,8 +58,8 @@ class Controller:
                 raise
             self.follower.reject(str(problem))  # the next one may be better
         self.take_up()
-        self.witness = Witness(lambda: self.follower.newest)
-        states = subscribe_states(self.update_state, self.ending, on_malformed=self.follower.count_malformed)
+        self.witness = Witness(lambda: self.follower.filter.newest)
+        states = subscribe_states(self.update_state, self.ending, on_malformed=self.follower.filter.count_malformed)
         subscribe(PLAN, String, self.learn, self.ending, queue_size=10, tcp_nodelay=True)
         Diagnostics(self.report, self.ending, Links(states, ending=self.ending, lost=self.ending.without_master).amend)
 
@@ -164,8 +164,8 @@ class Controller:
             values: Dict[str, object] = {"seq": state.seq if state else "", "mission": part.mission if part else ""}
             values.update(scheduler.counts if scheduler else {})
             values["next_command"] = planned[1].event if planned else ""
-            values["refused"] = refused = self.follower.refused
-            values["malformed"] = self.follower.malformed
+            values["refused"] = refused = self.follower.filter.refused
+            values["malformed"] = self.follower.filter.malformed
         if refused:
             return NodeReport(False, ERROR, f"refused {refused}", values)
         if trouble:

@@ -18,7 +18,7 @@ import os
 import threading
 import time
 from functools import partial
-from typing import Any, Dict, List, Mapping, Optional, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 
 import rosbag
 import rosgraph
@@ -87,7 +87,7 @@ class DriveLegs:
         self._acts = 0  # so many actions were ordered
         self._next_look = self._patient_until = 0.0  # on the monotonic clock
         self._count = 0  # drives in the bag
-        subscribe(EVENTS, String, lambda message: self._take("on_word", message.data), self.ending, queue_size=100)
+        subscribe(EVENTS, String, self._on_word, self.ending, queue_size=100)
         subscribe(STATE, rospy.AnyMsg, self._on_mission, self.ending)
         rospy.on_shutdown(self._stop)
 
@@ -180,7 +180,7 @@ class DriveLegs:
             self._next_look = time.monotonic() + LOOKS
             position = link.look()
             if position is not None or link.has_lost_position:
-                self._take("on_position", position, rospy.get_time())
+                self._on_position(position)
         with self._lock:
             self._carry_out(session.due(rospy.get_time(), time.monotonic()))
             patience = LOOKS if link.looks else 1.0
@@ -251,21 +251,23 @@ class DriveLegs:
     # From the robot ---------------------------------------------------------------------------------------------------
 
     def _on_result(self, answer: Answer) -> None:
-        self._take("on_result", answer, rospy.get_time())
-        self._alarm.set(None, 0.0)
+        self._take(lambda session: session.navigation.on_result(answer, rospy.get_time()))
 
     def _on_statuses(self, answers: List[Answer]) -> None:
-        self._take("on_status", answers, rospy.get_time(), time.monotonic())
+        self._take(lambda session: session.navigation.on_status(answers, rospy.get_time(), time.monotonic()))
 
-    def _on_position(self, position: Position) -> None:
-        self._take("on_position", position, rospy.get_time())
+    def _on_position(self, position: Optional[Position]) -> None:
+        self._take(lambda session: session.navigation.on_position(position, rospy.get_time()), is_due=False)
 
-    def _take(self, what: str, *arguments: Any) -> None:
-        """Passes something to the session, and looks what is due then."""
+    def _on_word(self, message: String) -> None:
+        self._take(lambda session: session.on_word(message.data))
+
+    def _take(self, take: Callable[[Session], None], is_due: bool = True) -> None:
+        """Passes something to the session; looks what `is_due` then."""
         with self._lock:
             if self._robot is not None:
-                getattr(self._robot[2], what)(*arguments)
-        if what != "on_position":
+                take(self._robot[2])
+        if is_due:
             self._alarm.set(None, 0.0)
 
     def _on_mission(self, _: rospy.AnyMsg) -> None:

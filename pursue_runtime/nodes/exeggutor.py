@@ -169,10 +169,7 @@ class Exeggutor:
 
     def _connected(self, name: str) -> None:
         """A robot has connected to its actions: what it has not acknowledged is sent at once."""
-        self._log_lines.do(partial(self._give_again, name))  # rospy holds a lock here
-
-    def _give_again(self, name: str) -> None:
-        self._tell(name, Navigation.give_again)
+        self._log_lines.do(partial(self._tell, name, Navigation.give_again))  # rospy holds a lock here
 
     # From the robots --------------------------------------------------------------------------------------------------
 

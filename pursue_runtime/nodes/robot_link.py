@@ -64,6 +64,22 @@ def needed(package: str, module: str, why: str) -> Any:
         ) from problem
 
 
+def _messages_for(settings: Settings) -> Any:
+    """The messages of the robot's navigation; None where it gets simple goals, and its results do not count."""
+    if settings.navigation == "move_base_flex":
+        return needed("mbf_msgs", "mbf_msgs.msg", "navigation: move_base_flex")
+    why = "goals:=action" if settings.goals == "action" else "ends:=result"
+    return needed("move_base_msgs", "move_base_msgs.msg", why) if settings.uses_results else None
+
+
+def _tf_for(settings: Settings) -> Any:
+    """tf, where positions come from it; None where it is missing, and they come from a pose as well."""
+    if "tf" not in settings.sources:
+        return None
+    with contextlib.suppress(*([DataError] if "pose" in settings.sources else [])):  # one of them is enough
+        return needed("tf2_ros", "tf2_ros", "a position by tf")
+
+
 class RobotLink(rospy.SubscribeListener):
     """One robot's topics. `result` gets each result, `statuses` the goals in each status, `place` each position.
 
@@ -102,17 +118,8 @@ class RobotLink(rospy.SubscribeListener):
         self._seen_by_tf = False  # then amcl_pose, which is published now and then, does not count
         self._stamp, self._renewed = 0.0, 0.0  # of the newest transform, and when it came
         self.has_lost_position = False
-        self._messages: Any = None
-        self._tf: Any = None
         self._outcomes: Dict[str, str] = {}  # of the last goals of a move_base_flex
-        if settings.navigation == "move_base_flex":
-            self._messages = needed("mbf_msgs", "mbf_msgs.msg", "navigation: move_base_flex")
-        elif settings.uses_results:
-            why = "goals:=action" if settings.goals == "action" else "ends:=result"
-            self._messages = needed("move_base_msgs", "move_base_msgs.msg", why)
-        if "tf" in settings.sources:
-            with contextlib.suppress(*([DataError] if "pose" in settings.sources else [])):  # one of them is enough
-                self._tf = needed("tf2_ros", "tf2_ros", "a position by tf")
+        self._messages, self._tf = _messages_for(settings), _tf_for(settings)
         self._act = rospy.Publisher(settings.topic("pursue/actions"), String, self, queue_size=10)
         if settings.goals == "action":
             topic, kind = f"{settings.action}/goal", self._messages.MoveBaseActionGoal

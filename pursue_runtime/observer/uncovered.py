@@ -7,10 +7,10 @@ from typing import AbstractSet
 from pursue_runtime.model import Model, Position
 from pursue_runtime.observer.mission_state import ACTING
 from pursue_runtime.observer.planning import stays
-from pursue_runtime.sentences import MARKED, marked
+from pursue_runtime.sentences import MARKED, listed, marked
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Cover
-from pursue_runtime.vocabulary import listed, place
+from pursue_runtime.vocabulary import place
 from pursue_runtime.zones import INFINITY
 
 SHOWN = 4

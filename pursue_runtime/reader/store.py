@@ -239,11 +239,7 @@ def _signature_of(content: bytes) -> bytes:
 
 def _write(path: str, content: bytes) -> None:
     """A new file, with all of this in it, on the disk."""
-    file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, _FILE_MODE)
-    try:
-        view = memoryview(content)
-        while view:
-            view = view[os.write(file, view):]
-        os.fsync(file)
-    finally:
-        os.close(file)
+    with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, _FILE_MODE), "wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())

@@ -17,21 +17,6 @@ MIN_PAUSE = 1.0  # time units after a word without effect until the next one
 LATE = 1.0  # time units after which a step of a trace that a restart has missed is skipped
 
 
-class IdleEnvironment:
-    """Does nothing."""
-
-    def on_state(self, state: SystemState, start: float, now: float) -> None:
-        """Nothing comes of a state."""
-
-    def due(self, now: float) -> List[str]:
-        """Return no words."""
-        return []
-
-    def next_moment(self) -> Optional[float]:
-        """Never."""
-        return None
-
-
 class RandomEnvironment:
     """Starts something possible at random moments, `pace` time units apart on average; the same for the same seed
     and the same states."""
@@ -80,7 +65,7 @@ class RandomEnvironment:
 
 
 class TraceEnvironment:
-    """Says the words of a trace at their moments, possible or not."""
+    """Says the words of a trace at their moments, possible or not; without steps it does nothing."""
 
     def __init__(self, steps: Sequence[TraceStep]) -> None:
         self._steps = tuple(steps)
@@ -122,4 +107,4 @@ def make_player(options: Options, model: Model) -> Environment:
             return TraceEnvironment(read_trace(text, options.trace, words))
         except (OSError, UnicodeDecodeError) as problem:
             raise TraceError(f"cannot read the trace {os.path.abspath(options.trace)}: {problem}") from problem
-    return IdleEnvironment()
+    return TraceEnvironment(())

@@ -12,7 +12,7 @@ from pursue_runtime.event_words import START
 from pursue_runtime.locations import is_action, is_end, is_movement
 from pursue_runtime.model import Automaton, Model
 from pursue_runtime.poses import read_poses
-from pursue_runtime.sentences import Told, in_words
+from pursue_runtime.sentences import Told, in_words, listed
 from pursue_runtime.simulator.simulator import ACTING, end_window, report_word
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
 from pursue_runtime.strategy import Strategy
@@ -23,7 +23,7 @@ from pursue_runtime.ui.outlook import Outlook
 from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_now
 from pursue_runtime.ui.statuses import Status, status_texts
 from pursue_runtime.ui.strategies import strategies_in
-from pursue_runtime.vocabulary import awaited, begin_of, deed, listed, not_promised, place, sentence, where
+from pursue_runtime.vocabulary import awaited, begin_of, deed, not_promised, place, sentence, where
 
 MAX_ENTRIES = 300  # entries of the log
 NOTE, GOOD, BAD = "note", "good", "bad"

@@ -11,10 +11,10 @@ from typing import Any, Dict, FrozenSet, List, Mapping, NamedTuple, Optional, Se
 from pursue_runtime.data import DataError, reading
 from pursue_runtime.locations import is_end
 from pursue_runtime.model import Model
+from pursue_runtime.sentences import listed
 from pursue_runtime.simulator.simulator import ACTING, end_window
 from pursue_runtime.state import HOLDING, LIVE, SystemState
 from pursue_runtime.ui.statuses import Status, status_texts
-from pursue_runtime.vocabulary import listed
 
 REACHED, KEPT, BROKEN, OPEN, NOT_PROMISED = "reached", "kept", "broken", "open", "not promised"
 """What has become of an objective: `open` is what is still to be reached, `kept` what has to hold until the end."""

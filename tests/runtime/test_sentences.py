@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from pursue_runtime.model import Model
 from pursue_runtime.sentences import as_sentence, in_words, marked, quoted
 from pursue_runtime.state import format_state, parse_state
-from pursue_runtime.ui.environment import IdleEnvironment
+from pursue_runtime.ui.environment import TraceEnvironment
 from pursue_runtime.ui.mission_view import MissionView
 from tests.runtime.observer.test_mission import CHASE, SEVERAL, Journey
 from tests.runtime.observer.test_uncovered import COVER
@@ -22,7 +22,7 @@ from tests.runtime.texts import read
 def verdict(labels: Dict[str, str], *words: str) -> str:
     """What people read at the end of a mission with these labels."""
     text = SEVERAL + f"labels: {labels}\n"
-    made, view = Journey(text), MissionView(Model(read(text)), IdleEnvironment())
+    made, view = Journey(text), MissionView(Model(read(text)), TraceEnvironment(()))
     states: List[Any] = [made.hear(word, float(moment)) for moment, word in enumerate(("_start_", *words))]
     for state in states:
         view.on_state(state, state.stamp)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Iterator, List, Mapping, Sequence, Tuple
+from typing import Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, counted, error
 from pursue_gen.drawing.look import ACCENT, INK, PAPER, RULE, AgentLook, agent_looks, mark, safe, svg, tag, text
@@ -28,9 +28,9 @@ _LEVELS = 5
 _ID = "times"
 
 
-def check_name(file: Path) -> None:
-    """Raises PursueError (exit status 2) unless the name ends with .svg or .html."""
-    if file.suffix not in (".svg", ".html"):
+def check_name(file: Optional[Path]) -> None:
+    """Raises PursueError (exit status 2) unless the name, if there is one, ends with .svg or .html."""
+    if file is not None and file.suffix not in (".svg", ".html"):
         message = f"--picture {file}: the format is not known"
         hint = "name a file that ends with .svg (the picture), or .html (a page with the picture and the tables)"
         raise PursueError([error("CAL004", message, hint=hint)])

@@ -16,7 +16,7 @@ from math import ceil, exp, floor, lgamma, log, sqrt
 from statistics import NormalDist, fmean, stdev
 from typing import List, Optional, Sequence, Tuple
 
-from pursue_gen.thresholds import narrowed
+from pursue_gen.thresholds import from_below, narrowed
 
 SHARE, CONFIDENCE = 0.99, 0.95
 """Of all later times so many are to be in a window; with so high a probability they are. Not measured."""
@@ -116,13 +116,9 @@ def outliers(times: Sequence[float]) -> Tuple[int, ...]:
 
 def times_needed(share: float = SHARE, confidence: float = CONFIDENCE) -> int:
     """How many times it takes until their least and their most make a window without assuming a distribution."""
-    low, high = 1, 2
-    while confidence_of(high, 0, share) < confidence:
-        low, high = high, 2 * high
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (low, middle) if confidence_of(middle, 0, share) >= confidence else (middle, high)
-    return high
+    found = from_below(2, lambda count: confidence_of(count, 0, share) >= confidence)
+    assert found is not None, "the confidence comes to 1"
+    return found
 
 
 def confidence_of(count: int, dropped: int, share: float) -> float:

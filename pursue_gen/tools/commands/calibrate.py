@@ -22,6 +22,11 @@ if TYPE_CHECKING:
     from pursue_gen.tools.calibration.proposal import Options, Proposal
     from pursue_gen.tools.calibration.solved_again import Verdict
 
+STEP = typer.Option("0.1", metavar="UNITS", help="Round windows outwards to multiples of this: 0.1, 0.5, 1 …")
+SHARE = typer.Option(
+    0.99, metavar="SHARE", help="How large a share of later times the windows are to hold, such as 0.95 or 0.99."
+)
+
 
 @guarded
 @with_request("ends", "reaction", "slack", "limit", "memory")
@@ -40,12 +45,8 @@ def calibrate(
     time_unit: Optional[float] = typer.Option(
         None, "--time-unit", metavar="SECONDS", help="How long a time unit is; by default as recorded, or 1 second."
     ),
-    step: str = typer.Option(
-        "0.1", metavar="UNITS", help="Round windows outwards to multiples of this: 0.1, 0.5, 1 …"
-    ),
-    share: float = typer.Option(
-        0.99, metavar="SHARE", help="How large a share of later times the windows are to hold, such as 0.95 or 0.99."
-    ),
+    step: str = STEP,
+    share: float = SHARE,
     outliers: bool = typer.Option(
         True, "--outliers/--without-outliers", help="Whether outliers count for the windows."
     ),
@@ -63,52 +64,27 @@ def calibrate(
     mission (rosrun UI drive_legs). Needs no ROS.
     """
     from pursue_gen import api
-    from pursue_gen.tools.calibration import proposal_report
+    from pursue_gen.tools.calibration.picture import check_name, write
     from pursue_gen.tools.calibration.proposal import propose
     from pursue_gen.tools.calibration.recordings import samples_in
 
-    _check_targets(output, picture, force)
+    check_name(picture)
+    for target in filter(None, (output, picture)):
+        check_new(target, force)
     scenario = api.read(file)
     show(api.check(scenario))
     options = _options(scenario, request, time_unit, step, share, outliers)
     samples, findings = samples_in(recordings, scenario, time_unit)
     show(findings)
     proposal = propose(scenario, samples, replace(options, unit=samples.unit or 1.0))
-    if not as_json_:
-        print(*proposal_report.report(proposal), sep="\n")
-    proposed = proposal.checked()
-    verdicts = _verdicts(scenario, proposed, request, as_json_) if solved else ()
-    if as_json_:
-        print(json.dumps(proposal_report.as_json(proposal, verdicts), indent=1))
-    elif verdicts:
-        print("", *proposal_report.changed(proposal, *verdicts), sep="\n")
+    proposed, verdicts = _printed(proposal, request if solved else None, as_json_)
     if picture is not None:
-        _draw(proposal, verdicts, picture)
-    if output is not None:
-        _write(proposed, output)
-    else:
+        write(proposal, verdicts, picture)
+        info(f"{picture} shows the times")
+    if output is None:
         words = ["pursue-gen", "calibrate", str(file), *map(str, recordings), "-o", f"{file.stem}_calibrated.pur"]
         suggest(shlex.join(words))
-
-
-def _check_targets(output: Optional[Path], picture: Optional[Path], force: bool) -> None:
-    """Raises PursueError (exit status 2) for what cannot be written, or is there already."""
-    from pursue_gen.tools.calibration.picture import check_name
-
-    if picture is not None:
-        check_name(picture)
-    for target in filter(None, (output, picture)):
-        check_new(target, force)
-
-
-def _draw(proposal: Proposal, verdicts: Tuple[Verdict, ...], picture: Path) -> None:
-    from pursue_gen.tools.calibration.picture import write
-
-    write(proposal, verdicts, picture)
-    info(f"{picture} shows the times")
-
-
-def _write(proposed: Scenario, output: Path) -> None:
+        return
     write_texts({output: proposed.text})
     info(f"{output} has the proposed windows")
     suggest(f"pursue-gen ws {shell_quoted(output)}")
@@ -134,11 +110,24 @@ def _options(
     return Options(unit or 1.0, Fraction(exact_step), share, slack, outliers)
 
 
-def _verdicts(
-    scenario: Scenario, proposed: Scenario, request: SolveRequest, quiet: bool
-) -> Tuple[Verdict, ...]:
+def _printed(
+    proposal: Proposal, request: Optional[SolveRequest], as_json_: bool
+) -> Tuple[Scenario, Tuple[Verdict, ...]]:
+    """Prints the proposal and what it changes; returns the scenario with it, and the verdicts, none without a request.
+    """
     from pursue_gen.cli.progress import progress_line
+    from pursue_gen.tools.calibration import proposal_report
     from pursue_gen.tools.calibration.solved_again import compared
 
-    with progress_line(quiet) as progress:
-        return compared(scenario, proposed, request, progress)
+    if not as_json_:
+        print(*proposal_report.report(proposal), sep="\n")
+    proposed = proposal.checked()
+    verdicts: Tuple[Verdict, ...] = ()
+    if request is not None:
+        with progress_line(as_json_) as progress:
+            verdicts = compared(proposal.scenario, proposed, request, progress)
+    if as_json_:
+        print(json.dumps(proposal_report.as_json(proposal, verdicts), indent=1))
+    elif verdicts:
+        print("", *proposal_report.changed(proposal, *verdicts), sep="\n")
+    return proposed, verdicts

@@ -71,9 +71,9 @@ def replay(
 
 def _draw(record: MissionRecord, game: Game, recording: Path, timeline: Path) -> None:
     from pursue_gen.tools.report.animation import write
-    from pursue_gen.tools.report.recording import from_record
+    from pursue_gen.tools.report.recording import from_states
 
-    shown = from_record(record, game.scenario, game.network, recording.name)
+    shown = from_states(record.states, game.scenario, game.network, recording.name)
     if shown is None:
         raise usage_error(f"the mission never starts in {recording}", "leave out --timeline: there is nothing to draw")
     write(shown, timeline)

@@ -22,7 +22,7 @@ from typing import Any, Dict, Mapping, Optional, Tuple
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.files import reason_of
 from pursue_gen.tools.draw.page import DrawPage
-from pursue_runtime.bounded import BadText, read_json
+from pursue_runtime.bounded import json_object
 from pursue_runtime.slots import Slots
 
 HOST = "127.0.0.1"
@@ -199,13 +199,9 @@ class _Handler(BaseHTTPRequestHandler):
         if self.headers.get_content_type() != "application/json":
             self._refuse(415, "A request is JSON.")
             return None
-        try:
-            body = read_json(self.rfile.read(int(length)))
-        except BadText:
-            body = None
-        if not isinstance(body, dict):
+        body = json_object(self.rfile.read(int(length)))
+        if body is None:
             self._refuse(400, "This request cannot be understood.")
-            return None
         return body
 
     def _refuse(self, status: int, why: str) -> None:

@@ -12,7 +12,7 @@ from pursue_gen.tga.network import Objective
 from pursue_gen.tools.replay.assumptions import breach, overstayed, without
 from pursue_gen.tools.replay.moves import EXACT, DiscreteState, Move, Moves, after
 from pursue_gen.tools.replay.record import MissionRecord, RecordedWord, read_word
-from pursue_runtime.bounded import BadText, read_json
+from pursue_runtime.bounded import json_object
 from pursue_runtime.event_words import FAILED, FINISH, ORDERED, PLANNED, START, STOP
 from pursue_runtime.observer.records import parse_record
 from pursue_runtime.state import LOST, RUNNING, STOPPED, WAITING, WON, SystemState
@@ -90,11 +90,7 @@ def _object(line: str) -> Optional[Dict[str, Any]]:
     if not line.startswith("{"):
         found = parse_record(f"{line}\n".encode())
         return found[1] if found is not None else None
-    try:
-        data = read_json(line)
-    except BadText:
-        return None
-    return data if isinstance(data, dict) else None
+    return json_object(line)
 
 
 def _entry(line: str) -> Optional[Entry]:

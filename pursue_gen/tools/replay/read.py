@@ -14,7 +14,7 @@ from pursue_gen.files import reason_of
 from pursue_gen.tools.replay.bag import MAGIC, Damage, Message, read_bag
 from pursue_gen.tools.replay.journal import Journal, read_journal
 from pursue_gen.tools.replay.record import MissionRecord, RecordedWord, RobotOrder, ordered, read_word
-from pursue_runtime.bounded import BadText, read_json
+from pursue_runtime.bounded import json_object
 from pursue_runtime.drives.report import DRIVES, Drive, parse_drive
 from pursue_runtime.event_words import parse_word
 from pursue_runtime.named_files import open_regular, read_all
@@ -129,7 +129,7 @@ def from_messages(messages: Sequence[Message], problems: Sequence[str] = ()) -> 
         elif topic.endswith(_MISSION):
             text = _text(message.data)
             state = parse_state(text) if topic.endswith("system_state") else None
-            data = _json(text) if topic.endswith(("plan", "game")) else None
+            data = json_object(text) if topic.endswith(("plan", "game")) else None
             if topic.endswith("events"):
                 words.append(read_word(message.at, text, message.node))
             elif state is not None:
@@ -175,7 +175,7 @@ def _is_published_again(message: Message, topic: str, simple: AbstractSet[Tuple[
 
 def _namespaces(messages: Sequence[Message]) -> Dict[str, str]:
     """Namespaces, and the robots that have them, where they are not the robots' names."""
-    games = [_json(_text(each.data)) for each in messages if _name(each).endswith("pursue/game")]
+    games = [json_object(_text(each.data)) for each in messages if _name(each).endswith("pursue/game")]
     found = [game.get("namespaces") for game in games if game is not None]
     return {str(at).strip("/"): name for each in found if isinstance(each, dict) for name, at in each.items()}
 
@@ -214,14 +214,6 @@ def _position(data: bytes) -> Optional[Tuple[float, float, float]]:
     except struct.error:
         return None
     return x, y, z
-
-
-def _json(text: str) -> Optional[Mapping[str, Any]]:
-    try:
-        data = read_json(text)
-    except BadText:
-        return None
-    return data if isinstance(data, dict) else None
 
 
 def _whole(value: Any) -> int:

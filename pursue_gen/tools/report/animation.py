@@ -17,12 +17,12 @@ from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.drawing import map_svg
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.layout import poses
-from pursue_gen.drawing.look import AgentLook, agent_looks, mark, safe, tag, text
+from pursue_gen.drawing.look import AgentLook, agent_looks, mark, tag, text
 from pursue_gen.files import write_texts
 from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.tools.report import timeline
-from pursue_gen.tools.report.html import Section, asset, data, page
+from pursue_gen.tools.report.html import Section, asset, data, page, rendered
 from pursue_gen.tools.report.recording import Recording, Stay, Step, ending_text, stays
 from pursue_gen.tools.report.timeline import event_text
 from pursue_gen.vocabulary.words import Words, words_of
@@ -68,24 +68,11 @@ def section(
 ) -> Section:
     """The animation as a part of a page; `floor` lies under the map, and everybody moves along its paths."""
     content = {"end": recording.end, "agents": _tracks(scenario, recording, floor), "steps": _steps(recording)}
-    controls = (
-        f'<div class="animation-controls" role="group" aria-label="Controls" hidden>'
-        f'<button type="button" id="{ident}-back" aria-label="One step back">◀ step</button>'
-        f'<button type="button" id="{ident}-play">▶ play</button>'
-        f'<button type="button" id="{ident}-on" aria-label="One step on">step ▶</button>'
-        f'<label>Time <input type="range" id="{ident}-time" min="0" max="{safe(recording.end)}" step="any" value="0">'
-        f'</label> <output id="{ident}-now">0</output>'
-        f'<label>Speed <select id="{ident}-speed"><option value="0.5">½</option><option value="1">1</option>'
-        '<option value="2" selected>2</option><option value="5">5</option><option value="10">10</option>'
-        "</select> time units a second</label></div>"
-    )
-    ending = safe(ending_text(recording))
-    caption = f'<p id="{ident}-caption" class="animation-caption">0: start; {ending} at the end</p>'
-    where = f'<ul id="{ident}-where" class="animation-where">{"".join(_agent_lines(scenario, recording))}</ul>'
-    shown = draw(scenario, recording, floor, ident)
-    picture = f'<div class="wide picture" tabindex="0" role="region" aria-label="Map">{shown}</div>'
-    note = '<noscript><p class="quiet">This is the start; the animation needs JavaScript.</p></noscript>'
-    body = f"{controls}{caption}<figure>{picture}</figure>{where}{note}{data(f'{ident}-movements', content)}"
+    values: Dict[str, Any] = {"ident": ident, "end": recording.end, "ending": ending_text(recording)}
+    segments = _segments(scenario, recording, None)
+    values["agents"] = [(agent.shown, segments[agent.name][0].description) for agent in scenario.agents]
+    values.update(picture=draw(scenario, recording, floor, ident), data=data(f"{ident}-movements", content))
+    body = rendered("animation", **values)
     return Section(ident, "The mission on the map", body, asset("animation.css"), asset("animation.js"))
 
 
@@ -155,13 +142,6 @@ def _step_text(step: Step, words: Words, recording: Recording) -> str:
     sentence = f"{recording.scenario.shown(step.agent)} {event}" if step.agent in recording.agents else event
     last = step is recording.steps[-1] and step.status != "running"
     return f"{sentence}; {ending_text(recording)}" if last else sentence
-
-
-def _agent_lines(scenario: Scenario, recording: Recording) -> List[str]:
-    """A line for each agent: where it is at the start."""
-    segments = _segments(scenario, recording, None)
-    return [f"<li><b>{safe(agent.shown)}</b> <span>{safe(segments[agent.name][0].description)}</span></li>"
-            for agent in scenario.agents]
 
 
 def _segments(scenario: Scenario, recording: Recording, floor: Optional[Floor]) -> Dict[str, List[Segment]]:

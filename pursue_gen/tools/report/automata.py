@@ -4,24 +4,16 @@ from __future__ import annotations
 
 from typing import List, Optional, Tuple
 
-from pursue_gen.drawing.look import safe
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.synthesis.plan_text import assign_text, guard_text, sync_text
 from pursue_gen.tga.network import Automaton, Edge, Location, Network
 from pursue_gen.tga.positions import positions
 from pursue_gen.tools.report import graphviz
 from pursue_gen.tools.report.graphviz import Graph, arrow, node
-from pursue_gen.tools.report.html import Section, figure, table
+from pursue_gen.tools.report.html import Section, rendered
 
 MOST_EDGES = 150
 """An automaton with more edges is no picture that anybody can read."""
-
-_LINES = (
-    "A double frame is where it starts. Under a location stands how long it may be there (its invariant). At an edge "
-    "stand when it may be taken (the guard), the event, and what it sets. Full lines: our side decides; dashed lines: "
-    "nobody of ours does, the robot or somebody else reports it (as UPPAAL draws it)."
-)
-
 
 def graph(automaton: Automaton) -> Optional[Graph]:
     """The picture of an automaton; None where it would be too large to be read."""
@@ -40,15 +32,16 @@ def graph(automaton: Automaton) -> Optional[Graph]:
 
 def section(network: Network, scenario: Scenario) -> Section:
     """All automata, in system order."""
-    parts = [f"<p>{safe(_LINES)}</p>", f"<p class='quiet'>{safe(_numbers(scenario))}</p>"]
-    if not graphviz.installed():
-        parts.append(f"<p>There are no pictures here, only tables: {safe(graphviz.HOW_TO_GET)}.</p>")
-    for k, automaton in enumerate(network.automata):
-        opened = " open" if k == 0 else ""
-        count = f"{len(automaton.locations)} locations, {len(automaton.edges)} edges"
-        parts.append(f"<details{opened}><summary><strong>{safe(automaton.name)}</strong>: {count}</summary>")
-        parts += [*_picture(automaton), _tables(automaton), "</details>"]
-    return Section("automata", "The timed automata", "\n".join(parts))
+    drawn = [(automaton, graph(automaton)) for automaton in network.automata]
+    values = {
+        "numbers": _numbers(scenario),
+        "how_to_get": "" if graphviz.installed() else graphviz.HOW_TO_GET,
+        "automata": [(automaton, picture and graphviz.draw(picture)) for automaton, picture in drawn],
+        "most_edges": MOST_EDGES,
+        "locations": _location_rows,
+        "edges": lambda automaton: [_edge_row(edge) for edge in automaton.edges],
+    }
+    return Section("automata", "The timed automata", rendered("automata", **values))
 
 
 def _numbers(scenario: Scenario) -> str:
@@ -65,23 +58,9 @@ def _numbers(scenario: Scenario) -> str:
     return f"{result} C and a name: a clock, in time units."
 
 
-def _picture(automaton: Automaton) -> List[str]:
-    drawn = graph(automaton)
-    if drawn is None:
-        return [f"<p>More than {MOST_EDGES} edges: too many for a picture.</p>"]
-    picture = graphviz.draw(drawn)
-    if picture is None:
-        return ["<p>Graphviz could not draw this one in time.</p>"] if graphviz.installed() else []
-    return [figure(picture, f"Automaton {automaton.name}")]
-
-
-def _tables(automaton: Automaton) -> str:
+def _location_rows(automaton: Automaton) -> List[Tuple[str, str, str]]:
     begins = automaton.initial
-    locations = [(o.name, _invariant(o), "starts here" if o.name == begins else "") for o in automaton.locations]
-    edges = [_edge_row(edge) for edge in automaton.edges]
-    heads = ("from", "to", "event", "may be taken when", "sets", "who decides")
-    first = table(("location", "invariant", ""), locations, f"Locations of {automaton.name}")
-    return f"<details><summary>As a table</summary>{first}{table(heads, edges, f'Edges of {automaton.name}')}</details>"
+    return [(o.name, _invariant(o), "starts here" if o.name == begins else "") for o in automaton.locations]
 
 
 def _location(ident: str, location: Location, automaton: Automaton) -> str:

@@ -11,10 +11,15 @@ import hashlib
 import json
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
-from typing import Any, Dict, List, Sequence
+from typing import Any, List, Sequence
+
+import jinja2
+from markupsafe import Markup
 
 from pursue_gen import __version__
+from pursue_gen.diagnostics import listed
 from pursue_gen.drawing.look import safe
 
 _NUMBER = re.compile(r"-?[\d,]+(\.\d+)?")
@@ -41,39 +46,17 @@ def page(title: str, sections: Sequence[Section]) -> str:
     ids = [section.id for section in sections]
     if len(set(ids)) != len(ids):
         raise ValueError(f"two sections have one id: {ids}")
-    style = "\n".join(_once([_asset("page.css"), *(section.style for section in sections)]))
-    scripts = _once([_asset("page.js"), *(section.script for section in sections)])
-    allowed = " ".join(f"'sha256-{_hash(script)}'" for script in scripts)
-    policy = (
-        f"default-src 'none'; style-src 'unsafe-inline'; img-src data:; script-src {allowed}; "
-        "base-uri 'none'; form-action 'none'"
-    )
-    links = "".join(f'<li><a href="#{safe(part.id)}">{safe(part.title)}</a></li>' for part in sections)
-    parts = [
-        "<!DOCTYPE html>",
-        '<html lang="en">',
-        "<head>",
-        '<meta charset="utf-8">',
-        f'<meta http-equiv="Content-Security-Policy" content="{policy}">',
-        '<meta name="viewport" content="width=device-width, initial-scale=1">',
-        f'<meta name="generator" content="pursue-gen {safe(__version__)}">',
-        '<link rel="icon" href="data:,">',
-        f"<title>{safe(title)}</title>",
-        f"<style>\n{style}</style>",
-        "</head>",
-        "<body>",
-        '<a class="skip" href="#content">To the content</a>',
-        f"<header><h1>{safe(title)}</h1>",
-        f'<nav aria-label="Sections"><ul>{links}</ul></nav></header>',
-        '<main id="content">',
-        *(_section(part) for part in sections),
-        "</main>",
-        f"<footer><p>Made by pursue-gen {safe(__version__)}. This page needs no network.</p></footer>",
-        *(f"<script>{script}</script>" for script in scripts),
-        "</body>",
-        "</html>",
-    ]
-    return "\n".join(parts) + "\n"
+    style = "\n".join(_once([asset("page.css"), *(section.style for section in sections)]))
+    scripts = _once([asset("page.js"), *(section.script for section in sections)])
+    shown = {"title": title, "sections": sections, "style": style, "scripts": scripts}
+    return rendered("page", **shown, hash=_hash, version=__version__) + "\n"
+
+
+def rendered(template: str, **values: Any) -> str:
+    """The markup that a template (`templates/*.html.j2`) makes of these values: they are escaped, unless they go
+    through its filter `safe`.
+    """
+    return _templates().get_template(f"{template}.html.j2").render(values).rstrip("\n")
 
 
 def table(heads: Sequence[object], rows: Sequence[Sequence[object]], caption: str = "") -> str:
@@ -103,10 +86,6 @@ def data(ident: str, value: Any) -> str:
 
 def asset(name: str) -> str:
     """The text of a file of this package (css, js), for `style` and `script` of a section."""
-    return _asset(name)
-
-
-def _asset(name: str) -> str:
     return (Path(__file__).parent / name).read_text(encoding="utf-8")
 
 
@@ -120,19 +99,24 @@ def _is_number(cell: object) -> bool:
     return str(cell) in ("", "-") or bool(_NUMBER.fullmatch(str(cell)))
 
 
-def _section(part: Section) -> str:
-    ident, title = safe(part.id), safe(part.title)
-    head = f'<section id="{ident}" aria-labelledby="{ident}-title"><h2 id="{ident}-title">{title}</h2>'
-    return f"{head}\n{part.body_html}\n</section>"
-
-
 def _once(texts: Sequence[str]) -> List[str]:
     """The texts without empty ones and repetitions, in order."""
-    seen: Dict[str, None] = {}
-    for one in texts:
-        if one:
-            seen.setdefault(one)
-    return list(seen)
+    return [text for text in dict.fromkeys(texts) if text]
+
+
+@lru_cache(maxsize=1)
+def _templates() -> jinja2.Environment:
+    """How templates are rendered: every value goes through `look.safe`, since jinja2 keeps what XML cannot hold."""
+    made = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(str(Path(__file__).parent / "templates")),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        autoescape=True,
+        finalize=lambda value: value if isinstance(value, Markup) else Markup(safe(value)),
+    )
+    made.globals.update(figure=figure, listed=listed, table=table)
+    return made
 
 
 def _hash(script: str) -> str:

@@ -7,7 +7,6 @@ from typing import Dict, Iterable, List, Mapping, Optional, Tuple
 
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.tga.network import Network
-from pursue_gen.tools.replay.record import MissionRecord
 from pursue_gen.tools.simulation.mission import SimulatedMission
 from pursue_gen.tools.simulation.runs import Case
 from pursue_gen.tools.simulation.stage import stage_of
@@ -92,15 +91,11 @@ def lasting(recording: Recording, changes: Iterable[Tuple[float, str]]) -> Tuple
 # Where recordings come from -------------------------------------------------------------------------------------------
 
 
-def from_record(record: MissionRecord, scenario: Scenario, network: Network, source: str) -> Optional[Recording]:
-    """The mission in a bag or a journal; None where it has not started."""
-    return from_states(record.states, scenario, network, source)
-
-
 def from_states(
     states: Iterable[SystemState], scenario: Scenario, network: Network, source: str, until: float = 0.0
 ) -> Optional[Recording]:
-    """The mission with these published states; its end is at least `until` (time units)."""
+    """The mission with these published states; its end is at least `until` (time units). None where it has not started.
+    """
     steps: List[Step] = []
     started: Optional[float] = None
     seen: Dict[int, str] = {}

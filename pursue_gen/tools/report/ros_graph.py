@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, List, Sequence, Tuple
 
-from pursue_gen.drawing.look import safe
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import SubStrategy
 from pursue_gen.partition.split import UI
 from pursue_gen.tools.report import graphviz
 from pursue_gen.tools.report.graphviz import Graph, arrow, node, quoted
-from pursue_gen.tools.report.html import Section, figure, table
+from pursue_gen.tools.report.html import Section, rendered
 
 EVENTS, STATE, TEXT, PLAN = "/pursue/events", "/pursue/state", "/pursue/system_state", "/pursue/plan"
 SEEN = "/pursue/seen"
@@ -82,17 +81,6 @@ def graph(some: Sequence[Topic]) -> Graph:
 
 def section(some: Sequence[Topic]) -> Section:
     """The graph on the page, and the same as a table."""
-    picture = graphviz.draw(graph(some))
-    parts = [
-        "<p>The nodes of the generated workspace (ellipses) and the topics between them (boxes), with simulated "
-        "robots. With real robots (<code>simulate:=false</code>) the robots subscribe to the goals instead of the "
-        "simulator.</p>"
-    ]
-    if picture is None:
-        parts.append(f"<p>There is no picture here, only a table: {safe(graphviz.HOW_TO_GET)}.</p>")
-    else:
-        parts.append(figure(picture, "As rqt_graph draws it; /diagnostics, on which every node publishes, is left out"))
     rows = [(t.name, t.kind, ", ".join(t.publishers), ", ".join(t.subscribers)) for t in some]
-    listed = table(("topic", "type", "publishers", "subscribers"), rows, "Topics of the mission")
-    parts.append(f"<details{'' if picture else ' open'}><summary>As a table</summary>{listed}</details>")
-    return Section("ros", "The ROS graph", "\n".join(parts))
+    body = rendered("ros_graph", picture=graphviz.draw(graph(some)), rows=rows, how_to_get=graphviz.HOW_TO_GET)
+    return Section("ros", "The ROS graph", body)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import List, Optional
+from typing import Any, Dict, Optional
 
 from pursue_gen.diagnostics import counted
-from pursue_gen.drawing.look import safe
 from pursue_gen.tools.report import graphviz
 from pursue_gen.tools.report.graphviz import Graph, arrow, node
-from pursue_gen.tools.report.html import Section, asset, data, figure
+from pursue_gen.tools.report.html import Section, asset, data, rendered
 from pursue_gen.tools.report.strategy_data import Situation, StrategyData, as_json, shown_name, size
 
 MOST_STATES = 40
@@ -18,50 +17,16 @@ MOST_STATES = 40
 def section(strategy: StrategyData) -> Section:
     """The section of the page; its script builds a situation only when it is opened, since there may be many."""
     states, commands = size(strategy)
-    parts = [
-        f"<p>The strategy knows {states:,} situations and gives {commands:,} commands in them. Open a situation to see "
-        "what is commanded, under which clocks, what is waited for, and where each of these leads.</p>",
-        *_stages(strategy),
-        *_left_out(strategy),
-        "<noscript><p>The search and the tree need JavaScript, which is switched off in this browser.</p></noscript>",
-        '<div id="strategy-live" hidden>',
-        _form(strategy),
-        '<div id="strategy-found" aria-live="polite"></div>',
-        "<h3>From the start</h3>",
-        '<div id="strategy-tree"></div>',
-        "</div>",
-        "<p class='quiet'>Times are in units of the scenario. “Last step” of an agent: when it last set off, arrived, "
-        "began or finished something.</p>",
-        *_picture(strategy),
-        data("strategy-data", as_json(strategy)),
-    ]
-    body = "\n".join(parts)
+    drawn = graph(strategy)
+    values: Dict[str, Any] = {"strategy": strategy, "states": states, "commands": commands, "hint": example(strategy)}
+    if any(part.until for part in strategy.parts):
+        stages = counted(strategy.parts[-1].stage + 1, "stage")
+        values.update(how=f"in {stages}, one after the other", part="part of a stage")
+    else:
+        values.update(how=f"in {counted(len(strategy.parts), 'share')}, all at the same time", part="share")
+    values.update(is_small=drawn is not None, picture=drawn and graphviz.draw(drawn), how_to_get=graphviz.HOW_TO_GET)
+    body = rendered("strategy", **values, data=data("strategy-data", as_json(strategy)))
     return Section("strategy", "The strategy", body, asset("strategy.css"), asset("strategy.js"))
-
-
-def _stages(strategy: StrategyData) -> List[str]:
-    if not strategy.parts:
-        return []
-    stages = strategy.parts[-1].stage + 1
-    in_stages, called = f"in {counted(stages, 'stage')}, one after the other", "part of a stage"
-    if not any(part.until for part in strategy.parts):
-        in_stages, called = f"in {counted(len(strategy.parts), 'share')}, all at the same time", "share"
-    if strategy.ordered:
-        text = (
-            "All agents play their steps at the same time. Where two must not meet they pass a place in an order: "
-            "whoever sets off for it has it until it sets off from there."
-        )
-        return [f"<p>{text}</p>"]
-    text = (
-        f"It is played {in_stages}. A {called} speaks only of those who matter to it: all others may be anywhere and "
-        "do whatever they can, and its commands are right all the same."
-    )
-    return [f"<p>{text}</p>"]
-
-
-def _left_out(strategy: StrategyData) -> List[str]:
-    names = ", ".join(safe(name) for name in strategy.left_out)
-    return [f"<p>Not mentioned, because what they do cannot matter: {names}.</p>"] if names else []
 
 
 def graph(strategy: StrategyData) -> Optional[Graph]:
@@ -94,31 +59,6 @@ def example(strategy: StrategyData) -> str:
     name, ways = others[0]
     subject = next((robot for robot in reversed(robots) if robot != name), robots[0])
     return f"what will {subject} do if {name} goes to {ways[0][2]}?"
-
-
-def _form(strategy: StrategyData) -> str:
-    hint = example(strategy)
-    places = f' placeholder="{safe(hint)}"' if hint else ""
-    example_html = f" For example: <em>{safe(hint)}</em>" if hint else ""
-    return (
-        '<form id="strategy-form" role="search">'
-        f'<label for="strategy-question">Ask the strategy.{example_html}</label>'
-        f'<div class="strategy-ask"><input id="strategy-question" type="search" autocomplete="off"{places}>'
-        '<button type="submit">Find</button></div>'
-        "<details><summary>Choose places</summary>"
-        '<div id="strategy-choose" class="strategy-choose"></div></details></form>'
-    )
-
-
-def _picture(strategy: StrategyData) -> List[str]:
-    drawn = graph(strategy)
-    picture = None if drawn is None else graphviz.draw(drawn)
-    if drawn is None:
-        return []
-    if picture is None:
-        return [f"<p>There is no picture of it: {safe(graphviz.HOW_TO_GET)}.</p>"]
-    caption = "The whole strategy. Full arrows: commands, with their clocks; dashed arrows: what may happen."
-    return [f"<details open><summary>As a picture</summary>{figure(picture, caption)}</details>"]
 
 
 def _state(strategy: StrategyData, number: int, situation: Situation) -> str:

@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Callable, List, Optional, Sequence, Tuple
 
-from pursue_gen.drawing.look import safe
 from pursue_gen.language.numbers import at_most
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition.split import ALL, CENTRALIZED, DEDICATED, DISTRIBUTED
 from pursue_gen.solving.solution import Solution
 from pursue_gen.tools.report.commands import CommandsTable, Game, cells_of, commands_table
-from pursue_gen.tools.report.html import Section, table
-from pursue_gen.tools.report.thesis_figures import Times, thesis_times
+from pursue_gen.tools.report.html import Section, rendered, table
+from pursue_gen.tools.report.thesis_figures import ThesisTable, thesis_table
 from pursue_gen.tools.simulation.outcome import Settings
 from pursue_gen.tools.simulation.outcome_table import END_TEXTS, driven_words
 from pursue_gen.tools.simulation.runs import Case, Summary, case_of, simulate
@@ -76,27 +75,22 @@ def section(
     scenario: Scenario, won: Solution, tables: Sequence[CommandsTable], missions: Sequence[Measured]
 ) -> Section:
     """The tables on the page."""
-    parts = ["<h3>Commands and lines per controller</h3>", _policy(tables[0], True)]
-    folded = {"With other owners of the objective's commands": [one for one in tables[1:] if one.ends is None]}
-    folded["All controllers in the ideal game, as the thesis compares them"] = [one for one in tables[1:] if one.ends]
-    for summary, some in folded.items():
-        if some:
-            others = "".join(_policy(one, False) for one in some)
-            parts.append(f"<details><summary>{summary}</summary>{others}</details>")
-    parts.append(
-        "<p class='quiet'>General decides the ends of movements and actions itself, the others wait for reports of "
-        "them: two games with a strategy each. A command is a situation with what is done in it; lines are those "
-        "of the controller's strategy file (in the thesis: of its Python program). Percentages are of General.</p>"
-    )
     robots = tuple(agent.name for agent in scenario.agents if agent.is_robot)
-    goal = won.objective.reaches
-    parts.append(f"<h3>{'Times to the goal' if goal else 'Simulated missions'}</h3>")
-    parts.append(_times(won, missions, thesis_times(scenario.name, robots)) if goal else _safety(missions))
-    parts += [f"<p>{safe(text)}</p>" for one in missions[-1:] for text in driven_words(one.summary)]
-    failed = sum(one.summary.failed for one in missions)
-    if failed:
-        parts.append(f"<p><strong>{failed} simulated missions failed.</strong></p>")
-    return Section("tables", "Commands and times", "\n".join(parts))
+    thesis = thesis_table(scenario.name, robots)
+    ideal, others = [[_policy(one, False) for one in tables[1:] if bool(one.ends) is ends] for ends in (True, False)]
+    body = rendered(
+        "tables",
+        first=_policy(tables[0], True),
+        others="".join(others),
+        ideal="".join(ideal),
+        goal=won.objective.reaches,
+        times=_times(won, missions, thesis) if won.objective.reaches else _safety(missions),
+        missions=missions,
+        thesis=thesis,
+        driven=[text for one in missions[-1:] for text in driven_words(one.summary)],
+        failed=sum(one.summary.failed for one in missions),
+    )
+    return Section("tables", "Commands and times", body)
 
 
 def _policy(one: CommandsTable, first: bool) -> str:
@@ -108,7 +102,7 @@ def _policy(one: CommandsTable, first: bool) -> str:
     return table(heads, rows, f"The objective's commands: {policy}{end}")
 
 
-def _times(won: Solution, missions: Sequence[Measured], thesis: Optional[Times]) -> str:
+def _times(won: Solution, missions: Sequence[Measured], thesis: Optional[ThesisTable]) -> str:
     heads = ["", "least", "median", "worst", *(["thesis (seconds)"] if thesis else [])]
     worst = won.guarantee.worst if won.guarantee else None
     rows: List[List[object]] = [["guaranteed", "", "", "not found out" if worst is None else at_most(worst)]]
@@ -118,15 +112,10 @@ def _times(won: Solution, missions: Sequence[Measured], thesis: Optional[Times])
         label = f"simulated, {one.controllers} ({one.summary.missions} missions)"
         found = [_number(v) for row in reached for v in (row.least, row.median, row.worst)] or ["not reached", "", ""]
         if thesis:
-            seconds = thesis.centralized if one.controllers == CENTRALIZED else thesis.distributed
+            seconds = thesis.times.centralized if one.controllers == CENTRALIZED else thesis.times.distributed
             found.append("not reached" if seconds is None else _number(seconds))
         rows.append([label, *found])
-    times = table(heads, rows, "In time units from the start")
-    note = "<p class='quiet'>Simulated without faults, with the code of the generated controllers; what nobody "
-    note += "controls does anything, the worst, or nothing."
-    if thesis:
-        note += " The thesis measured its own programs once, in seconds; its interface cut movements short."
-    return f"{times}{note}</p>" if missions else times
+    return table(heads, rows, "In time units from the start")
 
 
 def _safety(missions: Sequence[Measured]) -> str:
@@ -135,11 +124,9 @@ def _safety(missions: Sequence[Measured]) -> str:
         for one in missions
         for row in one.summary.rows
     ]
-    if not rows:
-        return "<p>No missions were simulated.</p>"
     heads = ["controllers", "outcome", "missions", "watched for (units)"]
-    return table(heads, rows, "Simulated missions, without faults")
+    return table(heads, rows, "Simulated missions, without faults") if rows else ""
 
 
 def _number(value: float) -> str:
-    return safe(f"{value:.2f}")
+    return f"{value:.2f}"

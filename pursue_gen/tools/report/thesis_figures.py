@@ -22,11 +22,20 @@ class Figure:
 
 
 @dataclass(frozen=True)
+class Times:
+    """The thesis's times to the goal (its table 5.11), in seconds; None where its goal was not reached."""
+
+    centralized: Optional[float]
+    distributed: Optional[float]
+
+
+@dataclass(frozen=True)
 class ThesisTable:
     """One scenario of the thesis. `reach_obj` is where its author put reachObj's commands."""
 
     scenario: str
     reach_obj: str
+    times: Times
     figures: Tuple[Figure, ...]
 
     def figure(self, controller: str) -> Optional[Figure]:
@@ -34,14 +43,15 @@ class ThesisTable:
         return next((figure for figure in self.figures if figure.controller == controller), None)
 
 
-def _table(scenario: str, reach_obj: str, *figures: Tuple[str, int, int]) -> ThesisTable:
-    return ThesisTable(scenario, reach_obj, tuple(Figure(*figure) for figure in figures))
+def _table(scenario: str, reach_obj: str, times: Times, *figures: Tuple[str, int, int]) -> ThesisTable:
+    return ThesisTable(scenario, reach_obj, times, tuple(Figure(*figure) for figure in figures))
 
 
 TABLES = (
     _table(
         "scenario_1",
         "bot2",
+        Times(None, 37.862),
         (GENERAL_NAME, 17, 425),
         (CENTRALIZED_NAME, 9, 278),
         ("controller_bot1", 4, 182),
@@ -50,6 +60,7 @@ TABLES = (
     _table(
         "scenario_2",
         "all",
+        Times(None, 32.007),
         (GENERAL_NAME, 20, 494),
         (CENTRALIZED_NAME, 10, 307),
         ("controller_bot1", 6, 233),
@@ -59,6 +70,7 @@ TABLES = (
     _table(
         "scenario_3",
         "all",
+        Times(67.821, 48.306),
         (GENERAL_NAME, 41, 862),
         (CENTRALIZED_NAME, 19, 447),
         ("controller_bot1", 7, 248),
@@ -68,6 +80,7 @@ TABLES = (
     _table(
         "scenario_4",
         "all",
+        Times(None, None),
         (GENERAL_NAME, 25, 609),
         (CENTRALIZED_NAME, 13, 402),
         ("controller_bot1", 4, 212),
@@ -78,6 +91,7 @@ TABLES = (
     _table(
         "catch_the_thief",
         "dedicated",
+        Times(7.771, 6.795),  # its thief stood still
         (GENERAL_NAME, 779, 14697),
         (CENTRALIZED_NAME, 539, 12706),
         ("controller_polBot1", 170, 5652),
@@ -85,28 +99,6 @@ TABLES = (
         ("controllerObj", 195, 7070),
     ),
 )
-
-
-@dataclass(frozen=True)
-class Times:
-    """The thesis's times to the goal (its table 5.11), in seconds; None where its goal was not reached."""
-
-    centralized: Optional[float]
-    distributed: Optional[float]
-
-
-TIMES = (
-    ("scenario_1", Times(None, 37.862)),
-    ("scenario_2", Times(None, 32.007)),
-    ("scenario_3", Times(67.821, 48.306)),
-    ("scenario_4", Times(None, None)),
-    ("catch_the_thief", Times(7.771, 6.795)),  # its thief stood still
-)
-
-
-def thesis_times(scenario: str, robots: Tuple[str, ...]) -> Optional[Times]:
-    """The thesis's times for a scenario of that name with these robots, None where it is not one of the thesis's."""
-    return dict(TIMES).get(scenario) if thesis_table(scenario, robots) else None
 
 
 def thesis_table(scenario: str, robots: Tuple[str, ...]) -> Optional[ThesisTable]:

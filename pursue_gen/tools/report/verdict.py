@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, Optional, Sequence
+from typing import Any, Dict, Optional, Sequence
 
-from pursue_gen.diagnostics import Diagnostic, listed, units
-from pursue_gen.drawing.look import safe
+from pursue_gen.diagnostics import Diagnostic, units
+from pursue_gen.explanation import explain
+from pursue_gen.explanation.changes import Change
 from pursue_gen.explanation.costs import Costs, in_words
-from pursue_gen.explanation.explain import Explanation, attempt_texts, endless_texts, how_found, play_title
+from pursue_gen.explanation.explain import Explanation
 from pursue_gen.language.numbers import decimal_text, time_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.wording import kind_words, objective_words, promise_words, speed_words
@@ -16,7 +17,7 @@ from pursue_gen.partition import unneeded, unneeded_words
 from pursue_gen.solving.answers import answers
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import Solution
-from pursue_gen.tools.report.html import Section, table
+from pursue_gen.tools.report.html import Section, rendered, table
 
 
 @dataclass(frozen=True)
@@ -34,87 +35,39 @@ def section(
     scenario: Scenario, rules: Rules, won: Optional[Solution], margin: str = "", lost: Optional[Lost] = None
 ) -> Section:
     """The verdict on the page; either `won` or `lost` is there."""
-    wanted = "".join(f"<li>{safe(sentence)}</li>" for sentence in objective_words(scenario))
-    parts = [f"<p>What is wanted:</p><ul>{wanted}</ul>"]
+    values: Dict[str, Any] = {
+        "explain": explain,
+        "wanted": objective_words(scenario),
+        "assumed": [each.clause for each in scenario.assumptions],
+        "won": won,
+        "within": "" if won is None or won.within is None else decimal_text(won.within),
+        "lost": lost,
+        "game": _game(rules),
+        "agents": _agents(scenario),
+    }
     if won is not None:
-        parts += [f"<p>{safe(sentence)}.</p>" for sentence in promise_words(scenario)]
-    if scenario.assumptions:
-        assumed = "".join(f"<li>{safe(each.clause)}</li>" for each in scenario.assumptions)
-        parts.append(f"<p>What is assumed of others:</p><ul>{assumed}</ul>")
-    if won is not None:
-        parts += _won(won, margin)
-        kept = "".join(f"<li>{safe(answer.in_words())}</li>" for answer in answers(scenario, won))
-        parts += [f"<ul>{kept}</ul>"] if kept else []
-        words = unneeded_words(unneeded(scenario, won.strategy))
-        parts += [f"<p>{safe(words)}</p>"] if words else []
+        values["promised"] = promise_words(scenario)
+        values["kept"] = [text for text in (won.guarantee and won.guarantee.in_words(), margin) if text]
+        values["answers"] = [answer.in_words() for answer in answers(scenario, won)]
+        values["unneeded"] = unneeded_words(unneeded(scenario, won.strategy))
     elif lost is not None:
-        parts += _lost(lost, any(not agent.controllable for agent in scenario.agents))
-    parts.append(f"<p class='quiet'>{safe(_game(rules))}</p>")
-    parts.append(_agents(scenario))
-    return Section("verdict", "The verdict", "\n".join(parts))
+        values["others"] = any(not agent.controllable for agent in scenario.agents)
+        values["costs"] = [] if lost.costs is None else in_words(lost.costs).splitlines()
+        several = [] if lost.explanation is None else [lost.explanation, *lost.explanation.others]
+        values["explained"] = [(one, list(map(_change, one.changes)), _play(one)) for one in several]
+    return Section("verdict", "The verdict", rendered("verdict", **values))
 
 
-def _won(won: Solution, margin: str) -> List[str]:
-    kept = "" if won.within is None else f" within {decimal_text(won.within)} time units"
-    parts = [
-        f"<p class='verdict'><strong>It can be met{kept}, whatever the others do.</strong> The strategy that does it "
-        "was proven by a second, independent program.</p>"
-    ]
-    if won.guarantee:
-        parts.append(f"<p>{safe(won.guarantee.in_words())}</p>")
-    if margin:
-        parts.append(f"<p>{safe(margin)}</p>")
-    return parts
+def _change(change: Change) -> str:
+    """A change that helps, where it is made, and what alone is not enough."""
+    notes = [f"{change.next_lost} is not enough"] if change.next_lost != change.before else []
+    notes += [f"line {change.span.line}"] if change.span else []
+    return change.sentence + (f" ({'; '.join(notes)})" if notes else "")
 
 
-def _lost(lost: Lost, others: bool) -> List[str]:
-    """The verdict; `others`: there are agents whom nobody controls."""
-    if lost.explanation is None:
-        parts = ["<p class='verdict no'><strong>It was not decided whether it can be met.</strong></p>"]
-    else:
-        why = ": the others can always prevent it" if others else ""
-        parts = [f"<p class='verdict no'><strong>It cannot be met{why}.</strong></p>"]
-    for finding in lost.findings:
-        sentences = [text for text in (finding.message, finding.hint) if text]
-        parts.append("<p>" + " ".join(f"{safe(text[:1].upper() + text[1:])}." for text in sentences) + "</p>")
-    if lost.costs is not None:
-        parts += [f"<p>{safe(line)}</p>" for line in in_words(lost.costs).splitlines()]
-    if lost.explanation is None:
-        return parts
-    several = (lost.explanation, *lost.explanation.others)
-    for one in several:
-        parts += [f"<h3>{safe(listed(one.about))}</h3>"] if len(several) > 1 else []
-        parts += _explained(one)
-    return parts
-
-
-def _explained(explanation: Explanation) -> List[str]:
-    texts = [*endless_texts(explanation), *([explanation.conflict.in_words()] if explanation.conflict else [])]
-    parts = [f"<p>{safe(text)}</p>" for text in texts]
-    parts.append("<h3>What would change that</h3>")
-    if explanation.changes:
-        items = []
-        for change in explanation.changes:
-            notes = [f"line {change.span.line}"] if change.span else []
-            if change.next_lost != change.before:
-                notes.insert(0, f"{change.next_lost} is not enough")
-            note = f" ({'; '.join(notes)})" if notes else ""
-            items.append(f"<li>{safe(change.sentence + note)}</li>")
-        parts.append(f"<p>Each of these alone, the smallest change first ({how_found(explanation)}):</p>")
-        parts.append(f"<ul>{''.join(items)}</ul>")
-    else:
-        parts.append("<p>No single small change that was tried would change that.</p>")
-    for title, entries in (("Not enough alone", explanation.lost), ("Not decided", explanation.undecided)):
-        if entries:
-            parts.append(f"<p>{title}: {safe('; '.join(entries))}.</p>")
-    parts.append(f"<h3>{safe(play_title(explanation))}</h3>")
+def _play(explanation: Explanation) -> str:
     rows = [(time_text(line.at), line.who, line.text) for line in explanation.play]
-    none = "<p>A play that shows it was not found within the limits.</p>"
-    parts.append(table(("time (units)", "who", "what"), rows) if rows else none)
-    if explanation.attempts:
-        tried = "".join(f"<li>{safe(text)}</li>" for text in attempt_texts(explanation))
-        parts.append(f"<p>What else the robots could begin with, and why that fails:</p><ul>{tried}</ul>")
-    return parts
+    return table(("time (units)", "who", "what"), rows) if rows else ""
 
 
 def _game(rules: Rules) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import threading
 from collections import deque
-from typing import Any, Callable, ContextManager, Deque, Iterator, List, Protocol, Sequence
+from typing import Any, ContextManager, Deque, Iterator, List, Sequence
 
 import pursue_runtime
 from pursue_gen.diagnostics import error
@@ -24,27 +24,8 @@ AHEAD = 4
 """Shares that each thread of a worker has in its queue, so that it never waits for the next one. Not measured."""
 
 
-class Future(Protocol):
-    """A share of the missions that a worker plays."""
-
-    def result(self) -> Any:
-        """Return the outcomes; raises what the worker raised."""
-
-
-class Client(Protocol):
-    """What is needed of `distributed.Client`."""
-
-    def nthreads(self) -> Any:
-        """Return worker → number of threads."""
-
-    def scatter(self, data: Any, broadcast: bool = False) -> Any:
-        """Send data to the workers; return what stands for it in `submit`."""
-
-    def submit(self, function: Callable[..., Any], *args: Any, pure: bool) -> Future:
-        """Call the function on a worker."""
-
-    def run(self, function: Callable[..., Any]) -> Any:
-        """Call the function on each worker; return worker → result."""
+Client = Any
+"""`distributed.Client`, whose package has no types."""
 
 
 @contextlib.contextmanager
@@ -77,7 +58,7 @@ def outcomes_on(client: ContextManager[Client], case: Case, seeds: Sequence[int]
         room = AHEAD * sum(connected.nthreads().values())
         shares = (list(seeds[k : k + SHARE]) for k in range(0, len(seeds), SHARE))
         sent = connected.scatter(case, broadcast=True)
-        waiting: Deque[Future] = deque()
+        waiting: Deque[Any] = deque()
         for share in shares:
             waiting.append(connected.submit(play, sent, share, pure=False))
             if len(waiting) >= room:

@@ -18,7 +18,7 @@ from pursue_runtime.resend import StateRepeats
 from pursue_runtime.state import LIVE, SystemState
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui import mission_view as ui
-from pursue_runtime.ui.environment import IdleEnvironment
+from pursue_runtime.ui.environment import TraceEnvironment
 
 TICK = 1e-9
 """Seconds by which an alarm rings after its moment, so that its moment has come by any clock."""
@@ -246,7 +246,7 @@ class PeopleNode:
 
     def __init__(self, stage: Stage, links: MissionLinks) -> None:
         self._stage, self._links = stage, links
-        self._ui = ui.MissionView(stage.model, IdleEnvironment(), stage.people)
+        self._ui = ui.MissionView(stage.model, TraceEnvironment(()), stage.people)
         self._timer = Timer(links.events, self._on_timer)
 
     def on_state(self, state: SystemState) -> None:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, Iterator, List, Mapping, Optional, Tuple
 
-from pursue_runtime.bounded import BadText, read_json
+from pursue_runtime.bounded import json_object
 from pursue_runtime.manifest import OWN, is_digest
 
 PORT = 13000
@@ -228,11 +228,8 @@ def _object(code: int, content: bytes) -> Mapping[str, Any]:
     """The answer as a JSON object."""
     if len(content) > ANSWER_LIMIT:
         raise Unreached(f"its answer has more than {ANSWER_LIMIT} bytes", True)
-    try:
-        facts = read_json(content)
-    except BadText:
-        facts = None
-    if not isinstance(facts, dict):
+    facts = json_object(content)
+    if facts is None:
         raise Unreached(f"answers with status {code}, and not as a robot does", True)
     return facts
 

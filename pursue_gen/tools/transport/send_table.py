@@ -65,11 +65,6 @@ def _facts(status: Optional[Status]) -> Optional[Dict[str, Any]]:
 
 def with_activity(rows: Sequence[Row]) -> Tuple[Row, ...]:
     """The rows with whether a mission runs on the robot as their outcome, or why it was not reached."""
-    found = []
-    for row in rows:
-        if row.after is None:
-            found.append(replace(row, outcome=f"not reached: {row.outcome}"))
-        else:
-            activity = "a mission is under way" if row.after.mission_runs else "no mission runs"
-            found.append(replace(row, outcome=activity))
-    return tuple(found)
+    activity = {True: "a mission is under way", False: "no mission runs"}
+    outcomes = (activity[row.after.mission_runs] if row.after else f"not reached: {row.outcome}" for row in rows)
+    return tuple(replace(row, outcome=outcome) for row, outcome in zip(rows, outcomes))

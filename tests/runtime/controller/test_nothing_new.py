@@ -9,7 +9,7 @@ from pursue_runtime.event_words import Word
 from pursue_runtime.model import Model
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Strategy
-from pursue_runtime.ui.environment import IdleEnvironment
+from pursue_runtime.ui.environment import TraceEnvironment
 from pursue_runtime.ui.mission_view import MissionView
 from tests.runtime.models import model_data, mover
 from tests.runtime.texts import read
@@ -89,7 +89,7 @@ def test_a_move_after_which_nothing_has_changed_is_none() -> None:
 def test_instructions_of_people_stand_as_well() -> None:
     orders = Strategy(read(STRATEGY))
     model = Model(model_data(mover("bot", "human", 3), mover("guest", "agent", 3)))
-    view = MissionView(model, IdleEnvironment(), orders)
+    view = MissionView(model, TraceEnvironment(()), orders)
     view.on_state(state(1, 100.0, event="_start_"), 100.0)
     assert view.due(105.0, 0.0) == ["bot:bot_a2b@1"]
     view.on_state(state(2, 105.1, "guest_a2b", "guest", (5.1, 0.0)), 105.1)
@@ -128,7 +128,7 @@ def test_a_clock_that_somebody_else_starts_again_is_new_where_its_agent_is_named
 
 def test_instructions_follow_the_stage_that_has_begun() -> None:
     model = Model(model_data(mover("bot", "human", 3), mover("guest", "agent", 3)))
-    view = MissionView(model, IdleEnvironment(), Strategy(read(STAGES)))
+    view = MissionView(model, TraceEnvironment(()), Strategy(read(STAGES)))
     view.on_state(state(1, 100.0, event="_start_"), 100.0)
     view.on_state(state(2, 104.0, "guest_a2b", "guest", (4.0, 0.0)), 104.0)
     view.on_state(state(3, 104.9, "done", "rule", (4.9, 0.9), "second"), 104.9)

@@ -95,7 +95,8 @@ class Robot:
 
     def answer(self, goal: str, status: int) -> None:
         """A result of move_base."""
-        self.session.on_result(Answer(goal, self.now, status, "no way" if status == ABORTED else ""), self.now)
+        answer = Answer(goal, self.now, status, "no way" if status == ABORTED else "")
+        self.session.navigation.on_result(answer, self.now)
 
 
 def robot(
@@ -212,7 +213,7 @@ def test_a_drive_on_which_another_node_sent_the_robot_elsewhere_is_made_once_mor
     ours, way = found.session.goal, found.session.location
     found.answer(ours, PREEMPTED)
     theirs = [Answer(ours, found.now, PREEMPTED), Answer("of another node", found.now, 1)]
-    found.session.on_status(theirs, found.now, found.now)
+    found.session.navigation.on_status(theirs, found.now, found.now)
     found.run()
     disturbed = [drive for drive in found.drives if drive.outcome != ARRIVED]
     assert [(movement(drive.a, drive.b), drive.outcome, drive.goals) for drive in disturbed] == [(way, INTERRUPTED, 2)]
@@ -232,7 +233,7 @@ def test_arrivals_are_those_of_a_mission_with_positions() -> None:
     session = Session("bot", PLACES, "a", Plan((("a", "b"),), times=1), settings, lambda level, text: None)
 
     def stand(x: float, since: float) -> Optional[Drive]:
-        session.on_position(Position(x, 0.0, 0.0), since)
+        session.navigation.on_position(Position(x, 0.0, 0.0), since)
         session.due(since, since)
         return session.due(since + 0.6, since + 0.6).drive
 

@@ -48,7 +48,8 @@ def test_a_controller_begins_without_an_observer_and_is_not_ready(monkeypatch: p
     replaced(monkeypatch, controller, parts)
     made: Any = controller.Controller(Anything(), "")  # type: ignore[arg-type]
     assert made.observer == ""
-    made.follower = SimpleNamespace(report=lambda: (None, None, None, ""), refused="", malformed=0)
+    states = SimpleNamespace(refused="", malformed=0)
+    made.follower = SimpleNamespace(report=lambda: (None, None, None, ""), filter=states)
     assert made.report()[:3] == (False, WARN, "no state from the observer yet")
 
 

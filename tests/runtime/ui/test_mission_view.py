@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from pursue_runtime.model import Model, Position
 from pursue_runtime.strategy import Strategy
-from pursue_runtime.ui.environment import MIN_PAUSE, IdleEnvironment, RandomEnvironment, TraceEnvironment, TraceStep
+from pursue_runtime.ui.environment import MIN_PAUSE, RandomEnvironment, TraceEnvironment, TraceStep
 from pursue_runtime.ui.mission_view import (
     MissionView,
     PossibleWord,
@@ -44,7 +44,7 @@ def offers(current, now: float, **more):
 
 
 def mission(player=None, orders=None):
-    return MissionView(MODEL, player or IdleEnvironment(), orders)
+    return MissionView(MODEL, player or TraceEnvironment(()), orders)
 
 
 def orders(*commands: dict):
@@ -85,7 +85,7 @@ def test_a_window_that_has_closed_is_no_offer() -> None:
 # Who plays them
 
 def test_standing_still_says_nothing() -> None:
-    played = mission(IdleEnvironment())
+    played = mission(TraceEnvironment(()))
     played.on_state(at(1, 100.0, event="_start_"), 100.0)
     assert played.due(500.0, 1.0) == []
     assert played.next_moments(500.0) == (None, None)
@@ -189,7 +189,7 @@ def test_no_order_after_its_zone() -> None:
 
 def test_people_are_reported_in_words_once_it_is_taken() -> None:
     walker = Model(model_data(mover("nurse", "human", 9)))
-    told = MissionView(walker, IdleEnvironment())
+    told = MissionView(walker, TraceEnvironment(()))
     told.on_state(state(walker, 1, 100.0, {}, event="_start_"), 100.0)
     lines = told.on_state(state(walker, 2, 104.0, {}, event="nurse_a2b", agent="nurse", nurse="going_a_to_b"), 104.0)
     assert [line.strip() for line in lines] == ["4.0  nurse sets off from a to b", "nurse: go to b now"]
@@ -206,7 +206,7 @@ def test_people_get_instructions_where() -> None:
 
 def test_who_takes_part_in_what_another_one_begins_gets_instructions_as_well() -> None:
     house = hotel(HOTEL.replace('agent "waiter" controllable', 'agent "waiter" human controllable'))
-    told = MissionView(house, IdleEnvironment())
+    told = MissionView(house, TraceEnvironment(()))
     there = {"porter": "lift", "waiter": "lift"}
     told.on_state(state(house, 1, 100.0, {}, event="_start_", **there), 100.0)
     riding = {"porter": "doing_ride_in_lift", "waiter": "doing_ride_in_lift"}
@@ -264,7 +264,7 @@ def test_the_end_and_its_reason_are_reported(status: str, reason: str, code: int
 
 def test_a_mission_without_a_goal_ends_with_its_objective_kept() -> None:
     safe = Model({**DATA, "objective": {"kind": "safety", "goal": None, "bad": ["reachObj", "win"]}})
-    told = MissionView(safe, IdleEnvironment())
+    told = MissionView(safe, TraceEnvironment(()))
     told.on_state(at(5, 131.5, status="won"), 131.5)
     assert told.verdict() == (0, "The objective was kept to the end, after 31.5 time units.")
 
@@ -300,7 +300,7 @@ LABELLED = Model({**DATA, "labels": {"bot": "Porter 1", "a": "front desk", "boy"
 
 
 def test_the_reason_of_an_end_has_labels() -> None:
-    view = MissionView(LABELLED, IdleEnvironment())
+    view = MissionView(LABELLED, TraceEnvironment(()))
     view.on_state(at(1, 100.0, event="_start_"), 100.0)
     view.on_state(at(2, 160.0, status="stopped", reason="{bot} is late, and {a} is not a place"), 160.0)
     verdict = view.verdict()

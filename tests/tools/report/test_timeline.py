@@ -18,7 +18,7 @@ from missions import SCENARIOS, made_up, mission
 from pursue_gen.tools.replay import read_recording
 from pursue_gen.tools.replay.record import MissionRecord
 from pursue_gen.tools.report.html import page
-from pursue_gen.tools.report.recording import from_record, from_states, lasting, stays
+from pursue_gen.tools.report.recording import from_states, lasting, stays
 from pursue_gen.tools.report.timeline import draw, section
 from pursue_runtime.state import HOLDING, RUNNING, WAITING, WON, SystemState
 
@@ -166,7 +166,7 @@ def test_a_bag_is_drawn_as_it_was(tmp_path: Path) -> None:
     bag = recordings.write_bag(recordings.mission(), tmp_path / "mission.bag")
     record, game = read_recording(bag), recordings.game()
     assert isinstance(record, MissionRecord)
-    made = from_record(record, game.scenario, game.network, bag.name)
+    made = from_states(record.states, game.scenario, game.network, bag.name)
     assert made is not None and made.status == WON
     found = lanes(draw(made))
     assert tooltips(found["bot1"], "bar") == ["from c → b, 1.1 to 10.4", "bot1_inb at b, 11.5 to 14.8"]
