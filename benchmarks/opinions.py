@@ -131,7 +131,7 @@ def on_game(network: Network, objective: Objective, rules: Rules, least: int) ->
             return None
         found.verdicts[PLAIN] = None
     else:
-        found.states, found.verdicts[PLAIN] = outcome.counts.discrete_states, outcome.won
+        found.states, found.verdicts[PLAIN] = outcome.stats.discrete_states, outcome.won
         if not least <= found.states <= MOST:
             return None
     found.ask(TWIN, lambda: _decided(ReferenceEngine(), game, _WORK))

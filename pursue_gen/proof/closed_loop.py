@@ -13,7 +13,7 @@ from pursue_gen.proof.delays import Act, Advice, Broken, Passage, Rules, pass_ti
 from pursue_gen.proof.extrapolation import Described, MaxConstants
 from pursue_gen.proof.moves import Arena, JointMove, Situation, State
 from pursue_gen.proof.zones import without
-from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone, ZoneKey
+from pursue_gen.synthesis.strategy import Command, Move, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.scale import common_denominator, least_common_multiple
 from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict, raw
@@ -173,7 +173,8 @@ class ClosedLoop:
             dbm = situation.invariant
             for c in zone:
                 if dbm is not None:
-                    dbm = dbm.constrained(self._index(c.left), self._index(c.right), self._raw(c.bound, c.strict))
+                    bound = raw(self._scaled(c.bound), c.strict)
+                    dbm = dbm.constrained(self._index(c.left), self._index(c.right), bound)
             if dbm is not None:
                 yield n, dbm
 
@@ -184,9 +185,6 @@ class ClosedLoop:
             hint = f"the clocks are {', '.join(self.arena.clock)}"
             raise Invalid([error("SYN104", f"the strategy speaks of a clock {clock}", hint=hint)])
         return self.arena.clock[clock]
-
-    def _raw(self, bound: Fraction, strict: bool) -> int:
-        return raw(self._scaled(bound), strict)
 
     def _scaled(self, bound: Fraction) -> int:
         return bound.numerator * (self.arena.scale // bound.denominator)
@@ -202,7 +200,7 @@ class ClosedLoop:
             block = self.strategy.blocks[b]
             commanded = (joint_move(command, situation)[0] for command in block.commands)
             moves.update((id(move), move) for move in commanded if move is not None and move.enabled is not None)
-            for c in (c for zone in _zones_of(block) for c in zone):
+            for c in (c for zone in block.zones for c in zone):
                 size = abs(self._scaled(c.bound))
                 compared += [(x, size) for x in (self._index(c.left), self._index(c.right)) if x]
         return tuple(moves.values()), compared
@@ -235,12 +233,6 @@ def _number(network: Network, name: str, location: str) -> int:
             return k
     problem = f"the objective speaks of {name}.{location}, which the network does not have"
     raise Invalid([error("SYN105", problem)])
-
-
-def _zones_of(block: Block) -> Iterator[Zone]:
-    yield from block.wait
-    for command in block.commands:
-        yield from command.zones
 
 
 def _scale(network: Network, strategy: Strategy, reaction: Fraction) -> int:

@@ -222,7 +222,7 @@ class _StagesSearch:
         starts = known.states(game)
         if starts is None:
             return None
-        changed: Mapping[Edge, Edge] = {}
+        changed: Mapping[Tuple[str, Edge], Edge] = {}
         if part.goal is not None:
             game, _, changed = ending_at(game, part.goal, owner)
         game = beginning_in(game, starts) if part.milestones else game
@@ -237,10 +237,8 @@ class _StagesSearch:
             if self._budget.used_up:
                 raise
             return None
-        blocks = _without_begin(proven)
-        if part.goal is None:
-            return blocks
-        return list(with_edges(blocks, wanted.goal[0][0], {there: here for here, there in changed.items()}))
+        own = {(name, there): here for (name, here), there in changed.items()}
+        return list(with_edges(_without_begin(proven), own))
 
     def _alive(self, part: _Subtask, team: Collection[str], known: Known) -> Tuple[Network, Extent]:
         """What can happen in a stage in which only this team gets commands."""
@@ -289,11 +287,7 @@ def _grouped(goals: Sequence[Subgoal]) -> List[List[Subgoal]]:
 
 def _received(automaton: Automaton, until: str = "") -> Set[str]:
     """The channels on which an automaton receives, but for those on which it leaves this location."""
-    return {
-        edge.sync.channel
-        for edge in automaton.edges
-        if edge.sync is not None and not edge.sync.sends and edge.source != until
-    }
+    return {edge.received for edge in automaton.edges if edge.received is not None and edge.source != until}
 
 
 def _without_begin(strategy: Strategy) -> List[Block]:
@@ -302,6 +296,5 @@ def _without_begin(strategy: Strategy) -> List[Block]:
     for block in strategy.blocks:
         places = dict(block.state.locations)
         if places.pop(BEGIN, None) != BEGIN:
-            state = replace(block.state, locations=tuple(places.items()))
-            blocks.append(replace(block, state=state))
+            blocks.append(block.with_locations(places.items()))
     return blocks

@@ -65,27 +65,15 @@ def _only_ones(network: Network, visited: Objective, known: AbstractSet[str]) ->
 def _needed(network: Network, rest: Objective) -> AbstractSet[str]:
     """The robots that can do something which the automata of these promises hear."""
     names = {name for name, _ in rest.bad}
-    heard = {
-        edge.sync.channel
-        for automaton in network.automata
-        if automaton.name in names
-        for edge in automaton.edges
-        if edge.sync is not None
-    }
-    return {
-        name
-        for name in commanded_agents(network)
-        for edge in network.automaton(name).edges
-        if edge.sync is not None and edge.sync.channel in heard
-    }
+    heard = {channel for automaton in network.automata if automaton.name in names for channel in automaton.channels}
+    return {name for name in commanded_agents(network) if heard & network.automaton(name).channels}
 
 
 def _without(network: Network, gone: AbstractSet[str]) -> Network:
     """The network without these automata, and what their edges alone set."""
     kept = [automaton for automaton in network.automata if automaton.name not in gone]
-    theirs = {name for a in network.automata if a.name in gone for edge in a.edges for name, _ in edge.assign}
-    own = {name for automaton in kept for edge in automaton.edges for name, _ in edge.assign}
-    variables = {name for name, _ in network.variables if name in own or name not in theirs}
+    setters = network.setters
+    variables = {name for name, _ in network.variables if not setters[name] or setters[name] - gone}
     return part_of(network, {automaton.name for automaton in kept}, variables)
 
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.language.network_names import LOSE
-from pursue_gen.solving.distances import distances_to
+from pursue_gen.solving.distances import backwards, distances_to
 from pursue_gen.solving.due_moves import Duty, duties, patrols
 from pursue_gen.solving.rounds import Robot, Visit
 from pursue_gen.solving.subgoals import commanded_agents
@@ -141,10 +141,7 @@ def _all_ways(
     steps: Mapping[str, Mapping[str, float]]
 ) -> Tuple[Dict[str, Dict[str, float]], Dict[Tuple[str, str], str]]:
     """How long it takes from each place to each other one, and where one goes first."""
-    back: Dict[str, List[Tuple[str, float]]] = {}
-    for start, led in steps.items():
-        for place, takes in led.items():
-            back.setdefault(place, []).append((start, takes))
+    back = backwards(steps)
     times: Dict[str, Dict[str, float]] = {start: {} for start in steps}
     following: Dict[Tuple[str, str], str] = {}
     for place in dict.fromkeys((*steps, *back)):

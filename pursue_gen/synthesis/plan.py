@@ -32,10 +32,7 @@ from pursue_gen.synthesis.plan_reader import RUN_AGAIN, Names, Reader, printed_l
 from pursue_gen.synthesis.plan_text import assign_text, guard_text, sync_text, zones_text
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Move, Strategy, Zone, with_automata_of
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tga.passages import with_passages
-from pursue_gen.tga.tours import with_tours
 from pursue_gen.tga.uppaal_keywords import with_own_names
-from pursue_gen.tga.watchers import with_watchers
 
 _ESCAPE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 _HEADER = re.compile(r"^[ \t]*(Strategy|Counter[ -]strategy) to [^\n:]*:[ \t\r]*$", re.MULTILINE | re.IGNORECASE)
@@ -64,10 +61,9 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     that the property does not hold), where the text is cut or damaged, and where it does not fit the network.
     """
     text = _ESCAPE.sub("", text).replace("\r\n", "\n")
-    watchers = read_watchers(text.partition("\nState:")[0], network, file)
-    passages = read_passages(text.partition("\nState:")[0], network, file)
-    tours = read_tours(text.partition("\nState:")[0], network, file)
-    network = with_tours(with_passages(with_watchers(network, watchers), passages), tours)
+    named = text.partition("\nState:")[0], network, file
+    watchers, passages, tours = read_watchers(*named), read_passages(*named), read_tours(*named)
+    network = with_automata_of(network, Strategy((), watchers=watchers, passages=passages, tours=tours))
     text = with_own_names(text, network)
     header = _HEADER.search(text)
     if header is None:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Dict, Set, Tuple
+from typing import AbstractSet, Dict, Iterable, Set
 
-from pursue_gen.language.numbers import Number
-from pursue_gen.tga.network import Automaton, ClockBound, Edge, Location, Network
+from pursue_gen.tga.network import Automaton, ClockBound, Network
 
 
 def lets_time_pass(automaton: Automaton, network: Network) -> bool:
@@ -14,24 +13,23 @@ def lets_time_pass(automaton: Automaton, network: Network) -> bool:
     At each bound of an invariant there is an edge of the environment that leads away whatever the variables are, and
     each new stay may last a time unit: the clock of the bound is reset on all ways into it.
     """
-    bounded = {location.name: location for location in automaton.locations if location.invariant}
-    here = bounded.get(automaton.initial)
-    if here is not None and network.start and not _starts_within(network, here):
+    here = automaton.stays.get(automaton.initial, ())
+    if network.start and not _starts_within(network, here):
         return False
-    return all(may_be_left(automaton, bounded[name]) for name in _reached(automaton, network) if name in bounded)
+    return all(may_be_left(automaton, name) for name in _reached(automaton, network) if name in automaton.stays)
+
+
+def taken_over(network: Network) -> AbstractSet[str]:
+    """The channels whose moves are the environment's because of one who receives."""
+    return {c for c, some in network.receivers.items() if any(not edge.controllable for _, edge in some)}
 
 
 def _reached(automaton: Automaton, network: Network) -> Set[str]:
     """The locations that the automaton may come to if the controller leaves it alone."""
-    others = {
-        edge.sync.channel
-        for other in network.automata
-        for edge in other.edges
-        if edge.sync is not None and not edge.sync.sends and not edge.controllable
-    }
+    others = taken_over(network)
     onward: Dict[str, Set[str]] = {}
     for edge in automaton.edges:
-        if not edge.controllable or not is_own(edge) or (edge.sync is not None and edge.sync.channel in others):
+        if not edge.is_command or edge.sent in others:
             onward.setdefault(edge.source, set()).add(edge.target)
     found, pending = {automaton.initial}, [automaton.initial]
     while pending:
@@ -41,29 +39,23 @@ def _reached(automaton: Automaton, network: Network) -> Set[str]:
     return found
 
 
-def may_be_left(automaton: Automaton, location: Location) -> bool:
+def may_be_left(automaton: Automaton, location: str) -> bool:
     """True if the environment can lead the automaton away at the bound of that location, whatever the variables are,
-    and each new stay there may last a time unit."""
-    if len(location.invariant) != 1:
+    and each new stay there may last a time unit. Requires that the location has a bound."""
+    if len(automaton.stays[location]) != 1:
         return False
-    bound = location.invariant[0]
-    entering = (edge for edge in automaton.edges if edge.target == location.name != edge.source)
+    (bound,) = automaton.stays[location]
+    entering = (edge for edge in automaton.edges if edge.target == location != edge.source)
     if bound.op != "<=" or bound.bound < 1 or not all(bound.clock in edge.resets for edge in entering):
         return False
     return any(
-        edge.source == location.name
-        and edge.target != location.name
+        edge.source == location != edge.target
         and not edge.controllable
-        and is_own(edge)
+        and edge.received is None
         and not edge.guard.integers
         and all(_holds_at(test, bound) for test in edge.guard.clocks)
         for edge in automaton.edges
     )
-
-
-def is_own(edge: Edge) -> bool:
-    """True for an edge that is taken without anybody's sending."""
-    return edge.sync is None or edge.sync.sends
 
 
 def _holds_at(test: ClockBound, bound: ClockBound) -> bool:
@@ -75,9 +67,7 @@ def _holds_at(test: ClockBound, bound: ClockBound) -> bool:
     return test.clock == bound.clock and outcomes.get(test.op, False)
 
 
-def _starts_within(network: Network, location: Location) -> bool:
-    """True if the clocks at the start are within the invariant of the location."""
-    tops: Tuple[Tuple[str, Number], ...] = tuple((bound.clock, bound.bound) for bound in location.invariant)
-    return all(
-        any(c.left == clock and c.right is None and c.bound <= top for c in network.start) for clock, top in tops
-    )
+def _starts_within(network: Network, bounds: Iterable[ClockBound]) -> bool:
+    """True if the clocks at the start are within these bounds."""
+    start = [constraint for constraint in network.start if constraint.right is None]
+    return all(any(c.left == bound.clock and c.bound <= bound.bound for c in start) for bound in bounds)
