@@ -38,7 +38,7 @@ def games_apart(share: StagePart, names: Sequence[str]) -> Iterator[StagePart]:
     for name in names:
         others = set(names) - {name}
         kept = {automaton.name for automaton in share.game.automata} - others
-        game = part_of(share.game, kept, {variable for variable, _ in share.game.variables})
+        game = part_of(share.game, kept)
         wanted = replace(share.objective, bad=tuple(place for place in share.objective.bad if place[0] not in others))
         fault = fault or why_it_matters(share.game, wanted, game, {each: set() for each in others})
         blocks, numbers = _lifted(share.strategy.blocks, game, name, wanted.bad)

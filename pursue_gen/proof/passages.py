@@ -191,7 +191,7 @@ class _CommandedSearch:
         for clause in edge.guard.integers:
             needed[next(test.variable for test in clause if course.now(test.variable) == test.value)] = None
         receivers: Dict[str, Edge] = {}
-        for name, other in self._part.receivers.get(edge.sync.channel, ()) if edge.sync is not None else ():
+        for name, other in self._part.receivers.get(edge.channel or "", ()):
             if name != sender and other.source == course.now(name) and course.holds(other.guard):
                 if name in receivers:
                     raise Fault(f"{name} may receive what {sender} does in two ways")
@@ -273,16 +273,14 @@ class _CommandedSearch:
             meeting = [k for k in range(len(course.values[name])) if course.may_all_meet((name, k), needs)]
             if len(meeting) != 1 or wanted not in (None, meeting[0]):
                 raise Fault(f"{name} may be otherwise when {event.sender} leaves {event.edge.source}")
-        if event.edge.sync is None:
-            return
-        for name, edge in self._part.receivers.get(event.edge.sync.channel, ()):
+        for name, edge in self._part.receivers.get(event.edge.channel or "", ()):
             if name == event.sender or (name, edge) in event.receivers:
                 continue
             for k in course.stays(name, edge.source):
                 if course.may_all_meet((name, k), needs):
                     known = (*needs, *(() if name in event.needs else ((name, k),)))
                     if next(course.meetings(course.tested(edge.guard), known), None) is not None:
-                        raise Fault(f"{name} may receive {event.edge.sync.channel}, or not")
+                        raise Fault(f"{name} may receive {event.edge.channel}, or not")
 
     def _check_stay(self, stay: Stay, place: str) -> None:
         """Whatever its automaton may do in a state is what it does there."""

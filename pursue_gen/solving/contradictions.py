@@ -79,7 +79,7 @@ def _requests(network: Network, arrival: Edge) -> Set[str]:
 def _asks(automaton: Automaton, arrival: Edge) -> bool:
     """True if the automaton hears of the arrival, or asks about where it leads."""
     stay = dict(arrival.assign)
-    if arrival.sync is not None and arrival.sync.channel in automaton.channels:
+    if arrival.channel in automaton.channels:
         return True
     return any(stay.get(t.variable) == t.value for edge in automaton.edges for c in edge.guard.integers for t in c)
 

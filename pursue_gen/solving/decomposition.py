@@ -268,7 +268,7 @@ class _StagesSearch:
             or (automaton.name in part.ending and edge.is_end)
             or (is_last and not is_agent(automaton))
             if is_controllers(edge, self._taken)
-            and (edge.sync is None or edge.sync.channel not in undoing)
+            and edge.channel not in undoing
             and all(fixed.get(name, value) == value for name, value in edge.assign)
         }
 

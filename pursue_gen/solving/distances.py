@@ -58,13 +58,13 @@ def time_to_help(network: Network, robot: str, promise: Place) -> float:
     avoided asks for it; infinite where it never comes there."""
     watching, automaton = network.automaton(promise[0]), network.automaton(robot)
     edges = [edge for edge in watching.edges if not watching.stays or edge.source in watching.stays]
-    heard = {edge.sync.channel for edge in edges if edge.sync is not None}
+    heard = {edge.channel for edge in edges if edge.channel is not None}
     asked = {(test.variable, test.value) for edge in edges for clause in edge.guard.integers for test in clause}
     named = {name for name, _ in asked}
     there = {
         edge.target
         for edge in automaton.edges
-        if (edge.sync is not None and edge.sync.channel in heard)
+        if (edge.channel in heard)
         or any(name in named and ((name, value) in asked) == bool(watching.stays) for name, value in edge.assign)
     }
     return float(times_to(there, automaton).get(automaton.initial, math.inf))

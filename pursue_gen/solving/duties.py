@@ -144,18 +144,18 @@ class _Answers:
 
 
 def _answers(network: Network, watched: _Watched, robots: Sequence[str]) -> Optional[_Answers]:
-    called = {edge.sync.channel if edge.sync is not None else "" for edge in watched.entries}
-    ends = frozenset(edge.sync.channel if edge.sync is not None else "" for edge in watched.exits)
+    called = {edge.channel or "" for edge in watched.entries}
+    ends = frozenset(edge.channel or "" for edge in watched.exits)
     watching = network.automaton(watched.promise[0])
-    hearing = [edge for edge in watching.edges if edge.sync is not None and edge.sync.channel in called]
+    hearing = [edge for edge in watching.edges if edge.channel in called]
     if len(called) > 1 or called & ends or "" in ends:
         return None
     if any(e.source in watched.calm and (e not in watched.entries or e.guard.integers) for e in hearing):
         return None
-    heard = [(a, e, e.sync.sends) for a in network.automata for e in a.edges if e.sync and e.sync.channel in ends]
-    if any(sends != (a.name in robots) and (sends or a.name in robots) for a, _, sends in heard):
+    heard = [(name, edge) for name, edge in network.edges if edge.channel in ends]
+    if any((edge.sent is not None) != (name in robots) for name, edge in heard if edge.sent or name in robots):
         return None  # others have a part in it
-    doing = {robot: {edge.source for a, edge, _ in heard if a.name == robot} for robot in robots}
+    doing = {robot: {edge.source for name, edge in heard if name == robot} for robot in robots}
     times = {robot: _times(network.automaton(robot), some, True) for robot, some in doing.items()}
     rests = _callers(network, watched, called)
     return _Answers(Duty(watched.promise, watched.within, times, ends), rests) if rests else None
@@ -203,7 +203,7 @@ def _holds_while_calm(network: Network, watched: _Watched, clause: Sequence[Test
 
 def _after(automaton: Automaton, place: str, channel: str) -> List[str]:
     """Where an automaton may be after somebody sent on the channel."""
-    heard = [e for e in automaton.edges if e.source == place and e.sync is not None and e.sync.channel == channel]
+    heard = [e for e in automaton.edges if e.source == place and e.channel == channel]
     sure = any(not edge.guard.integers and not edge.guard.clocks for edge in heard)
     return [*(edge.target for edge in heard), *(() if sure else (place,))]
 

@@ -134,7 +134,7 @@ def asking_only(game: Network, watching: Collection[str]) -> Network:
 
     def quiet(automaton: Automaton) -> Automaton:
         stays = automaton.stays
-        known = {e.source for e in automaton.edges if e.sync is not None and e.sync.channel in heard}
+        known = {e.source for e in automaton.edges if e.channel in heard}
 
         def is_kept(edge: Edge) -> bool:
             if edge.sent is None or edge.sent in heard:

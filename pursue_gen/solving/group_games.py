@@ -53,7 +53,7 @@ class GroupGames:
         # The automata of other promises only watch.
         names = {automaton.name for automaton in alive.automata}.difference(name for name, _ in self._objective.bad)
         names.update(name for name, _ in bad)
-        alive = part_of(alive, names, self._setters.keys())
+        alive = part_of(alive, names)
         hidden = {a.name for a in alive.automata if is_agent(a) and a.name not in group.team and shown != ALL}
         tested = {name for _, edge in mine for name in edge.variables}
         while True:

@@ -182,8 +182,7 @@ class _Rounds:
 
     def _is_heard(self, edge: Edge, plan: Sequence[Tuple[str, Edge]]) -> bool:
         """False for an event if its receivers in the plan, or those of its end, are not there yet."""
-        ends = [e.sync for e in self._ends.get(edge.target, ()) if e.sync is not None]
-        channels = {sync.channel for sync in (edge.sync, *ends) if sync is not None}
+        channels = {each.channel for each in (edge, *self._ends.get(edge.target, ()))} - {None}
         receiving = [(name, other) for name, other in plan if other.received in channels]
         return not receiving or any(self._play.now[name] == e.source for name, e in receiving)
 

@@ -86,7 +86,7 @@ def _starts(game: Network, robot: str) -> Iterator[Network]:
         return
     heard = {channel for each in watching for channel in each.channels}
     for end in automaton.edges:
-        if end.is_end and end.sync is not None and end.sync.channel in heard:
+        if end.is_end and end.channel in heard:
             there = replace(automaton, initial=end.target)
             automata = tuple(there if a is automaton else a for a in game.automata)
             yield replace(game, automata=automata, variables=_with(game, end))

@@ -43,8 +43,8 @@ class _UseSearch:
         """Take in what these edges receive, and which variables they test or set."""
         for edge in edges:
             self._variables.update(edge.variables)
-            if edge.sync is not None:
-                self._channels.add(edge.sync.channel)
+            if edge.channel is not None:
+                self._channels.add(edge.channel)
 
     def grow(self) -> bool:
         """Take in what may change that, by one step more; False if that is nothing."""

@@ -66,8 +66,8 @@ class _Cone:
             for edge in automaton.edges:
                 if edge not in gone[automaton.name] and not self._may_go(automaton, edge):
                     self.variables.update(edge.variables)
-                    if edge.sync is not None:
-                        (sent if edge.sync.sends else received).add(edge.sync.channel)
+                    if edge.channel is not None:
+                        (received if edge.sent is None else sent).add(edge.channel)
         for automaton in self._network.automata:
             if automaton.name not in self.automata and any(
                 self._is_seen(edge, sent, received) for edge in automaton.edges

@@ -38,7 +38,7 @@ def with_hidden(network: Network, part: Network) -> Network:
         kept.append(Automaton(HIDDEN, (Location(HIDDEN),), HIDDEN, tuple(hidden)))
     elif tuple(kept) == part.automata:
         return part
-    sent = {edge.sync.channel for edge in hidden if edge.sync is not None}
+    sent = {edge.channel for edge in hidden if edge.channel is not None}
     channels = [channel for channel in network.channels if channel in sent or channel in part.channels]
     channels += sorted(sent.difference(channels))
     return replace(part, automata=tuple(kept), channels=tuple(channels))

@@ -140,14 +140,19 @@ class Edge:
         return replace(self, guard=guard, assign=(*self.assign, *assign), resets=(*self.resets, *resets))
 
     @cached_property
+    def channel(self) -> Optional[str]:
+        """The channel on which it sends or receives; None for a step of its own."""
+        return None if self.sync is None else self.sync.channel
+
+    @cached_property
     def sent(self) -> Optional[str]:
         """The channel on which it sends; None where it does not."""
-        return self.sync.channel if self.sync is not None and self.sync.sends else None
+        return self.channel if self.sync is not None and self.sync.sends else None
 
     @cached_property
     def received(self) -> Optional[str]:
         """The channel on which it receives; None where it begins a move itself."""
-        return None if self.sync is None or self.sync.sends else self.sync.channel
+        return None if self.sync is None or self.sync.sends else self.channel
 
     @property
     def is_command(self) -> bool:
@@ -223,7 +228,7 @@ class Automaton:
     @cached_property
     def channels(self) -> FrozenSet[str]:
         """The channels on which it sends or receives."""
-        return frozenset(edge.sync.channel for edge in self.edges if edge.sync is not None)
+        return frozenset(edge.channel for edge in self.edges if edge.channel is not None)
 
     def with_locations(self, changed: Callable[[Location], Location]) -> Automaton:
         """The automaton with what this makes of each of its locations."""

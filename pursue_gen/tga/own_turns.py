@@ -59,5 +59,5 @@ def _in_turn(turn: OwnTurn, edge: Edge) -> List[Edge]:
 def _steps(turn: OwnTurn, channel: str) -> List[Tuple[int, int]]:
     """From which number to which one the channel leads."""
     numbers = {location.name: number for number, location in enumerate(turn.order.locations)}
-    steps = (edge for edge in turn.order.edges if edge.sync is not None and edge.sync.channel == channel)
+    steps = (edge for edge in turn.order.edges if edge.channel == channel)
     return [(numbers[step.source], numbers[step.target]) for step in steps]

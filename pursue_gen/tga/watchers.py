@@ -87,7 +87,7 @@ def _narrowed(edges: Iterable[Edge], channels: AbstractSet[str], variables: Abst
     """The edges as if nobody sent on these channels: towards the risk whatever these variables are, away from it only
     because of others."""
     for edge in edges:
-        if edge.sync is not None and edge.sync.channel in channels:
+        if edge.channel in channels:
             continue
         clauses = edge.guard.integers
         tests = [(clause, tuple(test for test in clause if test.variable not in variables)) for clause in clauses]
@@ -108,5 +108,5 @@ def _is_kept_at_start(network: Network, watched: Automaton, team: Iterable[str])
     """True if one of the team keeps the objective at the start; or none of them ever breaks it by going away."""
     feared = {edge.sync.channel for edge in watched.edges if edge.target == AT_RISK and edge.sync is not None}
     robots = [automaton for automaton in network.automata if automaton.name in team]
-    leaving = [(a.initial, edge) for a in robots for edge in a.edges if edge.sync and edge.sync.channel in feared]
+    leaving = [(a.initial, edge) for a in robots for edge in a.edges if edge.channel in feared]
     return not leaving or any(edge.source == initial for initial, edge in leaving)
