@@ -27,6 +27,7 @@ from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga.network import Kind, Network, Objective
 from tests.oracle.checker import in_python
 from tests.oracle.engine import ReferenceEngine
+from tests.oracle.zone_graph import max_constants
 
 PLAIN, TWIN, NATIVE, IN_TURN, SOONEST, REGIONS = "plain", "python", "native", "in turn", "soonest", "regions"
 COMMAND, WHOLE, COMPOSED, NO_RESTS, FEW_CALLS = "command", "whole", "composed", "no rests", "few calls"
@@ -155,7 +156,7 @@ def _decided(engine: Engine, game: Game, work: int, soonest: bool = False) -> bo
 def _positions(game: Game, states: int) -> int:
     """About so many positions at most: a time on the way of each clock, or between two of them, up to its constant."""
     positions = states
-    for largest in game.max_constants[1:]:
+    for largest in max_constants(game)[1:]:
         positions *= 2 * (largest + game.delta) + 2
     return positions
 

@@ -65,7 +65,6 @@ def slower(game: Game, factor: int) -> Game:
     return replace(
         game,
         delta=game.delta * factor,
-        max_constants=tuple(max(constant, constant * factor) for constant in game.max_constants),
         automata=tuple(
             replace(
                 automaton,
