@@ -13,7 +13,8 @@ from collections import Counter
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from typing import Callable, Dict, FrozenSet, Mapping, Optional, Sequence, Set, Tuple, Union
+from itertools import count, groupby
+from typing import Callable, Dict, FrozenSet, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.proof import reasons
@@ -157,9 +158,8 @@ def _with_passages(
         latest(found, strategy, reaction)
     except Fault as fault:
         return _refused(f"passages: {fault}")
-    used = [(b, "wait", n) for b, block in enumerate(strategy.blocks) for n in range(len(block.wait))]
-    commands = [(b, k, 0) for b, block in enumerate(strategy.blocks) for k in range(len(block.commands))]
-    return ProofReport(True, "", (), frozenset((*used, *commands)), len(found.course.events))
+    used = (key for b in range(len(strategy.blocks)) for key in strategy.keys_of(b))
+    return ProofReport(True, "", (), frozenset(used), len(found.course.events))
 
 
 def _in_parts(
@@ -222,17 +222,12 @@ def pruned(strategy: Strategy, report: ProofReport) -> Strategy:
 def pruned_ranks(strategy: Strategy, report: ProofReport, ranks: Mapping[ZoneKey, int]) -> Dict[ZoneKey, int]:
     """The ranks of the zones that are left in the pruned strategy, by where they stand there."""
     found: Dict[ZoneKey, int] = {}
-    blocks = 0
-    for b, block in enumerate(strategy.blocks):
-        commands = -1
-        for k in range(-1, len(block.commands)):
-            part: Union[str, int] = "wait" if k < 0 else k
-            count = len(block.wait) if k < 0 else len(block.commands[k].zones)
-            left = [n for n in range(count) if (b, part, n) in report.used]
-            commands += bool(left) and k >= 0
-            for new, n in enumerate(left):
-                found[(blocks, part if k < 0 else commands, new)] = ranks.get((b, part, n), 0)
-        blocks += (blocks, "wait", 0) in found or commands >= 0
+    used = (key for b in range(len(strategy.blocks)) for key in strategy.keys_of(b) if key in report.used)
+    for block, (_, own) in enumerate(groupby(used, key=lambda key: key[0])):
+        commands = count()
+        for part, keys in groupby(own, key=lambda key: key[1]):
+            new = part if part == "wait" else next(commands)
+            found.update(((block, new, n), ranks.get(key, 0)) for n, key in enumerate(keys))
     return found
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Callable, FrozenSet, Iterable, Iterator, Mapping, Optional, Tuple, Union
+from typing import Callable, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Tuple, Union
 
 from pursue_gen.tga.network import Constraint as Constraint
 from pursue_gen.tga.network import Edge, Network
@@ -18,6 +18,9 @@ from pursue_gen.tga.watchers import Watcher, with_watchers
 
 Place = Tuple[str, str]
 """An automaton and one of its locations; as a milestone also a variable and one of its values."""
+
+ZoneKey = Tuple[int, Union[str, int], int]
+"""Where a zone stands in a strategy: number of the block, "wait" or number of the command in it, number of the zone."""
 
 Zone = Tuple[Constraint, ...]
 """All of these constraints, and every clock >= 0; the empty zone tuple `()` is: always."""
@@ -153,6 +156,13 @@ class Strategy:
         zones = {id(zone): zone for block in self.blocks for zone in block.zones}
         return tuple({id(constraint): constraint for zone in zones.values() for constraint in zone}.values())
 
+    def keys_of(self, number: int) -> List[ZoneKey]:
+        """Where the zones of a block stand, in order: those in which to wait first."""
+        block = self.blocks[number]
+        parts: List[Tuple[Union[str, int], int]] = [("wait", len(block.wait))]
+        parts += [(k, len(command.zones)) for k, command in enumerate(block.commands)]
+        return [(number, part, n) for part, count in parts for n in range(count)]
+
     @property
     def size(self) -> int:
         """The number of its commands, over all states."""
@@ -181,7 +191,3 @@ def with_zones(blocks: Iterable[Block], changed: Callable[[Zone], Zone]) -> Iter
     for block in blocks:
         commands = (replace(command, zones=tuple(map(changed, command.zones))) for command in block.commands)
         yield replace(block, wait=tuple(map(changed, block.wait)), commands=tuple(commands))
-
-
-ZoneKey = Tuple[int, Union[str, int], int]
-"""Where a zone stands in a strategy: number of the block, "wait" or number of the command in it, number of the zone."""
