@@ -224,15 +224,11 @@ def _places(network: Network, places: Sequence[Tuple[str, str]]) -> Tuple[Tuple[
     """Pairs (automaton, location) with the numbers of the automata."""
     if not places:
         raise Invalid([error("SYN105", "the objective names no goal or no location to avoid")])
-    return tuple((_number(network, name, location), location) for name, location in places)
-
-
-def _number(network: Network, name: str, location: str) -> int:
-    for k, automaton in enumerate(network.automata):
-        if automaton.name == name and any(other.name == location for other in automaton.locations):
-            return k
-    problem = f"the objective speaks of {name}.{location}, which the network does not have"
-    raise Invalid([error("SYN105", problem)])
+    unknown = [".".join(place) for place in places if place not in network.places]
+    if unknown:
+        raise Invalid([error("SYN105", f"the objective speaks of {unknown[0]}, which the network does not have")])
+    numbers = {automaton.name: k for k, automaton in enumerate(network.automata)}
+    return tuple((numbers[name], location) for name, location in places)
 
 
 def _scale(network: Network, strategy: Strategy, reaction: Fraction) -> int:

@@ -13,7 +13,7 @@ from typing import Collection, Dict, FrozenSet, Iterator, List, Mapping, Optiona
 
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT, verify
-from pursue_gen.proof.relaxed_reachability import Commanded, Extent, is_controllers, live, taken_over
+from pursue_gen.proof.relaxed_reachability import Extent, is_controllers, live, taken_over
 from pursue_gen.proof.stage_entry import Known, at_start
 from pursue_gen.proof.stages import after_stage, is_sure, stage_objective
 from pursue_gen.solving.found import Found, stats_of_all
@@ -241,15 +241,8 @@ class _StagesSearch:
         return list(with_edges(_without_begin(proven), own))
 
     def _alive(self, part: _Subtask, team: Collection[str], known: Known) -> Tuple[Network, Extent]:
-        """What can happen in a stage in which only this team gets commands."""
-        return live(self._network, self._allowed(part, team), known.extent)
-
-    def _allowed(self, part: _Subtask, team: Collection[str]) -> Commanded:
-        """What may be commanded in a stage: the commands of the team, except those that undo a milestone or meet
-        another subgoal.
-
-        Commands of objectives are allowed in the last stage only.
-        """
+        """What can happen in a stage in which only this team gets commands, except those that undo a milestone or meet
+        another subgoal. Commands of objectives are allowed in the last stage only."""
         undoing: Set[str] = set()
         fixed: Dict[str, int] = {}
         for name, place in (subgoal.place for subgoal in self._subgoals):
@@ -260,7 +253,7 @@ class _StagesSearch:
         if part.goal is not None and part.goal[0] not in self._variables:
             undoing -= _received(self._network.automaton(part.goal[0]), part.goal[1])
         is_last = part.goal is None or (part.goal,) == self._objective.goal
-        return {
+        allowed = {
             (automaton.name, edge)
             for automaton in self._network.automata
             for edge in automaton.edges
@@ -271,6 +264,7 @@ class _StagesSearch:
             and edge.channel not in undoing
             and all(fixed.get(name, value) == value for name, value in edge.assign)
         }
+        return live(self._network, allowed, known.extent)
 
 
 def _grouped(goals: Sequence[Subgoal]) -> List[List[Subgoal]]:
