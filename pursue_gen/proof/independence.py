@@ -157,7 +157,7 @@ def _why_an_edge_matters(automaton: Automaton, kept: Automaton, part: Network, h
         what = f"may go from {edge.source} to {edge.target}"
         if edge.source != edge.target or edge.resets or any(name in variables for name, _ in edge.assign):
             return f"{what}, by an edge that is left out"
-        if any(name != automaton.name for name, _ in part.receivers.get(edge.sent or "", ())):
+        if any(name != automaton.name for name, _ in part.receivers.get(edge.sent, ())):
             return f"sends {edge.sent} by an edge that is left out"
         rival = any(e.sync == edge.sync and e.source == edge.source for e in kept.edges)
         if edge.received is not None and (rival or not edge.controllable):

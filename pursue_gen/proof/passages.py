@@ -191,7 +191,7 @@ class _CommandedSearch:
         for clause in edge.guard.integers:
             needed[next(test.variable for test in clause if course.now(test.variable) == test.value)] = None
         receivers: Dict[str, Edge] = {}
-        for name, other in self._part.receivers.get(edge.channel or "", ()):
+        for name, other in self._part.receivers.get(edge.channel, ()):
             if name != sender and other.source == course.now(name) and course.holds(other.guard):
                 if name in receivers:
                     raise Fault(f"{name} may receive what {sender} does in two ways")
@@ -273,7 +273,7 @@ class _CommandedSearch:
             meeting = [k for k in range(len(course.values[name])) if course.may_all_meet((name, k), needs)]
             if len(meeting) != 1 or wanted not in (None, meeting[0]):
                 raise Fault(f"{name} may be otherwise when {event.sender} leaves {event.edge.source}")
-        for name, edge in self._part.receivers.get(event.edge.channel or "", ()):
+        for name, edge in self._part.receivers.get(event.edge.channel, ()):
             if name == event.sender or (name, edge) in event.receivers:
                 continue
             for k in course.stays(name, edge.source):

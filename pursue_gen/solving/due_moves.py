@@ -59,7 +59,7 @@ def patrols(network: Network) -> FrozenSet[str]:
 
 def _is_patrol(network: Network, automaton: Automaton) -> bool:
     begins = [edge for edge in automaton.edges if edge.source != AT_RISK and edge.target == AT_RISK]
-    led = (sent for edge in begins for _, sent in network.senders.get(edge.channel or "", ()))
+    led = (sent for edge in begins for _, sent in network.senders.get(edge.channel, ()))
     return bool(begins) and all(sent.controllable and sent.enters is Role.WAY for sent in led)
 
 
@@ -74,7 +74,7 @@ def _duty(network: Network, automaton: Automaton, patrol: bool) -> Duty:
     visits: Dict[str, Tuple[str, ...]] = {}
     for edge in automaton.edges:
         if patrol and edge.source == AT_RISK and edge.target == IDLE:
-            for name, sent in network.senders.get(edge.channel or "", ()):
+            for name, sent in network.senders.get(edge.channel, ()):
                 visits[name] = tuple(dict.fromkeys((*visits.get(name, ()), sent.target)))
     bound = automaton.stays[AT_RISK][0]
     return Duty(automaton.name, bound.clock, bound.bound, visits)

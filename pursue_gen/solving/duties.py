@@ -181,7 +181,7 @@ def _holds_while_calm(network: Network, watched: _Watched, clause: Sequence[Test
     (name,), (rule,), watching = names, rules, network.automaton(watched.promise[0])
     values = {rule.initial: dict(network.variables)[name]}
     values.update((edge.target, dict(edge.assign)[name]) for edge in rule.edges)
-    sending: Dict[str, Set[int]] = {}
+    sending: Dict[Optional[str], Set[int]] = {}
     for channel, some in network.senders.items():
         for _, edge in some:
             about = [{t.value for t in c} for c in edge.guard.integers if all(t.variable == name for t in c)]
@@ -201,7 +201,7 @@ def _holds_while_calm(network: Network, watched: _Watched, clause: Sequence[Test
     return True
 
 
-def _after(automaton: Automaton, place: str, channel: str) -> List[str]:
+def _after(automaton: Automaton, place: str, channel: Optional[str]) -> List[str]:
     """Where an automaton may be after somebody sent on the channel."""
     heard = [e for e in automaton.edges if e.source == place and e.channel == channel]
     sure = any(not edge.guard.integers and not edge.guard.clocks for edge in heard)

@@ -59,7 +59,7 @@ class Play:
         if self.now[sender] != edge.source or not edge.guard.holds(self.now):
             return False
         receivers: Dict[str, Edge] = {}
-        for name, other in self._heard.get(edge.channel or "", ()):
+        for name, other in self._heard.get(edge.channel, ()):
             if name != sender and other.source == self.now[name] and other.guard.holds(self.now):
                 receivers[name] = other
         step = Step(sender, edge, tuple(receivers.items()), dict(self.now))

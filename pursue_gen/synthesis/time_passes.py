@@ -21,7 +21,7 @@ def lets_time_pass(automaton: Automaton, network: Network) -> bool:
 
 def taken_over(network: Network) -> AbstractSet[str]:
     """The channels whose moves are the environment's because of one who receives."""
-    return {c for c, some in network.receivers.items() if any(not edge.controllable for _, edge in some)}
+    return {edge.received for _, edge in network.edges if edge.received is not None and not edge.controllable}
 
 
 def _reached(automaton: Automaton, network: Network) -> Set[str]:

@@ -244,6 +244,10 @@ class Automaton:
         return self.with_edges(new for edge in self.edges for new in changed(edge))
 
 
+ByChannel = Mapping[Optional[str], Sequence[Tuple[str, Edge]]]
+"""By channel some edges, each with the name of its automaton; the None of steps of their own is never in it."""
+
+
 @dataclass(frozen=True)
 class Network:
     """Automata in system order; clocks, variables (with first values) and broadcast channels as declared.
@@ -277,12 +281,12 @@ class Network:
         return tuple((automaton.name, edge) for automaton in self.automata for edge in automaton.edges)
 
     @cached_property
-    def senders(self) -> Mapping[str, Sequence[Tuple[str, Edge]]]:
+    def senders(self) -> ByChannel:
         """By channel the edges that send on it, in order; channels on which nobody sends are not in it."""
         return _by_channel((edge.sent, name, edge) for name, edge in self.edges)
 
     @cached_property
-    def receivers(self) -> Mapping[str, Sequence[Tuple[str, Edge]]]:
+    def receivers(self) -> ByChannel:
         """By channel the edges that receive on it, likewise."""
         return _by_channel((edge.received, name, edge) for name, edge in self.edges)
 
@@ -313,8 +317,8 @@ class Network:
         raise KeyError(name)
 
 
-def _by_channel(edges: Iterable[Tuple[Optional[str], str, Edge]]) -> Mapping[str, Sequence[Tuple[str, Edge]]]:
-    found: Dict[str, List[Tuple[str, Edge]]] = {}
+def _by_channel(edges: Iterable[Tuple[Optional[str], str, Edge]]) -> ByChannel:
+    found: Dict[Optional[str], List[Tuple[str, Edge]]] = {}
     for channel, name, edge in edges:
         if channel is not None:
             found.setdefault(channel, []).append((name, edge))
