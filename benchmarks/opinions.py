@@ -27,6 +27,7 @@ from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga.network import Kind, Network, Objective
 from tests.oracle.checker import in_python
 from tests.oracle.engine import ReferenceEngine
+from tests.oracle.zone_graph import max_constants
 
 PLAIN, TWIN, NATIVE, IN_TURN, SOONEST, REGIONS = "plain", "python", "native", "in turn", "soonest", "regions"
 COMMAND, WHOLE, COMPOSED, NO_RESTS, FEW_CALLS = "command", "whole", "composed", "no rests", "few calls"
@@ -131,7 +132,7 @@ def on_game(network: Network, objective: Objective, rules: Rules, least: int) ->
             return None
         found.verdicts[PLAIN] = None
     else:
-        found.states, found.verdicts[PLAIN] = outcome.counts.discrete_states, outcome.won
+        found.states, found.verdicts[PLAIN] = outcome.stats.discrete_states, outcome.won
         if not least <= found.states <= MOST:
             return None
     found.ask(TWIN, lambda: _decided(ReferenceEngine(), game, _WORK))
@@ -155,7 +156,7 @@ def _decided(engine: Engine, game: Game, work: int, soonest: bool = False) -> bo
 def _positions(game: Game, states: int) -> int:
     """About so many positions at most: a time on the way of each clock, or between two of them, up to its constant."""
     positions = states
-    for largest in game.max_constants[1:]:
+    for largest in max_constants(game)[1:]:
         positions *= 2 * (largest + game.delta) + 2
     return positions
 

@@ -147,7 +147,7 @@ def played(number: int, kind: Kind, rules: Rules) -> Optional[Played]:
             return None
         plainly_won, states = None, 0
     else:
-        plainly_won, states = outcome.won, outcome.counts.discrete_states
+        plainly_won, states = outcome.won, outcome.stats.discrete_states
     plain_seconds = time.process_time() - start
     if plainly_won is not None and not LEAST <= states <= MOST:
         return None

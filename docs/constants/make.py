@@ -36,7 +36,7 @@ FIXED = {
     "proof/course.py": ["START"],
     "proof/extrapolation.py": ["NEVER"],
     "proof/native/search.py": ["_UNBOUNDED"],
-    "proof/native/simplify.py": ["_UNKNOWN"],
+    "proof/simplify.py": ["_UNKNOWN"],
     "proof/native/tables.py": ["_CLOCKS", "MOST_FACTOR"],
     "solving/group_games.py": ["NEEDED"],
     "solving/passages.py": ["_UNITS"],

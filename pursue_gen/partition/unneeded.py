@@ -18,7 +18,7 @@ def unneeded(scenario: Scenario, strategy: Strategy) -> Tuple[Agent, ...]:
     """
     moves = [move for block in strategy.blocks for command in block.commands for move in command.moves]
     moved = {move.automaton for move in moves}
-    begun = {move.edge.sync.channel for move in moves if move.edge.sync is not None}
+    begun = {move.edge.channel for move in moves}
     begun |= {ref.name for agent in scenario.agents if not agent.controllable for ref in agent.can_do}
     present = _present(scenario)
     return tuple(

@@ -13,12 +13,12 @@ command, and waits only before it, by a clock that the automaton does not reset.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Iterator, List, Sequence, Tuple
+from typing import Iterator, List, Mapping, Sequence, Tuple
 
 from pursue_gen.proof.independence import why_it_matters
 from pursue_gen.proof.stages import StagePart
 from pursue_gen.synthesis.strategy import Block, Command, Move, Place, Strategy, Zone
-from pursue_gen.tga.network import Automaton, Edge, Network
+from pursue_gen.tga.network import Automaton, Network
 from pursue_gen.tga.part import part_of
 
 
@@ -26,7 +26,7 @@ def kept_apart(strategy: Strategy, share: int) -> Sequence[str]:
     """The automata that a share keeps and its blocks do not name, without those of objectives that watchers have in
     their place."""
     avoided = strategy.shares[share]
-    named = {name for n in strategy.numbers_of(share, avoided[0]) for name, _ in strategy.blocks[n].state.locations}
+    named = {name for n in strategy.numbers_of(share, avoided[0]) for name in strategy.blocks[n].state.names[0]}
     kept = {name for name, _ in avoided} | named
     watched = {watcher.objective for watcher in strategy.watchers if watcher.name in kept}
     return tuple(dict.fromkeys(name for name, _ in avoided if name not in named | watched))
@@ -38,7 +38,7 @@ def games_apart(share: StagePart, names: Sequence[str]) -> Iterator[StagePart]:
     for name in names:
         others = set(names) - {name}
         kept = {automaton.name for automaton in share.game.automata} - others
-        game = part_of(share.game, kept, {variable for variable, _ in share.game.variables})
+        game = part_of(share.game, kept)
         wanted = replace(share.objective, bad=tuple(place for place in share.objective.bad if place[0] not in others))
         fault = fault or why_it_matters(share.game, wanted, game, {each: set() for each in others})
         blocks, numbers = _lifted(share.strategy.blocks, game, name, wanted.bad)
@@ -52,7 +52,7 @@ def _why_not_apart(blocks: Sequence[Block], automata: Sequence[Automaton]) -> st
     own = {clock for automaton in automata for clock in automaton.clocks}
     for block in blocks:
         due = [zone for command in block.commands for zone in command.zones]
-        if any(bound.left in own or bound.right in own for zone in (*block.wait, *due) for bound in zone):
+        if any(bound.left in own or bound.right in own for zone in block.zones for bound in zone):
             return "it compares clocks of what it keeps and does not name"
         if len(block.commands) > 1 or not all(_is_before(wait, zone) for wait in block.wait for zone in due):
             return "what it keeps and does not name may change while a command is on its way, and is not the last word"
@@ -85,25 +85,16 @@ def _lifted(
         locations = block.state.locations
         at = sum(each in before for each, _ in locations)
         for location in (each.name for each in own.locations if (name, each.name) not in bad):
-            moved = (*locations[:at], (name, location), *locations[at:])
-            commands = tuple(_heard(command, own, location, block) for command in block.commands)
-            found.append(replace(block, state=replace(block.state, locations=moved), commands=commands))
+            moved = block.with_locations((*locations[:at], (name, location), *locations[at:]))
+            commands = tuple(_heard(command, own, location, dict(block.state.values)) for command in block.commands)
+            found.append(replace(moved, commands=commands))
             numbers.append(number)
     return tuple(found), tuple(numbers)
 
 
-def _heard(command: Command, automaton: Automaton, location: str, block: Block) -> Command:
+def _heard(command: Command, automaton: Automaton, location: str, values: Mapping[str, int]) -> Command:
     """The command with the edges on which the automaton receives it there."""
-    received = (Move(automaton.name, edge) for edge in _receiving(command, automaton, location, block))
+    sent = command.moves[0].edge.sent
+    there = (edge for edge in automaton.edges if edge.source == location and edge.received is not None)
+    received = (Move(automaton.name, edge) for edge in there if edge.received == sent and edge.guard.holds(values))
     return replace(command, moves=(*command.moves, *received))
-
-
-def _receiving(command: Command, automaton: Automaton, location: str, block: Block) -> Iterator[Edge]:
-    values = dict(block.state.values)
-    sync = command.moves[0].edge.sync
-    for edge in automaton.edges if sync is not None and sync.sends else ():
-        if edge.source != location or edge.sync is None or edge.sync.sends or sync is None:
-            continue
-        tests = edge.guard.integers
-        if edge.sync.channel == sync.channel and all(any(values.get(t.variable) == t.value for t in c) for c in tests):
-            yield edge

@@ -13,7 +13,8 @@ from collections import Counter
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from typing import Callable, Dict, FrozenSet, Mapping, Optional, Sequence, Set, Tuple, Union
+from itertools import count, groupby
+from typing import Callable, Dict, FrozenSet, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.proof import reasons
@@ -88,7 +89,7 @@ def verify(
     what the strategy covers (safety): that is looked at first.
     """
     if strategy.counter:
-        return ProofReport(False, "counter-strategy: it shows why the controller loses", (), frozenset(), 0)
+        return _refused("counter-strategy: it shows why the controller loses")
     if reaction < 0:
         raise PursueError([error("SYN103", f"the reaction time is {reaction}", hint="give 0 or more time units")])
     prompt = reaction == 0 if prompt is None else prompt
@@ -97,26 +98,30 @@ def verify(
         return _with_passages(network, objective, strategy, reaction, LimitMonitor(limits, progress, PROVING))
     if strategy.in_parts:
         if strategy.stages and strategy.left_out_clocks:
-            return ProofReport(False, "left out: a strategy in stages leaves no clock out", (), frozenset(), 0)
+            return _refused("left out: a strategy in stages leaves no clock out")
         proven = partial(verify, reaction=reaction, prompt=prompt, progress=progress, closed=closed)
         return _in_parts(network, objective, strategy, ranks, proven, limit, limits)
     part, matters = proven_part(network, objective, strategy)
     if matters:
-        why = f"left out: the strategy does not speak of what matters: {matters}"
-        return ProofReport(False, why, (), frozenset(), 0)
+        return _refused(f"left out: the strategy does not speak of what matters: {matters}")
     if not _names_all(part, strategy):
-        return ProofReport(False, reasons.OTHER_NAMES, (), frozenset(), 0)
+        return _refused(reasons.OTHER_NAMES)
     loop = ClosedLoop(part, objective, strategy, reaction, ranks, arenas=arenas)
     searches = searches_of(loop)
     start = loop.arena.situation(loop.arena.initial).invariant
     if start is None or not start.includes(loop.arena.start):
-        return ProofReport(False, "no start: an invariant of the initial state does not hold", (), frozenset(), 0)
+        return _refused("no start: an invariant of the initial state does not hold")
     monitor = LimitMonitor(limits, progress, PROVING)
     try:
         with monitor:
             return _walked(searches, prompt, closed, limit, monitor)
     except MemoryError:
         raise monitor.stopped("memory") from None
+
+
+def _refused(reason: str, states: int = 0) -> ProofReport:
+    """The outcome without a play that shows it."""
+    return ProofReport(False, reason, (), frozenset(), states)
 
 
 def _walked(searches: Searches, prompt: bool, closed: bool, limit: int, monitor: LimitMonitor) -> ProofReport:
@@ -152,10 +157,9 @@ def _with_passages(
         found = played(network, objective, strategy, monitor)
         latest(found, strategy, reaction)
     except Fault as fault:
-        return ProofReport(False, f"passages: {fault}", (), frozenset(), 0)
-    used = [(b, "wait", n) for b, block in enumerate(strategy.blocks) for n in range(len(block.wait))]
-    commands = [(b, k, 0) for b, block in enumerate(strategy.blocks) for k in range(len(block.commands))]
-    return ProofReport(True, "", (), frozenset((*used, *commands)), len(found.course.events))
+        return _refused(f"passages: {fault}")
+    used = (key for b in range(len(strategy.blocks)) for key in strategy.keys_of(b))
+    return ProofReport(True, "", (), frozenset(used), len(found.course.events))
 
 
 def _in_parts(
@@ -173,8 +177,7 @@ def _in_parts(
     called, taken_apart = ("share", shares_of) if strategy.shares else ("stage", parts_of)
     for part in taken_apart(network, objective, strategy):
         if part.fault:
-            reason = f"left out: {called} {part.stage + 1} cannot be played: {part.fault}"
-            return ProofReport(False, reason, (), frozenset(), states)
+            return _refused(f"left out: {called} {part.stage + 1} cannot be played: {part.fault}", states)
         own = None if ranks is None else _ranks_of(part, ranks)
         left = max(1, limit - states)
         report = proven(part.game, part.objective, part.strategy, limit=left, ranks=own, limits=limits.since(start))
@@ -219,17 +222,12 @@ def pruned(strategy: Strategy, report: ProofReport) -> Strategy:
 def pruned_ranks(strategy: Strategy, report: ProofReport, ranks: Mapping[ZoneKey, int]) -> Dict[ZoneKey, int]:
     """The ranks of the zones that are left in the pruned strategy, by where they stand there."""
     found: Dict[ZoneKey, int] = {}
-    blocks = 0
-    for b, block in enumerate(strategy.blocks):
-        commands = -1
-        for k in range(-1, len(block.commands)):
-            part: Union[str, int] = "wait" if k < 0 else k
-            count = len(block.wait) if k < 0 else len(block.commands[k].zones)
-            left = [n for n in range(count) if (b, part, n) in report.used]
-            commands += bool(left) and k >= 0
-            for new, n in enumerate(left):
-                found[(blocks, part if k < 0 else commands, new)] = ranks.get((b, part, n), 0)
-        blocks += (blocks, "wait", 0) in found or commands >= 0
+    used = (key for b in range(len(strategy.blocks)) for key in strategy.keys_of(b) if key in report.used)
+    for block, (_, own) in enumerate(groupby(used, key=lambda key: key[0])):
+        commands = count()
+        for part, keys in groupby(own, key=lambda key: key[1]):
+            new = part if part == "wait" else next(commands)
+            found.update(((block, new, n), ranks.get(key, 0)) for n, key in enumerate(keys))
     return found
 
 
@@ -246,7 +244,7 @@ def _safe(searches: Searches, closed: bool, limit: int, monitor: LimitMonitor) -
 
     Nor does extrapolation lead out of it then, as it may on a walk.
     """
-    size, walked = _size(searches.loop.strategy), None
+    size, walked = sum(1 for block in searches.loop.strategy.blocks for _ in block.zones), None
     if not closed and size <= _LARGE:
         walked = _played(searches, False, False, min(limit, _SOON), monitor)
         if walked.ok or (limit <= _SOON and walked.reason.startswith("limit")):
@@ -258,11 +256,6 @@ def _safe(searches: Searches, closed: bool, limit: int, monitor: LimitMonitor) -
     if walked is not None and not walked.reason.startswith("limit"):
         return walked
     return _played(searches, False, False, limit, monitor)
-
-
-def _size(strategy: Strategy) -> int:
-    """The number of its zones."""
-    return sum(len(b.wait) + sum(len(c.zones) for c in b.commands) for b in strategy.blocks)
 
 
 def _report(arena: Arena, found: Found) -> ProofReport:

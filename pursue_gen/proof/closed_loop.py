@@ -13,7 +13,7 @@ from pursue_gen.proof.delays import Act, Advice, Broken, Passage, Rules, pass_ti
 from pursue_gen.proof.extrapolation import Described, MaxConstants
 from pursue_gen.proof.moves import Arena, JointMove, Situation, State
 from pursue_gen.proof.zones import without
-from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone, ZoneKey
+from pursue_gen.synthesis.strategy import Command, Move, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.scale import common_denominator, least_common_multiple
 from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict, raw
@@ -173,7 +173,8 @@ class ClosedLoop:
             dbm = situation.invariant
             for c in zone:
                 if dbm is not None:
-                    dbm = dbm.constrained(self._index(c.left), self._index(c.right), self._raw(c.bound, c.strict))
+                    bound = raw(self._scaled(c.bound), c.strict)
+                    dbm = dbm.constrained(self._index(c.left), self._index(c.right), bound)
             if dbm is not None:
                 yield n, dbm
 
@@ -184,9 +185,6 @@ class ClosedLoop:
             hint = f"the clocks are {', '.join(self.arena.clock)}"
             raise Invalid([error("SYN104", f"the strategy speaks of a clock {clock}", hint=hint)])
         return self.arena.clock[clock]
-
-    def _raw(self, bound: Fraction, strict: bool) -> int:
-        return raw(self._scaled(bound), strict)
 
     def _scaled(self, bound: Fraction) -> int:
         return bound.numerator * (self.arena.scale // bound.denominator)
@@ -202,7 +200,7 @@ class ClosedLoop:
             block = self.strategy.blocks[b]
             commanded = (joint_move(command, situation)[0] for command in block.commands)
             moves.update((id(move), move) for move in commanded if move is not None and move.enabled is not None)
-            for c in (c for zone in _zones_of(block) for c in zone):
+            for c in (c for zone in block.zones for c in zone):
                 size = abs(self._scaled(c.bound))
                 compared += [(x, size) for x in (self._index(c.left), self._index(c.right)) if x]
         return tuple(moves.values()), compared
@@ -226,21 +224,11 @@ def _places(network: Network, places: Sequence[Tuple[str, str]]) -> Tuple[Tuple[
     """Pairs (automaton, location) with the numbers of the automata."""
     if not places:
         raise Invalid([error("SYN105", "the objective names no goal or no location to avoid")])
-    return tuple((_number(network, name, location), location) for name, location in places)
-
-
-def _number(network: Network, name: str, location: str) -> int:
-    for k, automaton in enumerate(network.automata):
-        if automaton.name == name and any(other.name == location for other in automaton.locations):
-            return k
-    problem = f"the objective speaks of {name}.{location}, which the network does not have"
-    raise Invalid([error("SYN105", problem)])
-
-
-def _zones_of(block: Block) -> Iterator[Zone]:
-    yield from block.wait
-    for command in block.commands:
-        yield from command.zones
+    unknown = [".".join(place) for place in places if place not in network.places]
+    if unknown:
+        raise Invalid([error("SYN105", f"the objective speaks of {unknown[0]}, which the network does not have")])
+    numbers = {automaton.name: k for k, automaton in enumerate(network.automata)}
+    return tuple((numbers[name], location) for name, location in places)
 
 
 def _scale(network: Network, strategy: Strategy, reaction: Fraction) -> int:

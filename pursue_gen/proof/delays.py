@@ -350,10 +350,8 @@ def _future_in(zone: Dbm, within: Dbm) -> Dbm:
     return future
 
 
-def _insert(decided: Dict[int, List[Dbm]], k: int, zone: Dbm) -> bool:
-    """Add the zone unless it is there already; true if it was added."""
+def _insert(decided: Dict[int, List[Dbm]], k: int, zone: Dbm) -> None:
+    """Add the zone unless it is there already."""
     zones = decided.setdefault(k, [])
-    if any(other.includes(zone) for other in zones):
-        return False
-    zones.append(zone)
-    return True
+    if not any(other.includes(zone) for other in zones):
+        zones.append(zone)

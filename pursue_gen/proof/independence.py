@@ -14,12 +14,12 @@ on them: they may only have kept the environment from acting.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import AbstractSet, Dict, Iterable, List, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, List, Optional, Sequence, Set, Tuple
 
 from pursue_gen.proof.moves import Arena, Bound
 from pursue_gen.proof.relaxed_reachability import Places, commanded, live
 from pursue_gen.proof.zones import without
-from pursue_gen.synthesis.strategy import Strategy, Zone
+from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.hidden import is_loosened, why_not_hidden
 from pursue_gen.tga.network import Automaton, Edge, Network, Objective
 from pursue_gen.tga.part import part_of, start_of
@@ -70,8 +70,7 @@ def _why_a_clock_matters(clock: str, part: Network, compared: AbstractSet[Option
     if clock in compared:
         return f"it compares {clock}, which it leaves out"
     for automaton in part.automata:
-        stays = {location.name for location in automaton.locations if location.invariant}
-        if any(bound.clock == clock for location in automaton.locations for bound in location.invariant):
+        if any(bound.clock == clock for bounds in automaton.stays.values() for bound in bounds):
             return f"{clock} bounds a stay of {automaton.name}"
         for edge in automaton.edges:
             what = f"{automaton.name} goes from {edge.source} to {edge.target}"
@@ -80,22 +79,16 @@ def _why_a_clock_matters(clock: str, part: Network, compared: AbstractSet[Option
             for bound in edge.guard.clocks:
                 if bound.clock != clock:
                     continue
-                if edge.controllable or (edge.sync is not None and not edge.sync.sends):
+                if edge.controllable or edge.received is not None:
                     return f"{clock} is compared where {what}, which the environment does not begin"
-                if bound.op not in (">", ">=") or edge.source in stays:
+                if bound.op not in (">", ">=") or edge.source in automaton.stays:
                     return f"{clock} may oblige {automaton.name} to go from {edge.source} to {edge.target}"
     return ""
 
 
 def _compared(strategy: Strategy) -> Set[Optional[str]]:
     """The clocks that the strategy compares."""
-    # Most zones and constraints stand in many places: each is looked at once.
-    zones: Dict[int, Zone] = {}
-    for block in strategy.blocks:
-        for some in (block.wait, *(command.zones for command in block.commands)):
-            zones.update((id(zone), zone) for zone in some)
-    constraints = {id(constraint): constraint for zone in zones.values() for constraint in zone}
-    return {name for constraint in constraints.values() for name in (constraint.left, constraint.right)}
+    return {name for constraint in strategy.constraints for name in (constraint.left, constraint.right)}
 
 
 def with_clocks_of(part: Network, network: Network, strategy: Strategy) -> Network:
@@ -111,15 +104,14 @@ def with_clocks_of(part: Network, network: Network, strategy: Strategy) -> Netwo
     return part if clocks == part.clocks else replace(part, clocks=clocks, start=start_of(network, clocks))
 
 
-def _names(network: Network, strategy: Strategy) -> Optional[Tuple[Set[str], Set[str]]]:
+def _names(network: Network, strategy: Strategy) -> Optional[Tuple[AbstractSet[str], AbstractSet[str]]]:
     """The automata and variables that a strategy names; None where these are all, or it names unknown ones."""
     if not strategy.blocks or strategy.in_parts:
         return None
-    state = strategy.blocks[0].state
-    automata, variables = {name for name, _ in state.locations}, {name for name, _ in state.values}
+    automata, variables = strategy.blocks[0].state.names
     if not automata.issubset(a.name for a in network.automata):
         return None
-    variables.intersection_update(name for name, _ in network.variables)
+    variables = variables.intersection(name for name, _ in network.variables)
     if len(automata) == len(network.automata) and len(variables) == len(network.variables):
         return None
     return automata, variables
@@ -141,7 +133,6 @@ def why_it_matters(
     """
     places = live(network, frozenset())[1].places if places is None else places
     kept = {automaton.name: automaton for automaton in part.automata}
-    noticed = _Noticed({name for name, _ in part.variables}, set(part.clocks), *_channels(part.automata))
     for name, _ in (*objective.goal, *objective.bad):
         if name not in kept:
             return f"the objective is about {name}"
@@ -149,7 +140,7 @@ def why_it_matters(
         if automaton.name in kept:
             why = _why_an_edge_matters(automaton, kept[automaton.name], part, hiding)
         else:
-            why = why_not_hidden(automaton, part) if hiding else _why_it_is_seen(automaton, noticed)
+            why = why_not_hidden(automaton, part) if hiding else _why_it_is_seen(automaton, part)
             why = why or _why_it_may_stop_time(automaton, network, places[automaton.name], from_start)
         if why:
             return f"{automaton.name} {why}"
@@ -166,52 +157,29 @@ def _why_an_edge_matters(automaton: Automaton, kept: Automaton, part: Network, h
         what = f"may go from {edge.source} to {edge.target}"
         if edge.source != edge.target or edge.resets or any(name in variables for name, _ in edge.assign):
             return f"{what}, by an edge that is left out"
-        if edge.sync is None:
-            continue
-        others = (a for a in part.automata if a.name != automaton.name)
-        if edge.sync.sends and edge.sync.channel in _channels(others)[1]:
-            return f"sends {edge.sync.channel} by an edge that is left out"
-        if not edge.sync.sends:
-            rivals = (e for e in kept.edges if e.sync == edge.sync and e.source == edge.source)
-            if not edge.controllable or any(True for _ in rivals):
-                return f"receives {edge.sync.channel} by an edge that is left out"
+        if any(name != automaton.name for name, _ in part.receivers.get(edge.sent, ())):
+            return f"sends {edge.sent} by an edge that is left out"
+        rival = any(e.sync == edge.sync and e.source == edge.source for e in kept.edges)
+        if edge.received is not None and (rival or not edge.controllable):
+            return f"receives {edge.received} by an edge that is left out"
     return ""
 
 
-class _Noticed(NamedTuple):
-    """What a part of a network has: its variables, its clocks, and the channels on which it sends and receives."""
-
-    variables: AbstractSet[str]
-    clocks: AbstractSet[str]
-    sent: AbstractSet[str]
-    received: AbstractSet[str]
-
-
-def _why_it_is_seen(automaton: Automaton, part: _Noticed) -> str:
+def _why_it_is_seen(automaton: Automaton, part: Network) -> str:
     """Why the part may notice what an automaton does that is not in it."""
+    variables = dict(part.variables)
     for edge in automaton.edges:
         for name, _ in edge.assign:
-            if name in part.variables:
+            if name in variables:
                 return f"sets {name}"
         for clock in edge.resets:
             if clock in part.clocks:
                 return f"resets {clock}"
-        if edge.sync is not None and edge.sync.sends and edge.sync.channel in part.received:
-            return f"sends {edge.sync.channel}"
-        if edge.sync is not None and not edge.sync.sends and edge.sync.channel in part.sent and not edge.controllable:
-            return f"takes {edge.sync.channel} out of the controller's hands"
+        if edge.sent in part.receivers:
+            return f"sends {edge.sent}"
+        if edge.received in part.senders and not edge.controllable:
+            return f"takes {edge.received} out of the controller's hands"
     return ""
-
-
-def _channels(automata: Iterable[Automaton]) -> Tuple[Set[str], Set[str]]:
-    """The channels on which these automata send, and those on which they receive."""
-    sent: Set[str] = set()
-    received: Set[str] = set()
-    for automaton in automata:
-        for edge in automaton.edges:
-            if edge.sync is not None:
-                (sent if edge.sync.sends else received).add(edge.sync.channel)
-    return sent, received
 
 
 def _why_it_may_stop_time(
@@ -223,27 +191,25 @@ def _why_it_may_stop_time(
     the first may last a time unit, so that these moves leave time its way. Each stay begins with its clocks at 0, but
     one at the network's start may not. `places`: where it may be.
     """
-    stays = {location.name: location for location in automaton.locations if location.invariant}
+    stays = automaton.stays
     if places.isdisjoint(stays):
         return ""
     own = tuple(sorted(automaton.clocks))
     start = start_of(network, own)
     alone = Network(own, network.variables, network.channels, (automaton,), start)
     arena = Arena(alone, common_denominator(alone.times))
-    for name in sorted(places):
-        if name not in stays:
-            continue
-        bounds = [(0, i, bound) for i, _, bound in arena.limits(stays[name].invariant)]
-        clocks = {bound.clock for bound in stays[name].invariant}
+    for name in sorted(places & stays.keys()):
+        bounds = [(0, i, bound) for i, _, bound in arena.limits(stays[name])]
+        clocks = {bound.clock for bound in stays[name]}
         stay = Dbm.of(arena.dim, [(i, 0, bound) for _, i, bound in bounds])
         if from_start and name == automaton.initial and (stay is None or not stay.includes(arena.start)):
             return f"may not stay in {name} at the start"
         entering = [edge for edge in automaton.edges if edge.target == name != edge.source]
         if any(not clocks.issubset(edge.resets) for edge in entering):
             return f"may come to {name} without time to stay"
-        if any(bound.op == "<" for bound in stays[name].invariant):
+        if any(bound.op == "<" for bound in stays[name]):
             return f"has no last instant in {name}"
-        if any(bound.bound < 1 for bound in stays[name].invariant):
+        if any(bound.bound < 1 for bound in stays[name]):
             return f"has no time to stay in {name}"
         ways = [edge for edge in automaton.edges if edge.source == name != edge.target and _is_free(edge)]
         if stay is not None and (name != automaton.initial or not network.start):
@@ -287,4 +253,4 @@ def _left_at(arena: Arena, stay: Dbm, bounds: Sequence[Bound], ways: Sequence[Ed
 
 def _is_free(edge: Edge) -> bool:
     """True for an edge that the environment can take whatever the variables are."""
-    return not edge.controllable and not edge.guard.integers and (edge.sync is None or edge.sync.sends)
+    return not edge.controllable and not edge.guard.integers and edge.received is None

@@ -13,7 +13,7 @@ from typing import Dict, List, Mapping, Optional, Tuple
 from pursue_gen.proof.course import START, Event
 from pursue_gen.proof.passages import Fault, Played
 from pursue_gen.synthesis.strategy import Block, Strategy, Zone
-from pursue_gen.tga.network import ClockBound, Constraint, Guard
+from pursue_gen.tga.network import Constraint, Guard
 
 INSTANT = Fraction(1, 1000)
 """Who may act as soon as a clock is past a bound acts within this time, in time units. Not measured."""
@@ -33,8 +33,7 @@ def latest(played: Played, strategy: Strategy, reaction: Fraction) -> Fraction:
             times.append(_of_end(played, event, times, resets))
             continue
         moments = [_time(times, course.begin(stay)) for stay in event.needs.items()]
-        (zone,) = strategy.blocks[event.block].commands[_which(strategy, event)].zones
-        for clock, bound, strict in _enabled(event, zone):
+        for clock, bound, strict in _enabled(event, _zone(strategy, event)):
             if clock not in played.part.clocks:
                 raise Fault(f"{event.sender} waits for {clock}, of which nothing is known")
             for reset in resets.get(clock, ()):
@@ -63,11 +62,11 @@ def _resets(events: List[Event]) -> Dict[str, List[int]]:
     return found
 
 
-def _which(strategy: Strategy, event: Event) -> int:
-    """The number of the command in its block."""
+def _zone(strategy: Strategy, event: Event) -> Zone:
+    """The only zone of the command that the event is."""
     assert event.block is not None
-    commands = strategy.blocks[event.block].commands
-    return next(k for k, command in enumerate(commands) if command.moves[0].edge == event.edge)
+    (zone,) = next(c.zones for c in strategy.blocks[event.block].commands if c.moves[0].edge == event.edge)
+    return zone
 
 
 def _enabled(event: Event, zone: Zone) -> List[Tuple[str, Fraction, bool]]:
@@ -116,7 +115,7 @@ def _of_end(played: Played, event: Event, times: List[Fraction], resets: Mapping
     course, name = played.course, event.sender
     stay = name, event.ends[name]
     begin, place = course.begin(stay), event.edge.source
-    bounds = _invariant(played, name, place)
+    bounds = played.part.automaton(name).stays.get(place, ())
     if not bounds:
         raise Fault(f"nobody obliges {name} to leave {place}")
     for other in event.needs.items():
@@ -145,18 +144,12 @@ def _is_open(guard: Guard, clock: str, longest: Fraction) -> bool:
     return all(b.clock == clock and b.op in last and last[b.op](b.bound) for b in guard.clocks)
 
 
-def _invariant(played: Played, name: str, place: str) -> Tuple[ClockBound, ...]:
-    automaton = played.part.automaton(name)
-    return next(location.invariant for location in automaton.locations if location.name == place)
-
-
 def _check_stays(played: Played, strategy: Strategy, reaction: Fraction) -> None:
     """No invariant stops time: whoever is at its bound leaves by itself (see `_of_end`), or is commanded to in time."""
     course = played.course
     for automaton in played.part.automata:
-        bounded = {location.name for location in automaton.locations if location.invariant}
-        for k, place in enumerate(course.values[automaton.name] if bounded else ()):
-            if place not in bounded:
+        for k, place in enumerate(course.values[automaton.name] if automaton.stays else ()):
+            if place not in automaton.stays:
                 continue
             number = course.end((automaton.name, k))
             end = None if number is None else course.events[number]
@@ -172,9 +165,8 @@ def _check_commanded_end(played: Played, strategy: Strategy, event: Event, react
     begin = course.begin((name, event.ends[name]))
     if reaction:
         raise Fault(f"what ends the stay of {name} in {place} may come too late")
-    assert event.block is not None
-    (zone,) = strategy.blocks[event.block].commands[_which(strategy, event)].zones
-    for bound in _invariant(played, name, place):
+    zone = _zone(strategy, event)
+    for bound in played.part.automaton(name).stays.get(place, ()):
         starts = begin == START or bound.clock in course.events[begin].resets
         last = [(c, b) for c, b, strict in map(_lower, zone) if c != bound.clock or b + strict * INSTANT > bound.bound]
         if not starts or last or bound.op != "<=":

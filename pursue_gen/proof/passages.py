@@ -74,14 +74,13 @@ def played(network: Network, objective: Objective, strategy: Strategy, monitor: 
 
 def _part(alive: Network, wanted: Objective, strategy: Strategy) -> Network:
     """What the blocks name and the objective is about, with all variables of that."""
-    automata = {name for block in strategy.blocks for name, _ in block.state.locations}
+    automata = {name for block in strategy.blocks for name in block.state.names[0]}
     automata.update(name for name, _ in (*wanted.goal, *wanted.bad))
     unknown = automata.difference(automaton.name for automaton in alive.automata)
     if unknown:
         raise Fault(f"there is no {min(unknown)}")
-    variables = {name for block in strategy.blocks for name, _ in block.state.values}
-    edges = (edge for automaton in alive.automata if automaton.name in automata for edge in automaton.edges)
-    variables.update(name for edge in edges for name in edge.variables)
+    variables = {name for block in strategy.blocks for name in block.state.names[1]}
+    variables.update(name for owner, edge in alive.edges if owner in automata for name in edge.variables)
     if not variables.issubset(dict(alive.variables)):
         raise Fault("a block names a variable that there is not")
     return part_of(alive, automata, variables)
@@ -96,19 +95,16 @@ class _CommandedSearch:
         self._bad = set(objective.bad)
         self._free: Dict[Here, List[Edge]] = {}
         self._threats: List[Tuple[str, Edge]] = []
-        self._heard: Dict[str, List[Tuple[str, Edge]]] = {}
-        for automaton in part.automata:
-            for edge in automaton.edges:
-                if edge.sync is not None and not edge.sync.sends:
-                    if edge.guard.clocks:
-                        raise Fault(f"when {automaton.name} receives depends on a clock")
-                    self._heard.setdefault(edge.sync.channel, []).append((automaton.name, edge))
-                elif is_controllers(edge, taken):
-                    continue
-                elif (automaton.name, edge.target) in self._bad:
-                    self._threats.append((automaton.name, edge))
-                else:
-                    self._free.setdefault((automaton.name, edge.source), []).append(edge)
+        for name, edge in part.edges:
+            if edge.received is not None:
+                if edge.guard.clocks:
+                    raise Fault(f"when {name} receives depends on a clock")
+            elif is_controllers(edge, taken):
+                continue
+            elif (name, edge.target) in self._bad:
+                self._threats.append((name, edge))
+            else:
+                self._free.setdefault((name, edge.source), []).append(edge)
         self._said: Dict[Here, List[Tuple[int, Command]]] = {}
         self._interested: Dict[str, Dict[str, None]] = {}
         self._named: List[Dict[str, Value]] = []
@@ -195,7 +191,7 @@ class _CommandedSearch:
         for clause in edge.guard.integers:
             needed[next(test.variable for test in clause if course.now(test.variable) == test.value)] = None
         receivers: Dict[str, Edge] = {}
-        for name, other in self._heard.get(edge.sync.channel, ()) if edge.sync is not None else ():
+        for name, other in self._part.receivers.get(edge.channel, ()):
             if name != sender and other.source == course.now(name) and course.holds(other.guard):
                 if name in receivers:
                     raise Fault(f"{name} may receive what {sender} does in two ways")
@@ -271,22 +267,20 @@ class _CommandedSearch:
     def _check_event(self, event: Event) -> None:
         """Whenever its needs are met it is this one: all that it changes is as it was, and nobody else receives it."""
         course, needs = self.course, tuple(event.needs.items())
-        tested = {test.variable for _, edge in event.receivers for clause in edge.guard.integers for test in clause}
+        tested = {name for _, edge in event.receivers for name in edge.tested}
         for name in {*event.ends, *tested}.difference(event.needs):
             wanted = event.ends.get(name)
             meeting = [k for k in range(len(course.values[name])) if course.may_all_meet((name, k), needs)]
             if len(meeting) != 1 or wanted not in (None, meeting[0]):
                 raise Fault(f"{name} may be otherwise when {event.sender} leaves {event.edge.source}")
-        if event.edge.sync is None:
-            return
-        for name, edge in self._heard.get(event.edge.sync.channel, ()):
+        for name, edge in self._part.receivers.get(event.edge.channel, ()):
             if name == event.sender or (name, edge) in event.receivers:
                 continue
             for k in course.stays(name, edge.source):
                 if course.may_all_meet((name, k), needs):
                     known = (*needs, *(() if name in event.needs else ((name, k),)))
                     if next(course.meetings(course.tested(edge.guard), known), None) is not None:
-                        raise Fault(f"{name} may receive {event.edge.sync.channel}, or not")
+                        raise Fault(f"{name} may receive {event.edge.channel}, or not")
 
     def _check_stay(self, stay: Stay, place: str) -> None:
         """Whatever its automaton may do in a state is what it does there."""

@@ -7,11 +7,10 @@ are not looked at, nor what is so at the same time: more may seem possible than 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import AbstractSet, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple, Union
 
 from pursue_gen.synthesis.strategy import Block
-from pursue_gen.tga.network import Automaton, Edge, Guard, Network
+from pursue_gen.tga.network import Edge, Guard, Network
 
 Commanded = AbstractSet[Tuple[str, Edge]]
 """Edges that commands take, each with its automaton: those that send, or move by themselves."""
@@ -60,8 +59,8 @@ def live(network: Network, commands: Commanded, begin: Optional[Extent] = None) 
         """What the edge waits for, any of it; nothing where it is possible."""
         if edge.source not in places[name]:
             return [(name, edge.source)]
-        if edge.sync is not None and not edge.sync.sends and edge.sync.channel not in sent:
-            return [("", edge.sync.channel)]
+        if edge.received is not None and edge.received not in sent:
+            return [("", edge.received)]
         clause = next((some for some in edge.guard.integers if not may_hold(Guard(integers=(some,)), values)), ())
         return [(test.variable, test.value) for test in clause]
 
@@ -78,14 +77,14 @@ def live(network: Network, commands: Commanded, begin: Optional[Extent] = None) 
             found.add(number)
             places[name].add(edge.target)
             pending += waiting.pop((name, edge.target), ())
-            if edge.sync is not None and edge.sync.sends:
-                sent.add(edge.sync.channel)
-                pending += waiting.pop(("", edge.sync.channel), ())
+            if edge.sent is not None:
+                sent.add(edge.sent)
+                pending += waiting.pop(("", edge.sent), ())
             for variable, value in edge.assign:
                 values[variable].add(value)
                 pending += waiting.pop((variable, value), ())
-    automata = tuple(_with(a, (edge for edge in free[a.name] if (a.name, id(edge)) in found)) for a in network.automata)
-    return replace(network, automata=automata), Extent(places, values)
+    alive = network.with_each(lambda a: a.with_edges(edge for edge in free[a.name] if (a.name, id(edge)) in found))
+    return alive, Extent(places, values)
 
 
 def may_hold(guard: Guard, values: Values) -> bool:
@@ -98,23 +97,13 @@ def may_hold(guard: Guard, values: Values) -> bool:
 
 def taken_over(network: Network) -> Set[str]:
     """The channels whose moves are the environment's because of one who receives."""
-    return {
-        edge.sync.channel
-        for automaton in network.automata
-        for edge in automaton.edges
-        if edge.sync is not None and not edge.sync.sends and not edge.controllable
-    }
+    return {edge.received for _, edge in network.edges if edge.received is not None and not edge.controllable}
 
 
 def is_controllers(edge: Edge, taken: AbstractSet[str]) -> bool:
     """True for an edge that nobody but the controller can begin; `taken`: see `taken_over`."""
-    return edge.controllable and (edge.sync is None or (edge.sync.sends and edge.sync.channel not in taken))
+    return edge.is_command and edge.sent not in taken
 
 
 def _may_begin(automaton: str, edge: Edge, commands: Commanded, taken: AbstractSet[str]) -> bool:
     return not is_controllers(edge, taken) or (automaton, edge) in commands
-
-
-def _with(automaton: Automaton, edges: Iterable[Edge]) -> Automaton:
-    kept = tuple(edges)
-    return automaton if len(kept) == len(automaton.edges) else replace(automaton, edges=kept)

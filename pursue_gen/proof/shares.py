@@ -13,7 +13,7 @@ What a share is to avoid and its blocks do not name is looked at apart, in a gam
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import AbstractSet, FrozenSet, Iterator, List, Sequence, Set, Tuple, Union
+from typing import AbstractSet, Iterator, List, Sequence, Set, Tuple, Union
 
 from pursue_gen.language.network_names import LOSE
 from pursue_gen.proof.apart import games_apart, kept_apart
@@ -27,9 +27,6 @@ from pursue_gen.tga.network import Automaton, Kind, Network, Objective, with_con
 from pursue_gen.tga.part import part_of, without_unnamed_clocks
 from pursue_gen.tga.tours import Tour
 from pursue_gen.tga.watchers import Watcher
-
-Names = Tuple[FrozenSet[str], FrozenSet[str]]
-"""The automata and the variables that a block names."""
 
 
 def shares_of(network: Network, objective: Objective, strategy: Strategy) -> Iterator[StagePart]:
@@ -58,7 +55,7 @@ def _taken_apart(network: Network, objective: Objective, strategy: Strategy) -> 
     alive, extent = live(network, commanded(strategy.blocks))
     fault = fault or _misnamed(network, shares)
     apart = [] if fault else [kept_apart(strategy, k) for k in range(len(shares))]
-    named = [names_of(blocks[0])[0].union(some) for blocks, some in zip(shares, apart)]
+    named = [blocks[0].state.names[0].union(some) for blocks, some in zip(shares, apart)]
     watchers = [_watchers_of(strategy, k, some) for k, some in enumerate(named)]
     watched = {watcher.objective for some in watchers for watcher in some}
     fault = fault or _unguarded(objective, watched.union(*named), extent)
@@ -66,7 +63,7 @@ def _taken_apart(network: Network, objective: Objective, strategy: Strategy) -> 
         yield StagePart(0, network, objective, strategy, (), fault)
         return
     for k, blocks in enumerate(shares):
-        automata, variables = named[k], names_of(blocks[0])[1]
+        automata, variables = named[k], blocks[0].state.names[1]
         others = watched.union(*(some for some in named if some is not automata))
         game = left_to_others(alive, commanded(b for some in shares if some is not blocks for b in some))
         own = Strategy(tuple(blocks))
@@ -95,21 +92,15 @@ def left_to_others(network: Network, commands: Commanded) -> Network:
         if automaton.name not in senders:
             return automaton
         owned = ((edge, edge.controllable and (automaton.name, edge) not in commands) for edge in automaton.edges)
-        return replace(automaton, edges=tuple(with_controllability(*one) for one in owned))
+        return automaton.with_edges(with_controllability(*one) for one in owned)
 
-    return replace(network, automata=tuple(map(left, network.automata)))
+    return network.with_each(left)
 
 
 def _beside_hidden(strategy: Strategy) -> Strategy:
     """The strategy in the network that has an automaton for those whom it does not name."""
-    states = (replace(b.state, locations=(*b.state.locations, (HIDDEN, HIDDEN))) for b in strategy.blocks)
-    blocks = tuple(replace(block, state=state) for block, state in zip(strategy.blocks, states))
-    return replace(strategy, blocks=blocks)
-
-
-def names_of(block: Block) -> Names:
-    """What a block names."""
-    return frozenset(name for name, _ in block.state.locations), frozenset(name for name, _ in block.state.values)
+    blocks = (block.with_locations((*block.state.locations, (HIDDEN, HIDDEN))) for block in strategy.blocks)
+    return replace(strategy, blocks=tuple(blocks))
 
 
 def _watchers_of(strategy: Strategy, share: int, named: AbstractSet[str]) -> List[Watcher]:
@@ -152,8 +143,8 @@ def _misnamed(network: Network, shares: Sequence[Sequence[Block]]) -> str:
     for number, blocks in enumerate(shares, start=1):
         if not blocks:
             return f"no block belongs to share {number}"
-        names = names_of(blocks[0])
-        if any(names_of(block) != names for block in blocks):
+        names = blocks[0].state.names
+        if any(block.state.names != names for block in blocks):
             return f"the blocks of share {number} do not all name the same"
         if not names[0] <= known or not names[1] <= variables.keys():
             return "blocks name what the network does not have"

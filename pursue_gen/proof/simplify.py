@@ -13,122 +13,19 @@ A play that comes to a new point would have met none of the strategy's zones bef
 
 from __future__ import annotations
 
-from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
-from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.proof.native import simplify as native
-from pursue_gen.proof.native.tables import NotHeld
+from pursue_gen.proof.native.tables import MOST_DELAY, MOST_FACTOR, MOST_RANK, Bound, NotHeld, tables_of
 from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, Strategy, Zone, ZoneKey
-from pursue_gen.synthesis.strategy_from import minimal
 from pursue_gen.tga.network import Network
-from pursue_gen.tga.scale import common_denominator
-from pursue_gen.zones.dbm import Dbm, constant, is_strict, raw
+from pursue_gen.tga.scale import least_common_multiple
+from pursue_gen.zones.dbm import constant, is_strict
 
-Bound = Tuple[int, int, int]
-
-Action = Union[int, str]
-"""The number of a command in its block, or WAIT."""
-
-WAIT = "wait"
-
-
-@dataclass(frozen=True)
-class _BoundedZone:
-    """A zone of an action within the invariant, and the bounds that make it there."""
-
-    zone: Dbm
-    bounds: Tuple[Bound, ...] = ()
-
-
-@dataclass(frozen=True)
-class _Origin:
-    """A zone that the action had, and its rank if that is known."""
-
-    zone: Dbm
-    rank: Optional[int]
-
-    def leads_to(self, other: _Origin) -> bool:
-        """True if a command that is due here may as well be given there."""
-        return self is other or (self.rank is not None and other.rank is not None and other.rank <= self.rank)
-
-
-@dataclass(frozen=True)
-class _Place:
-    """A discrete state: its invariant, how late a command may come (scaled), and for each action the zones that it had
-    and the parts that it has."""
-
-    invariant: Dbm
-    late: int
-    origins: Dict[Action, Tuple[_Origin, ...]]
-    parts: Dict[Action, List[_BoundedZone]]
-
-    def may_have(self, action: Action, zone: Dbm) -> bool:
-        """True if the action may have this zone, too: no play notices."""
-        for other, parts in self.parts.items():
-            if other != action and any(zone.intersect(part.zone) is not None for part in parts):
-                return False
-        if action == WAIT:
-            return True
-        mine = self.origins[action]
-        in_zone = ((zone.intersect(origin.zone), origin) for origin in mine)
-        return all(
-            self._adds_nothing(zone, met.up(), [other.zone for other in mine if origin.leads_to(other)])
-            for met, origin in in_zone
-            if met is not None
-        ) and all(
-            self._adds_nothing(zone, origin.zone.up_within(self.late), [other.zone for other in mine])
-            for action_in_flight, origins in self.origins.items()
-            if action_in_flight not in (WAIT, action) and self.late
-            for origin in origins
-        )
-
-    def _adds_nothing(self, zone: Dbm, later: Dbm, known: Sequence[Dbm]) -> bool:
-        """True if all points of the zone that are met later are known ones."""
-        met = zone.intersect(later)
-        met = None if met is None else met.intersect(self.invariant)
-        return met is None or _covered(met, known)
-
-
-class _Units:
-    """Names and exact times on one side, indices and integers on the other."""
-
-    def __init__(self, network: Network, strategy: Strategy, reaction: Fraction) -> None:
-        self.names = (None, *network.clocks)
-        self._index = {name: k for k, name in enumerate(self.names)}
-        bounds = (c.bound for block in strategy.blocks for zone in _zones(block) for c in zone)
-        self.scale = common_denominator([reaction, *network.times, *bounds])
-        self.late = int(reaction * self.scale)
-        self._invariants = {
-            (automaton.name, location.name): tuple(
-                (self._index[b.clock], 0, raw(int(b.bound * self.scale), b.op == "<")) for b in location.invariant
-            )
-            for automaton in network.automata
-            for location in automaton.locations
-        }
-
-    def invariant(self, block: Block) -> Optional[Dbm]:
-        """Where the clocks may be in the block's discrete state."""
-        bounds = (bound for place in block.state.locations for bound in self._invariants.get(place, ()))
-        return Dbm.of(len(self.names), bounds)
-
-    def bounds(self, zone: Zone) -> Tuple[Bound, ...]:
-        """The zone's constraints as bounds of matrices."""
-        return tuple(
-            (self._index[c.left], self._index[c.right], raw(self._scaled(c.bound), c.strict)) for c in zone
-        )
-
-    def zone(self, bounds: Iterable[Bound]) -> Zone:
-        """The bounds as a strategy's zone."""
-        return tuple(
-            Constraint(self.names[i], self.names[j], Fraction(constant(bound), self.scale), is_strict(bound))
-            for i, j, bound in bounds
-        )
-
-    def _scaled(self, bound: Fraction) -> int:
-        return bound.numerator * (self.scale // bound.denominator)
+_UNKNOWN = -(1 << 63)
+"""How simplify.hpp writes that no rank is known."""
 
 
 def simplified(
@@ -138,121 +35,51 @@ def simplified(
     ranks: Optional[Mapping[ZoneKey, int]] = None,
     limits: Limits = NO_LIMITS,
 ) -> Strategy:
-    """The strategy, proven for the network and the reaction, in fewer zones and bounds.
+    """The strategy, proven for the network and the reaction, in fewer zones and bounds; as it is where the native
+    checker, which does this, cannot hold it.
 
     `ranks` (see `verify`) allow more: a play may stay in a command's zone where that leads to no higher rank. Raises
     PursueError with exit status 5 at a limit.
     """
-    monitor = LimitMonitor(limits, phase=PROVING)
-    with suppress(NotHeld):
-        return native.simplified(network, strategy, reaction, ranks, monitor)
-    units = _Units(network, strategy, reaction)
-    blocks: List[Block] = []
-    with monitor:
-        for b, block in enumerate(strategy.blocks):
-            monitor.check(b, len(strategy.blocks) - b)
-            blocks.append(_simplified_block(units, b, block, ranks or {}))
-    return replace(strategy, blocks=tuple(blocks))
+    try:
+        return _natively(network, strategy, reaction, ranks, LimitMonitor(limits, phase=PROVING))
+    except (NotHeld, OverflowError):
+        return strategy
 
 
-def _simplified_block(units: _Units, b: int, block: Block, ranks: Mapping[ZoneKey, int]) -> Block:
-    """The block, number b of the strategy, in fewer zones."""
-    invariant = units.invariant(block)
-    if invariant is None:
-        return block
-    zones: Dict[Action, Tuple[Zone, ...]] = {WAIT: block.wait}
-    zones.update((k, command.zones) for k, command in enumerate(block.commands))
-    origins: Dict[Action, Tuple[_Origin, ...]] = {}
-    for action, some in zones.items():
-        within = ((n, invariant.constrained_all(units.bounds(zone))) for n, zone in enumerate(some))
-        origins[action] = tuple(_Origin(zone, ranks.get((b, action, n))) for n, zone in within if zone is not None)
-    parts = {action: [_BoundedZone(origin.zone) for origin in some] for action, some in origins.items()}
-    place = _Place(invariant, units.late, origins, parts)
-    commands_first: List[Action] = [*range(len(block.commands)), WAIT]
-    for action in commands_first:
-        _merge(place, action)
-    for action in commands_first:
-        _relax(place, action)
-        _drop(place, action)
-    return Block(
-        block.state,
-        tuple(units.zone(part.bounds) for part in parts[WAIT]),
-        tuple(
-            Command(tuple(units.zone(part.bounds) for part in parts[k]), command.moves)
-            for k, command in enumerate(block.commands)
-            if parts[k]
-        ),
-    )
+def _natively(
+    network: Network,
+    strategy: Strategy,
+    reaction: Fraction,
+    ranks: Optional[Mapping[ZoneKey, int]],
+    monitor: LimitMonitor,
+) -> Strategy:
+    """The same (simplify.hpp). Raises NotHeld where the tables cannot hold it, OverflowError for too large times."""
+    tables = tables_of(network, strategy)
+    scale = least_common_multiple([tables.scale, reaction.denominator])
+    factor, late = scale // tables.scale, int(reaction * scale)
+    held = factor <= MOST_FACTOR and late <= MOST_DELAY and all(abs(r) < MOST_RANK for r in (ranks or {}).values())
+    if not tables.whole or not held:
+        raise NotHeld
+    numbers = tables.numbers(ranks, _UNKNOWN) if ranks else None
+    found = tables.simplify(factor, late, numbers, monitor)
+    names = (None, *network.clocks)
+    known: Dict[Bound, Constraint] = {}
 
+    def zones(some: Sequence[Sequence[Bound]]) -> Tuple[Zone, ...]:
+        result: List[Zone] = []
+        for zone in some:
+            for bound in zone:
+                if bound not in known:
+                    i, j, raw = bound
+                    known[bound] = Constraint(names[i], names[j], Fraction(constant(raw), scale), is_strict(raw))
+            result.append(tuple(known[bound] for bound in zone))
+        return tuple(result)
 
-def _merge(place: _Place, action: Action) -> None:
-    """Fewer zones for the action, where a hull of some will do."""
-    parts = place.parts[action]
-    together = _together(place, action, parts) if len(parts) > 2 else None
-    if together is not None:
-        parts[:] = [together]
-    k = 0
-    while k < len(parts):
-        n = k + 1
-        while n < len(parts):
-            together = _together(place, action, (parts[k], parts[n]))
-            if together is None:
-                n += 1
-            else:
-                parts[k] = together
-                del parts[n]
-                n = k + 1
-        k += 1
+    def smaller(block: Block, actions: Sequence[Sequence[Sequence[Bound]]]) -> Block:
+        if not actions:  # the invariant holds nowhere
+            return block
+        commands = (Command(zones(some), command.moves) for command, some in zip(block.commands, actions[1:]) if some)
+        return Block(block.state, zones(actions[0]), tuple(commands))
 
-
-def _together(place: _Place, action: Action, parts: Sequence[_BoundedZone]) -> Optional[_BoundedZone]:
-    """The parts of the action as one, or None."""
-    hull = parts[0].zone
-    for part in parts[1:]:
-        hull = hull.hull(part.zone)
-    return _BoundedZone(hull) if place.may_have(action, hull) else None
-
-
-def _relax(place: _Place, action: Action) -> None:
-    """Fewer bounds for each zone of the action; differences go first, then upper bounds, then lower ones."""
-    parts = place.parts[action]
-    for k, part in enumerate(parts):
-        kept, zone = minimal(part.zone.dim, part.zone.m), part.zone
-        for bound in sorted(kept, key=_worth):
-            fewer = [other for other in kept if other != bound]
-            larger = place.invariant.constrained_all(fewer)
-            if larger is not None and (larger == zone or place.may_have(action, larger)):
-                kept, zone = fewer, larger
-        parts[k] = _BoundedZone(zone, tuple(kept))
-
-
-def _worth(bound: Bound) -> Tuple[int, int, int]:
-    i, j, _ = bound
-    return (0 if i and j else 1 if i else 2, i, j)
-
-
-def _drop(place: _Place, action: Action) -> None:
-    """No zone of the action that the others cover."""
-    parts = place.parts[action]
-    for k in reversed(range(len(parts))):
-        zone, rest = parts[k].zone, [other.zone for n, other in enumerate(parts) if n != k]
-        # A command is decided before time leaves the zone in which it was met: a zone may go if one other covers it.
-        idle = _covered(zone, rest) if action == WAIT else any(other.includes(zone) for other in rest)
-        if idle:
-            del parts[k]
-
-
-def _covered(zone: Dbm, others: Sequence[Dbm]) -> bool:
-    """True if every point of the zone is in one of the others."""
-    rest = [zone]
-    for other in others:
-        rest = [piece for part in rest for piece in part.minus(other)]
-        if not rest:
-            return True
-    return False
-
-
-def _zones(block: Block) -> Iterable[Zone]:
-    yield from block.wait
-    for command in block.commands:
-        yield from command.zones
+    return replace(strategy, blocks=tuple(map(smaller, strategy.blocks, found)))

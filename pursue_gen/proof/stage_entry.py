@@ -9,13 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
-from typing import AbstractSet, Dict, FrozenSet, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Dict, FrozenSet, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.proof.relaxed_reachability import Extent, may_hold
+from pursue_gen.tga.begin import State as State
 from pursue_gen.tga.network import Automaton, Network
-
-State = Tuple[Tuple[str, ...], Tuple[int, ...]]
-"""The location of every automaton and the value of every variable, in a network's order."""
 
 Spot = Tuple[str, Tuple[int, ...]]
 """A location of an automaton, and the values of the variables that it alone sets."""
@@ -70,14 +68,9 @@ class Known:
 
 def at_start(network: Network) -> Known:
     """What is known at the start."""
-    setters: Dict[str, Set[str]] = {}
-    for automaton in network.automata:
-        for edge in automaton.edges:
-            for name, _ in edge.assign:
-                setters.setdefault(name, set()).add(automaton.name)
     first = dict(network.variables)
     owned: Dict[str, Tuple[str, ...]] = {
-        a.name: tuple(name for name in first if setters.get(name) == {a.name}) for a in network.automata
+        a.name: tuple(name for name in first if network.setters[name] == {a.name}) for a in network.automata
     }
     spots = {
         a.name: frozenset([(a.initial, tuple(first[name] for name in owned[a.name]))]) for a in network.automata
@@ -98,8 +91,7 @@ def after_part(known: Known, part: Network, ends: Sequence[State], idle: Optiona
     spots, values = dict(known.spots), dict(known.values)
     index = {name: k for k, (name, _) in enumerate(part.variables)}
     for k, automaton in enumerate(part.automata):
-        places = (index[name] for name in known.owned[automaton.name])
-        owned = tuple(places)
+        owned = tuple(index[name] for name in known.owned[automaton.name])
         here = frozenset((locations[k], tuple(state[n] for n in owned)) for locations, state in ends)
         name = automaton.name
         spots[name] = here if idle is None else _moved(here, known, idle, idle.automaton(name))
@@ -112,7 +104,7 @@ def after_part(known: Known, part: Network, ends: Sequence[State], idle: Optiona
 
 def _set(network: Network, variable: str) -> AbstractSet[int]:
     """The values that edges give a variable."""
-    return {v for automaton in network.automata for e in automaton.edges for name, v in e.assign if name == variable}
+    return {value for _, edge in network.edges for name, value in edge.assign if name == variable}
 
 
 def _moved(spots: FrozenSet[Spot], known: Known, alive: Network, automaton: Automaton) -> FrozenSet[Spot]:

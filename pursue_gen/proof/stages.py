@@ -60,10 +60,10 @@ def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iter
             yield StagePart(stage, network, objective, strategy, (), "it may begin in too many states")
             return
         # The proof of each part shows that its agents do not stop time before it ends.
-        busy = {name for own in blocks.values() for name in _names(own[0])[0]}
+        busy = {name for own in blocks.values() for name in own[0].state.names[0]}
         resting = {**extent.places, **{name: following.extent.places[name] for name in busy}}
         for place in milestones:
-            part = part_of(alive, *_names(blocks[place][0]))
+            part = part_of(alive, *blocks[place][0].state.names)
             ending = ending_at(part, place, owner_of(network, place[0]))
             wanted = stage_objective(objective, ending.goal, extent)
             starts = known.states(part)
@@ -74,7 +74,7 @@ def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iter
             if fault:
                 yield StagePart(stage, part, wanted, strategy, (), fault)
                 return
-            own = with_edges(blocks[place], ending.goal[0], ending.changed)
+            own = with_edges(blocks[place], ending.changed)
             if stage == 0:
                 yield StagePart(stage, ending.network, wanted, Strategy(own), numbers[place])
             else:
@@ -109,7 +109,7 @@ def after_stage(network: Network, known: Known, blocks: Mapping[Place, Sequence[
     alive, extent = live(network, commanded(block for some in blocks.values() for block in some), known.extent)
     following = moved(known, alive)
     for place, own in blocks.items():
-        part = part_of(alive, *_names(own[0]))
+        part = part_of(alive, *own[0].state.names)
         starts = known.states(part)
         if starts is None:
             return None
@@ -192,8 +192,8 @@ def _misnamed(
     for place, own in blocks.items():
         if not own:
             return f"no block leads to {place[0]}.{place[1]}"
-        automata, variables = _names(own[0])
-        if any(_names(block) != (automata, variables) for block in own):
+        automata, variables = own[0].state.names
+        if any(block.state.names != (automata, variables) for block in own):
             return f"the blocks that lead to {place[0]}.{place[1]} do not all name the same"
         if not automata.issubset(a.name for a in network.automata) or not variables.issubset(dict(network.variables)):
             return "blocks name what the network does not have"
@@ -208,15 +208,8 @@ def _misnamed(
     return f"{min(busy)} matters to two parts of a stage" if busy else ""
 
 
-def _names(block: Block) -> Tuple[Set[str], Set[str]]:
-    return {name for name, _ in block.state.locations}, {name for name, _ in block.state.values}
-
-
 def _begun(part: Network, blocks: Iterable[Block]) -> Strategy:
     """The blocks in the network in which the stage begins anywhere, behind one for its beginning."""
     first = DiscreteState((*((a.name, BEGIN) for a in part.automata), (BEGIN, BEGIN)), part.variables)
-    said = tuple(
-        replace(block, state=replace(block.state, locations=(*block.state.locations, (BEGIN, BEGUN))))
-        for block in blocks
-    )
+    said = (block.with_locations((*block.state.locations, (BEGIN, BEGUN))) for block in blocks)
     return Strategy((Block(first, ((),), ()), *said))

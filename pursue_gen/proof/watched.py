@@ -29,8 +29,7 @@ def why_it_may_miss(network: Network, watcher: Watcher, automata: AbstractSet[st
     fault = _why_it_is_none(watched, narrower)
     if fault:
         return fault
-    loose = replace(watched, edges=tuple(_with_any(watched, variables)))
-    freed = replace(network, automata=tuple(loose if each is watched else each for each in network.automata))
+    freed = network.with_each(lambda a: a.with_edges(_with_any(a, variables)) if a is watched else a)
     game = with_hidden(freed, part_of(freed, automata | {watcher.objective}, variables))
     arena = Arena(game, common_denominator(game.times))
     places = {automaton.name: k for k, automaton in enumerate(game.automata)}
@@ -68,13 +67,13 @@ def why_it_may_miss(network: Network, watcher: Watcher, automata: AbstractSet[st
 def _why_it_is_none(watched: Automaton, own: Automaton) -> str:
     """Why these are no automata of an objective with a deadline and its watcher; "" if they are."""
     for automaton in (watched, own):
-        bounds = [location.invariant for location in automaton.locations if location.name == AT_RISK]
-        if len(bounds) != 1 or len(bounds[0]) != 1 or bounds[0][0].op != "<=":
+        bounds = automaton.stays.get(AT_RISK, ())
+        if len(bounds) != 1 or bounds[0].op != "<=":
             return f"{automaton.name} has no deadline"
         for edge in automaton.edges:
             if edge.target == LOSE and (edge.source != AT_RISK or edge.sync is not None or not edge.controllable):
                 return f"{automaton.name} is lost otherwise than by its deadline"
-            if edge.assign or edge.guard.clocks or (edge.sync is not None and edge.sync.sends):
+            if edge.assign or edge.guard.clocks or edge.sent is not None:
                 return f"{automaton.name} does more than watch"
     if _deadline(watched).bound < _deadline(own).bound:
         return f"{own.name} has a longer deadline"
@@ -82,7 +81,7 @@ def _why_it_is_none(watched: Automaton, own: Automaton) -> str:
 
 
 def _deadline(automaton: Automaton) -> ClockBound:
-    (bound,) = next(location.invariant for location in automaton.locations if location.name == AT_RISK)
+    (bound,) = automaton.stays[AT_RISK]
     return bound
 
 

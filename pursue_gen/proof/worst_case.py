@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import Dict, Iterable, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError
@@ -42,7 +43,7 @@ _USUAL = 1_000
 
 def counting_clock(network: Network) -> Optional[str]:
     """A clock of the network that is 0 at the start and that no edge resets, so that it counts the time from there."""
-    other = {clock for automaton in network.automata for edge in automaton.edges for clock in edge.resets}
+    other = {clock for _, edge in network.edges for clock in edge.resets}
     if network.start:
         other |= {clock for clock in network.clocks if _is_zero(clock) not in network.start}
     return next((clock for clock in network.clocks if clock not in other), None)
@@ -86,8 +87,7 @@ def with_clock_limit(network: Network, objective: Objective, clock: str, bound: 
             return location
         return replace(location, invariant=(*location.invariant, limit))
 
-    automata = (replace(a, locations=tuple(limited(a, place) for place in a.locations)) for a in network.automata)
-    return replace(network, automata=tuple(automata))
+    return network.with_each(lambda automaton: automaton.with_locations(partial(limited, automaton)))
 
 
 def worst_case(
@@ -147,10 +147,9 @@ def answer_times(
         game = named_part(whole, own)
         searches = searches_of(ClosedLoop(game, wanted, own, reaction, None, INSTANT))
         for k, automaton in enumerate(game.automata):
-            clocks = [b.clock for place in automaton.locations if place.name == AT_RISK for b in place.invariant]
-            if not clocks or automaton.name not in dict(wanted.bad):
+            if AT_RISK not in automaton.stays or automaton.name not in dict(wanted.bad):
                 continue
-            clock, took = searches.loop.arena.clock[clocks[0]], None
+            clock, took = searches.loop.arena.clock[automaton.stays[AT_RISK][0].clock], None
             for many in (0, _MANY):
                 try:
                     took = took or searches.latest(clock, limit, LimitMonitor(limits), (k, AT_RISK), many).value

@@ -13,8 +13,9 @@ from itertools import combinations, product
 from math import prod
 from typing import AbstractSet, Collection, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
+from pursue_gen.solving.duties import is_free
 from pursue_gen.synthesis.strategy import Place
-from pursue_gen.tga.ends import is_agent
+from pursue_gen.tga.ends import is_nobodys
 from pursue_gen.tga.network import Automaton, Edge, Guard, Kind, Network, Objective
 
 _MOST = 500
@@ -35,7 +36,7 @@ def excluded_by_a_stay(network: Network, objective: Objective) -> Tuple[Objectiv
     for arrival in _arrivals(network):
         asking = [place for place in objective.bad if _asks(network.automaton(place[0]), arrival)]
         requests = _requests(network, arrival)
-        waiting = [place for place in objective.bad if _hears(network.automaton(place[0]), requests)]
+        waiting = [(name, at) for name, at in objective.bad if requests & network.automaton(name).channels]
         for pair in combinations(objective.bad, 2):
             concerned = any(place in asking for place in pair) and all(place in asking + waiting for place in pair)
             if concerned and not _can_be_kept(network, pair, arrival, requests):
@@ -46,54 +47,39 @@ def excluded_by_a_stay(network: Network, objective: Objective) -> Tuple[Objectiv
 def _arrivals(network: Network) -> Iterator[Edge]:
     """The edges by which agents whom nobody controls come to places where they may stay for ever, each by a way that
     they can take in any case."""
-    for automaton in network.automata:
-        if is_agent(automaton) and not any(edge.controllable for edge in automaton.edges):
-            yield from arrivals(automaton)
+    for automaton in filter(is_nobodys, network.automata):
+        yield from arrivals(automaton)
 
 
 def arrivals(agent: Automaton) -> Iterator[Edge]:
-    """The edges by which an agent comes to places where it may stay for ever, each by a way that it can take in any
-    case."""
-    lasting = {place.name for place in agent.locations if not place.invariant}
+    """The edges by which an agent whom nobody controls comes to places where it may stay for ever, each by a way that
+    it can take in any case."""
     met, waiting = {agent.initial}, [agent.initial]
     while waiting:
         here = waiting.pop()
         for edge in agent.edges:
-            if edge.source == here and edge.target not in met and _is_its_own(edge):
+            if edge.source == here and edge.target not in met and is_free(edge):
                 met.add(edge.target)
                 waiting.append(edge.target)
-                if edge.target in lasting and edge.assign:
+                if edge.target not in agent.stays and edge.assign:
                     yield edge
 
 
 def _requests(network: Network, arrival: Edge) -> Set[str]:
     """The channels on which somebody whom nobody controls can send wherever he stays, after the arrival as well."""
     found: Set[str] = set()
-    for agent in network.automata:
-        if not is_agent(agent) or any(edge.controllable for edge in agent.edges):
-            continue
-        places = [place.name for place in agent.locations if not place.invariant]
-        stays = [arrival.target] if arrival in agent.edges else places
-        calls = [edge for edge in agent.edges if edge.source == edge.target and _is_its_own(edge)]
-        sent = [{edge.sync.channel for edge in calls if edge.sync is not None and edge.source == at} for at in stays]
+    for agent in filter(is_nobodys, network.automata):
+        stays = [arrival.target] if arrival in agent.edges else agent.lasting
+        calls = [edge for edge in agent.edges if edge.source == edge.target and is_free(edge)]
+        sent = [{edge.sent for edge in calls if edge.sent is not None and edge.source == at} for at in stays]
         found |= set.intersection(*sent) if sent else set()
     return found
 
 
-def _hears(automaton: Automaton, channels: AbstractSet[str]) -> bool:
-    return any(e.sync is not None and not e.sync.sends and e.sync.channel in channels for e in automaton.edges)
-
-
-def _is_its_own(edge: Edge) -> bool:
-    """True if the agent can always take the edge: no other agent can prevent it, and it has no latest time."""
-    late = all(bound.op in (">", ">=") for bound in edge.guard.clocks)
-    return late and not edge.guard.integers and (edge.sync is None or edge.sync.sends)
-
-
 def _asks(automaton: Automaton, arrival: Edge) -> bool:
     """True if the automaton hears of the arrival, or asks about where it leads."""
-    stay, sync = dict(arrival.assign), arrival.sync
-    if sync is not None and any(e.sync is not None and e.sync.channel == sync.channel for e in automaton.edges):
+    stay = dict(arrival.assign)
+    if arrival.channel in automaton.channels:
         return True
     return any(stay.get(t.variable) == t.value for edge in automaton.edges for c in edge.guard.integers for t in c)
 
@@ -141,9 +127,9 @@ def _after(watching: Sequence[Automaton], here: _Places, values: _Valuation, arr
     for automaton, place in zip(watching, here):
         hearing = _hearing([e for e in automaton.edges if e.source == place], arrival.sync.channel)
         # Its tests of what the arrival sets were made before the arrival, so they may have held or not.
-        sure = [e for e in hearing if moved.isdisjoint(t.variable for clause in e.guard.integers for t in clause)]
-        taken = [e.target for e in hearing if e not in sure or _holds(e.guard, values)]
-        options.append(taken if any(e.target in taken and _holds(e.guard, values) for e in sure) else [place, *taken])
+        sure = [e for e in hearing if moved.isdisjoint(e.tested)]
+        taken = [e.target for e in hearing if e not in sure or e.guard.holds(values)]
+        options.append(taken if any(e.target in taken and e.guard.holds(values) for e in sure) else [place, *taken])
     yield from product(*options)
 
 
@@ -167,16 +153,15 @@ class _Others:
             first: Dict[Tuple[bool, ...], int] = {}
             self._classes[name] = {v: first.setdefault(tuple(v in some for some in asked), v) for v in known}
             domains[name] = [stay[name]] if name in stay else list(first.values())
-        self.too_many = prod(map(len, domains.values())) > _MOST or any(
-            edge.sync is not None and edge.sync.sends for a in watching for edge in a.edges
-        )
+        sends = any(edge.sent is not None for a in watching for edge in a.edges)
+        self.too_many = sends or prod(map(len, domains.values())) > _MOST
         rows = () if self.too_many else product(*domains.values())
         self.valuations: List[_Valuation] = [dict(zip(domains, row)) for row in rows]
         self.sending: Dict[str, Set[Tuple[Tuple[str, int], ...]]] = {}
         for edge in edges:
-            if edge.sync is not None and edge.sync.sends:
+            if edge.sent is not None:
                 some = tuple((name, value) for name, value in edge.assign if name in domains and name not in stay)
-                self.sending.setdefault(edge.sync.channel, set()).add(some)
+                self.sending.setdefault(edge.sent, set()).add(some)
 
     def after(self, values: _Valuation, assign: Tuple[Tuple[str, int], ...]) -> _Valuation:
         """The values when some are set."""
@@ -204,14 +189,11 @@ def _steps(
             for edge in some
             if edge.sync is None
         ]
-        heard = {e.sync.channel for some in taken for e in some if e.sync is not None}
         together = [
             (others.after(values, sent), list(edges))
-            for channel in heard
+            for channel in {e.received for some in taken for e in some if e.received is not None}
             for sent in others.sending.get(channel, ())
-            for edges in product(
-                *([None, *(e for e in some if e.sync and e.sync.channel == channel)] for some in taken)
-            )
+            for edges in product(*([None, *_hearing(some, channel)] for some in taken))
         ]
         for then, edges in (*alone, *together):
             there = tuple(place if edge is None else edge.target for place, edge in zip(here, edges))
@@ -237,11 +219,11 @@ def _ends_in_time(watching: Sequence[Automaton], here: _Places, steps: Mapping[_
 def _taken(watching: Sequence[Automaton], here: _Places, values: _Valuation) -> List[List[Edge]]:
     """Of each automaton the edges that can be taken there, whatever the clocks."""
     pairs = zip(watching, here)
-    return [[e for e in a.edges if e.source == place and _holds(e.guard, values)] for a, place in pairs]
+    return [[e for e in a.edges if e.source == place and e.guard.holds(values)] for a, place in pairs]
 
 
 def _hearing(edges: Sequence[Edge], channel: str) -> List[Edge]:
-    return [edge for edge in edges if edge.sync is not None and edge.sync.channel == channel]
+    return [edge for edge in edges if edge.received == channel]
 
 
 def _is_led_out(watching: Sequence[Automaton], here: _Places, values: _Valuation, kept: AbstractSet[_Places]) -> bool:
@@ -261,8 +243,4 @@ def _ends(automaton: Automaton, edge: Edge) -> bool:
 
 def _deadline(automaton: Automaton, place: str) -> Set[str]:
     """The clocks that bound a stay there."""
-    return {bound.clock for location in automaton.locations if location.name == place for bound in location.invariant}
-
-
-def _holds(guard: Guard, values: _Valuation) -> bool:
-    return all(any(values[test.variable] == test.value for test in clause) for clause in guard.integers)
+    return {bound.clock for bound in automaton.stays.get(place, ())}

@@ -10,10 +10,11 @@ from typing import FrozenSet, Optional, Tuple
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT
 from pursue_gen.proof.worst_case import with_counter, with_deadline, worst_case
-from pursue_gen.solving.least_time import Faster, Guarantee, bounds, unscaled
-from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.least_time import Faster, Guarantee, bounds, fastest, unscaled
+from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.proving import prove
-from pursue_gen.solving.solution import Solution, with_clocks_of
+from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.solution import Solution, check_goal, guaranteed, solution
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Edge, Network, Objective
@@ -63,7 +64,38 @@ def proven_in_time(won: Solution, faster: Faster, options: SolveOptions, states:
     worst = faster.kept if took is None else min(took, faster.kept)
     guarantee = bounds(counted, won.objective, won.reaction, worst)
     found = won.with_strategy(strategy)
-    return replace(found, network=with_clocks_of(counted, won.network), guarantee=guarantee)
+    return replace(found, network=_with_clocks_of(counted, won.network), guarantee=guarantee)
+
+
+def _with_clocks_of(counted: Network, network: Network) -> Network:
+    """The network with the clock that was added to a part of it."""
+    added = tuple(clock for clock in counted.clocks if clock not in network.clocks)
+    start = tuple(c for c in counted.start if c.left in added)
+    return replace(network, clocks=(*network.clocks, *added), start=(*network.start, *start)) if added else network
+
+
+def fastest_solution(network: Network, objective: Objective, rules: Rules, options: SolveOptions = DEFAULT) -> Solution:
+    """As `solution`, with the proven strategy that takes the least time to the goal at worst, as far as it is found.
+
+    Raises as `solution`, and with exit status 2 for an objective without a goal. A limit that is hit after the first
+    strategy ends the search, and the best one that is proven counts.
+    """
+    check_goal(objective, "--optimize time")
+    start, limits = options.limits.now(), options.limits.chosen
+    won = solution(network, objective, rules, options)
+    known = guaranteed(won, STATES, limits.since(start))
+    more = replace(options, limits=limits.since(start))
+    found, faster = fastest(won.part, objective, rules.reaction, known.worst, more)
+    if faster is None:
+        return replace(won, guarantee=found)
+    try:
+        fast = proven_in_time(won, faster, replace(options, limits=limits.since(start)))
+    except LimitHit:
+        return replace(won, guarantee=replace(found, worst=known.worst, most=known.most))
+    took = fast.guarantee
+    assert took is not None
+    most = max(found.least, min(each.most for each in (took, found) if each.most is not None))
+    return replace(fast, guarantee=replace(found, worst=took.worst, most=most))
 
 
 def better(
@@ -96,10 +128,6 @@ def moves_of(strategy: Strategy) -> Moves:
 
 def keeping_to(network: Network, moves: Moves) -> Network:
     """The network without the commands that are no such moves: what is won without them is won with them."""
-
-    def kept(name: str, edge: Edge) -> bool:
-        commanded = edge.controllable and (edge.sync is None or edge.sync.sends)
-        return not commanded or (name, edge) in moves
-
-    automata = (replace(a, edges=tuple(e for e in a.edges if kept(a.name, e))) for a in network.automata)
-    return replace(network, automata=tuple(automata))
+    return network.with_each(
+        lambda a: a.with_edges(edge for edge in a.edges if not edge.is_command or (a.name, edge) in moves)
+    )

@@ -13,7 +13,7 @@ from typing import Collection, Dict, FrozenSet, Iterator, List, Mapping, Optiona
 
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT, verify
-from pursue_gen.proof.relaxed_reachability import Commanded, Extent, is_controllers, live, taken_over
+from pursue_gen.proof.relaxed_reachability import Extent, is_controllers, live, taken_over
 from pursue_gen.proof.stage_entry import Known, at_start
 from pursue_gen.proof.stages import after_stage, is_sure, stage_objective
 from pursue_gen.solving.found import Found, stats_of_all
@@ -222,7 +222,7 @@ class _StagesSearch:
         starts = known.states(game)
         if starts is None:
             return None
-        changed: Mapping[Edge, Edge] = {}
+        changed: Mapping[Tuple[str, Edge], Edge] = {}
         if part.goal is not None:
             game, _, changed = ending_at(game, part.goal, owner)
         game = beginning_in(game, starts) if part.milestones else game
@@ -237,21 +237,12 @@ class _StagesSearch:
             if self._budget.used_up:
                 raise
             return None
-        blocks = _without_begin(proven)
-        if part.goal is None:
-            return blocks
-        return list(with_edges(blocks, wanted.goal[0][0], {there: here for here, there in changed.items()}))
+        own = {(name, there): here for (name, here), there in changed.items()}
+        return list(with_edges(_without_begin(proven), own))
 
     def _alive(self, part: _Subtask, team: Collection[str], known: Known) -> Tuple[Network, Extent]:
-        """What can happen in a stage in which only this team gets commands."""
-        return live(self._network, self._allowed(part, team), known.extent)
-
-    def _allowed(self, part: _Subtask, team: Collection[str]) -> Commanded:
-        """What may be commanded in a stage: the commands of the team, except those that undo a milestone or meet
-        another subgoal.
-
-        Commands of objectives are allowed in the last stage only.
-        """
+        """What can happen in a stage in which only this team gets commands, except those that undo a milestone or meet
+        another subgoal. Commands of objectives are allowed in the last stage only."""
         undoing: Set[str] = set()
         fixed: Dict[str, int] = {}
         for name, place in (subgoal.place for subgoal in self._subgoals):
@@ -262,7 +253,7 @@ class _StagesSearch:
         if part.goal is not None and part.goal[0] not in self._variables:
             undoing -= _received(self._network.automaton(part.goal[0]), part.goal[1])
         is_last = part.goal is None or (part.goal,) == self._objective.goal
-        return {
+        allowed = {
             (automaton.name, edge)
             for automaton in self._network.automata
             for edge in automaton.edges
@@ -270,9 +261,10 @@ class _StagesSearch:
             or (automaton.name in part.ending and edge.is_end)
             or (is_last and not is_agent(automaton))
             if is_controllers(edge, self._taken)
-            and (edge.sync is None or edge.sync.channel not in undoing)
+            and edge.channel not in undoing
             and all(fixed.get(name, value) == value for name, value in edge.assign)
         }
+        return live(self._network, allowed, known.extent)
 
 
 def _grouped(goals: Sequence[Subgoal]) -> List[List[Subgoal]]:
@@ -289,11 +281,7 @@ def _grouped(goals: Sequence[Subgoal]) -> List[List[Subgoal]]:
 
 def _received(automaton: Automaton, until: str = "") -> Set[str]:
     """The channels on which an automaton receives, but for those on which it leaves this location."""
-    return {
-        edge.sync.channel
-        for edge in automaton.edges
-        if edge.sync is not None and not edge.sync.sends and edge.source != until
-    }
+    return {edge.received for edge in automaton.edges if edge.received is not None and edge.source != until}
 
 
 def _without_begin(strategy: Strategy) -> List[Block]:
@@ -302,6 +290,5 @@ def _without_begin(strategy: Strategy) -> List[Block]:
     for block in strategy.blocks:
         places = dict(block.state.locations)
         if places.pop(BEGIN, None) != BEGIN:
-            state = replace(block.state, locations=tuple(places.items()))
-            blocks.append(replace(block, state=state))
+            blocks.append(block.with_locations(places.items()))
     return blocks

@@ -31,17 +31,23 @@ def distances_to(places: Iterable[str], back: Mapping[str, Sequence[Tuple[str, F
     return found
 
 
+def backwards(ways: Mapping[str, Mapping[str, Far]]) -> Dict[str, List[Tuple[str, Far]]]:
+    """For each place those before it, with the time from there; `ways`: from each place that to those behind it."""
+    back: Dict[str, List[Tuple[str, Far]]] = {}
+    for origin, targets in ways.items():
+        for target, takes in targets.items():
+            back.setdefault(target, []).append((origin, takes))
+    return back
+
+
 def times_to(places: Iterable[str], automaton: Automaton) -> Dict[str, Number]:
     """How long an agent takes at most to the nearest of these places, its rests included, from where it can come there.
 
     It rests as long as a guard says, and is under way as long as it may; a way without an end leads nowhere.
     """
-    longest = {each.name: max((bound.bound for bound in each.invariant), default=None) for each in automaton.locations}
     back: Dict[str, List[Tuple[str, Number]]] = {}
     for edge in automaton.edges:
-        takes = longest[edge.source]
-        if takes is None and edge.leaves is not Role.WAY:
-            takes = max((bound.bound for bound in edge.guard.clocks if bound.op in (">", ">=")), default=0)
+        takes = automaton.longest.get(edge.source, None if edge.leaves is Role.WAY else edge.guard.since)
         if takes is not None:
             back.setdefault(edge.target, []).append((edge.source, takes))
     return distances_to(places, back)
@@ -51,15 +57,14 @@ def time_to_help(network: Network, robot: str, promise: Place) -> float:
     """How long the robot takes at most to where it does what the promise waits for, or is not where what is to be
     avoided asks for it; infinite where it never comes there."""
     watching, automaton = network.automaton(promise[0]), network.automaton(robot)
-    waiting = {place.name for place in watching.locations if place.invariant}
-    edges = [edge for edge in watching.edges if not waiting or edge.source in waiting]
-    heard = {edge.sync.channel for edge in edges if edge.sync is not None}
+    edges = [edge for edge in watching.edges if not watching.stays or edge.source in watching.stays]
+    heard = {edge.channel for edge in edges if edge.channel is not None}
     asked = {(test.variable, test.value) for edge in edges for clause in edge.guard.integers for test in clause}
     named = {name for name, _ in asked}
     there = {
         edge.target
         for edge in automaton.edges
-        if (edge.sync is not None and edge.sync.channel in heard)
-        or any(name in named and ((name, value) in asked) == bool(waiting) for name, value in edge.assign)
+        if (edge.channel in heard)
+        or any(name in named and ((name, value) in asked) == bool(watching.stays) for name, value in edge.assign)
     }
     return float(times_to(there, automaton).get(automaton.initial, math.inf))

@@ -18,9 +18,7 @@ from pursue_gen.language.numbers import Number
 from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.solving.distances import times_to
 from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone
-from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Network, Objective, Test
-
-_Senders = Mapping[str, Sequence[Tuple[str, Edge]]]
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Objective, Test
 
 
 @dataclass(frozen=True)
@@ -56,46 +54,30 @@ class DueMoves:
 
 def patrols(network: Network) -> FrozenSet[str]:
     """The automata whose deadlines robots begin, and nobody else: each place of a patrol has one."""
-    senders = _senders(network)
-    return frozenset(automaton.name for automaton in network.automata if _is_patrol(senders, automaton))
+    return frozenset(automaton.name for automaton in network.automata if _is_patrol(network, automaton))
 
 
-def _is_patrol(senders: _Senders, automaton: Automaton) -> bool:
+def _is_patrol(network: Network, automaton: Automaton) -> bool:
     begins = [edge for edge in automaton.edges if edge.source != AT_RISK and edge.target == AT_RISK]
-    return bool(begins) and all(
-        sent.controllable and sent.enters is Role.WAY
-        for edge in begins
-        if edge.sync is not None
-        for _, sent in senders.get(edge.sync.channel, ())
-    )
+    led = (sent for edge in begins for _, sent in network.senders.get(edge.channel, ()))
+    return bool(begins) and all(sent.controllable and sent.enters is Role.WAY for sent in led)
 
 
 def duties(network: Network, objective: Objective, known: AbstractSet[str]) -> Tuple[Duty, ...]:
     """What has a deadline of the objective's promises; `known`: those of patrols (see `patrols`)."""
     names = dict.fromkeys(name for name, _ in objective.bad)
-    watching = [automaton for automaton in network.automata if automaton.name in names]
-    bounds = ((each, place.invariant) for each in watching for place in each.locations if place.name == AT_RISK)
-    senders = _senders(network)
-    return tuple(_duty(senders, each, bound[0], each.name in known) for each, bound in bounds if bound)
+    watching = (a for a in network.automata if a.name in names and AT_RISK in a.stays)
+    return tuple(_duty(network, each, each.name in known) for each in watching)
 
 
-def _duty(senders: _Senders, automaton: Automaton, bound: ClockBound, patrol: bool) -> Duty:
+def _duty(network: Network, automaton: Automaton, patrol: bool) -> Duty:
     visits: Dict[str, Tuple[str, ...]] = {}
     for edge in automaton.edges:
-        if patrol and edge.source == AT_RISK and edge.target == IDLE and edge.sync is not None:
-            for name, sent in senders.get(edge.sync.channel, ()):
+        if patrol and edge.source == AT_RISK and edge.target == IDLE:
+            for name, sent in network.senders.get(edge.channel, ()):
                 visits[name] = tuple(dict.fromkeys((*visits.get(name, ()), sent.target)))
+    bound = automaton.stays[AT_RISK][0]
     return Duty(automaton.name, bound.clock, bound.bound, visits)
-
-
-def _senders(network: Network) -> _Senders:
-    """By channel the edges that send on it, each with its agent."""
-    found: Dict[str, List[Tuple[str, Edge]]] = {}
-    for automaton in network.automata:
-        for edge in automaton.edges:
-            if edge.sync is not None and edge.sync.sends:
-                found.setdefault(edge.sync.channel, []).append((automaton.name, edge))
-    return found
 
 
 def only_due(
@@ -130,7 +112,7 @@ def _telling(name: str, edge: Edge) -> Edge:
     """A promise's edge that also sets the variable that is 1 while the promise's deadline is running."""
     if AT_RISK not in (edge.source, edge.target) or edge.source == edge.target:
         return edge
-    return replace(edge, assign=(*edge.assign, (Role.DUE(name), int(edge.target == AT_RISK))))
+    return edge.plus(assign=((Role.DUE(name), int(edge.target == AT_RISK)),))
 
 
 def _sets_off(edge: Edge) -> bool:
@@ -145,14 +127,12 @@ def _for_duties(
     reserve: Fraction,
 ) -> Iterator[Edge]:
     """The edge with which a robot sets off, once for each patrol to whose place it leads, and for each promise."""
-    clocks, integers = edge.guard.clocks, edge.guard.integers
     ends = [other.target for other in automaton.edges if other.source == edge.target]
     called = tuple(Test(Role.DUE(duty.name), 1) for duty in known if not duty.visits)
     if called:
-        yield replace(edge, guard=Guard(clocks, (*integers, called)))
+        yield edge.plus(called)
     for duty in known:
         far = nearer[duty.name]
         if edge.source in far and all(end in far and far[end] < far[edge.source] for end in ends):
             latest = Fraction(duty.deadline) * (1 - reserve) - Fraction(far[edge.source])
-            due = ClockBound(duty.clock, ">=", max(0, math.floor(latest)))
-            yield replace(edge, guard=Guard((*clocks, due), integers))
+            yield edge.plus(bounds=(ClockBound(duty.clock, ">=", max(0, math.floor(latest))),))

@@ -17,7 +17,7 @@ from typing import AbstractSet, Collection, Dict, FrozenSet, List, Mapping, Opti
 from pursue_gen.language.numbers import Number
 from pursue_gen.solving.distances import distances_to, times_to
 from pursue_gen.synthesis.strategy import Place
-from pursue_gen.tga.ends import is_agent
+from pursue_gen.tga.ends import is_agent, is_nobodys
 from pursue_gen.tga.network import Automaton, Edge, Network, Test
 
 Standing = Mapping[str, str]
@@ -69,20 +69,19 @@ def can_be_covered(duties: Sequence[Duty], robots: Mapping[str, Sequence[str]]) 
     return _covers(frozenset(range(len(duties))), options)
 
 
-def places_of(automaton: Automaton) -> List[str]:
-    """Where an agent may be for ever."""
-    return [place.name for place in automaton.locations if not place.invariant]
+def are_reported(network: Network, robots: Sequence[str]) -> bool:
+    """True if the environment chooses when what these robots do ends."""
+    return not any(edge.is_end and edge.controllable for name in robots for edge in network.automaton(name).edges)
 
 
 def at_home(network: Network) -> Dict[str, str]:
     """The agents whom nobody controls that may be for ever where they begin, and these places."""
-    nobodys = [a for a in network.automata if is_agent(a) and not any(edge.controllable for edge in a.edges)]
-    return {a.name: a.initial for a in nobodys if a.initial in places_of(a)}
+    return {a.name: a.initial for a in filter(is_nobodys, network.automata) if a.initial not in a.stays}
 
 
 def begins(automaton: Automaton, channels: AbstractSet[str]) -> List[Edge]:
     """The commands by which a robot begins a movement or action that ends on one of these channels."""
-    doing = {e.source for e in automaton.edges if e.sync is not None and e.sync.sends and e.sync.channel in channels}
+    doing = {edge.source for edge in automaton.edges if edge.sent in channels}
     return [edge for edge in automaton.edges if edge.target in doing and edge.source not in doing]
 
 
@@ -115,7 +114,7 @@ class _Watched:
 
 
 def _watched(automaton: Automaton, promise: Place) -> Optional[_Watched]:
-    bounds = {place.name: place.invariant for place in automaton.locations if place.invariant}
+    bounds = automaton.stays
     if len(bounds) > 1 or any(len(some) > 1 for some in bounds.values()):
         return None
     urgent = next(iter(bounds), promise[1])
@@ -145,18 +144,18 @@ class _Answers:
 
 
 def _answers(network: Network, watched: _Watched, robots: Sequence[str]) -> Optional[_Answers]:
-    called = {edge.sync.channel if edge.sync is not None else "" for edge in watched.entries}
-    ends = frozenset(edge.sync.channel if edge.sync is not None else "" for edge in watched.exits)
+    called = {edge.channel or "" for edge in watched.entries}
+    ends = frozenset(edge.channel or "" for edge in watched.exits)
     watching = network.automaton(watched.promise[0])
-    hearing = [edge for edge in watching.edges if edge.sync is not None and edge.sync.channel in called]
+    hearing = [edge for edge in watching.edges if edge.channel in called]
     if len(called) > 1 or called & ends or "" in ends:
         return None
     if any(e.source in watched.calm and (e not in watched.entries or e.guard.integers) for e in hearing):
         return None
-    heard = [(a, e, e.sync.sends) for a in network.automata for e in a.edges if e.sync and e.sync.channel in ends]
-    if any(sends != (a.name in robots) and (sends or a.name in robots) for a, _, sends in heard):
+    heard = [(name, edge) for name, edge in network.edges if edge.channel in ends]
+    if any((edge.sent is not None) != (name in robots) for name, edge in heard if edge.sent or name in robots):
         return None  # others have a part in it
-    doing = {robot: {edge.source for a, edge, _ in heard if a.name == robot} for robot in robots}
+    doing = {robot: {edge.source for name, edge in heard if name == robot} for robot in robots}
     times = {robot: _times(network.automaton(robot), some, True) for robot, some in doing.items()}
     rests = _callers(network, watched, called)
     return _Answers(Duty(watched.promise, watched.within, times, ends), rests) if rests else None
@@ -165,29 +164,28 @@ def _answers(network: Network, watched: _Watched, robots: Sequence[str]) -> Opti
 def _callers(network: Network, watched: _Watched, called: Collection[str]) -> Dict[Tuple[str, str], Number]:
     """Who may call where, whenever nobody waits, and how long they rest before."""
     found: Dict[Tuple[str, str], Number] = {}
-    for agent in network.automata:
-        for edge in agent.edges:
-            free = _is_free(replace(edge, guard=replace(edge.guard, integers=())))
-            calls = edge.source == edge.target and edge.sync is not None and edge.sync.channel in called
-            if free and calls and all(_holds_while_calm(network, watched, clause) for clause in edge.guard.integers):
-                found[agent.name, edge.source] = max((bound.bound for bound in edge.guard.clocks), default=0)
+    for name, edge in network.edges:
+        free = is_free(replace(edge, guard=replace(edge.guard, integers=())))
+        calls = edge.source == edge.target and edge.sent in called
+        if free and calls and all(_holds_while_calm(network, watched, clause) for clause in edge.guard.integers):
+            found[name, edge.source] = edge.guard.since
     return found
 
 
 def _holds_while_calm(network: Network, watched: _Watched, clause: Sequence[Test]) -> bool:
     """True if the clause, about the turns of one rule, holds whenever nobody waits for what the promise is about."""
     names = {test.variable for test in clause}
-    rules = [automaton for automaton in network.automata if names & _variables(automaton)]
-    if len(names) != 1 or len(rules) != 1 or any(e.sync is None or e.sync.sends for e in rules[0].edges):
+    rules = [automaton for automaton in network.automata if not names.isdisjoint(automaton.assigned)]
+    if len(names) != 1 or len(rules) != 1 or any(edge.received is None for edge in rules[0].edges):
         return False
     (name,), (rule,), watching = names, rules, network.automaton(watched.promise[0])
     values = {rule.initial: dict(network.variables)[name]}
     values.update((edge.target, dict(edge.assign)[name]) for edge in rule.edges)
-    sending: Dict[str, List[AbstractSet[int]]] = {}
-    for edge in (edge for automaton in network.automata for edge in automaton.edges):
-        if edge.sync is not None and edge.sync.sends:
-            about = [{t.value for t in some} for some in edge.guard.integers if all(t.variable == name for t in some)]
-            sending.setdefault(edge.sync.channel, []).append(set(values.values()).intersection(*about))
+    sending: Dict[Optional[str], Set[int]] = {}
+    for channel, some in network.senders.items():
+        for _, edge in some:
+            about = [{t.value for t in c} for c in edge.guard.integers if all(t.variable == name for t in c)]
+            sending.setdefault(channel, set()).update(set(values.values()).intersection(*about))
     start = (watching.initial, rule.initial)
     met, left = {start}, [start]
     while left:
@@ -195,7 +193,7 @@ def _holds_while_calm(network: Network, watched: _Watched, clause: Sequence[Test
         if here[0] in watched.calm and values[here[1]] not in {test.value for test in clause}:
             return False
         for channel, turns in sending.items():
-            if any(values[here[1]] in some for some in turns):
+            if values[here[1]] in turns:
                 steps = product(_after(watching, here[0], channel), _after(rule, here[1], channel))
                 new = [there for there in steps if there not in met]
                 met.update(new)
@@ -203,9 +201,9 @@ def _holds_while_calm(network: Network, watched: _Watched, clause: Sequence[Test
     return True
 
 
-def _after(automaton: Automaton, place: str, channel: str) -> List[str]:
+def _after(automaton: Automaton, place: str, channel: Optional[str]) -> List[str]:
     """Where an automaton may be after somebody sent on the channel."""
-    heard = [e for e in automaton.edges if e.source == place and e.sync is not None and e.sync.channel == channel]
+    heard = [e for e in automaton.edges if e.source == place and e.channel == channel]
     sure = any(not edge.guard.integers and not edge.guard.clocks for edge in heard)
     return [*(edge.target for edge in heard), *(() if sure else (place,))]
 
@@ -231,9 +229,8 @@ def _presence(network: Network, watched: _Watched, robots: Sequence[str]) -> Opt
         return None
     found = []
     for person in (a for a in network.automata if a.name not in robots and is_agent(a)):
-        moved = _variables(person)
         for entry in watched.entries:
-            about = [clause for clause in entry.guard.integers if any(test.variable in moved for test in clause)]
+            about = [c for c in entry.guard.integers if any(test.variable in person.assigned for test in c)]
             there = _present(network, robots, [clause for clause in entry.guard.integers if clause not in about])
             if len(about) == 1 and there is not None and _ends_there(network, watched.exits, there):
                 times = {robot: _times(network.automaton(robot), some, False) for robot, some in there.items()}
@@ -249,16 +246,15 @@ def _soonest(person: Automaton, wanted: Sequence[Test]) -> Dict[str, Number]:
         there = bool(goals.intersection(edge.assign))
         if there:
             back.setdefault(_NOW, []).append((edge.target, 0))
-        if _is_free(edge):
-            takes = max((bound.bound for bound in edge.guard.clocks), default=0)
-            back.setdefault(_NOW if there else edge.target, []).append((edge.source, takes))
+        if is_free(edge):
+            back.setdefault(_NOW if there else edge.target, []).append((edge.source, edge.guard.since))
     return distances_to([_NOW], back)
 
 
-def _is_free(edge: Edge) -> bool:
+def is_free(edge: Edge) -> bool:
     """True if nobody can keep an agent whom nobody controls from the edge, and it need not be in time for it."""
     late = all(bound.op in (">", ">=") for bound in edge.guard.clocks)
-    return late and not edge.controllable and not edge.guard.integers and (edge.sync is None or edge.sync.sends)
+    return late and not edge.controllable and not edge.guard.integers and edge.received is None
 
 
 def _present(
@@ -269,7 +265,7 @@ def _present(
     for clause in clauses:
         values = {(test.variable, test.value) for test in clause}
         names = {variable for variable, _ in values}
-        owner = next((r for r in robots if names & _variables(network.automaton(r))), None)
+        owner = next((r for r in robots if not names.isdisjoint(network.automaton(r).assigned)), None)
         if len(names) != 1 or owner is None or owner in found:
             return None
         edges = network.automaton(owner).edges
@@ -277,23 +273,10 @@ def _present(
     return found
 
 
-def _variables(automaton: Automaton) -> Set[str]:
-    return {variable for edge in automaton.edges for variable, _ in edge.assign}
-
-
 def _ends_there(network: Network, exits: Sequence[Edge], there: Mapping[str, AbstractSet[str]]) -> bool:
     """True if nothing ends what is urgent but that one of these robots is there."""
-    sending = [
-        (a.name, edge) for a in network.automata for edge in a.edges if edge.sync is not None and edge.sync.sends
-    ]
-    elsewhere = {e.sync.channel for name, e in sending if e.sync and e.target not in there.get(name, ())}
-    present = {
-        each
-        for r, places in there.items()
-        for e in network.automaton(r).edges
-        if e.target in places
-        for each in e.assign
-    }
+    elsewhere = {e.sent for name, e in network.edges if e.sent is not None and e.target not in there.get(name, ())}
+    present = {each for name, e in network.edges if e.target in there.get(name, ()) for each in e.assign}
 
     def is_there(edge: Edge) -> bool:
         clauses = ({(test.variable, test.value) for test in clause} for clause in edge.guard.integers)
@@ -306,14 +289,13 @@ def _times(automaton: Automaton, goals: AbstractSet[str], to_the_end: bool) -> D
     """How long a robot takes at most to be at one of these locations, or to their ends, from each location into which
     it has just come; from where it may stay it sets off at once."""
     found: Dict[str, Number] = {}
-    longest = {each.name: max((bound.bound for bound in each.invariant), default=0) for each in automaton.locations}
     for goal in goals:
-        last: Number = longest[goal] if to_the_end else 0
+        last: Number = automaton.longest.get(goal, 0) if to_the_end else 0
         for location, takes in times_to([goal], automaton).items():
             found[location] = min(found.get(location, takes + last), takes + last)
     rested = {
         place: min((found[e.target] for e in automaton.edges if e.source == place and e.target in found), default=None)
-        for place in places_of(automaton)
+        for place in automaton.lasting
     }
-    here = {place: 0 for place in places_of(automaton) if place in goals and not to_the_end}
+    here = {place: 0 for place in automaton.lasting if place in goals and not to_the_end}
     return {**found, **{place: takes for place, takes in rested.items() if takes is not None}, **here}

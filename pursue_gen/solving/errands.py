@@ -12,7 +12,7 @@ from typing import Optional, Sequence, Tuple
 from pursue_gen.language.numbers import Number
 from pursue_gen.solving.distances import times_to
 from pursue_gen.solving.due_moves import Duty, duties, patrols
-from pursue_gen.solving.duties import Duties, at_home, begins
+from pursue_gen.solving.duties import Duties, are_reported, at_home, begins
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective
 
@@ -23,8 +23,7 @@ _Patrols = Sequence[Tuple[str, Duty]]
 def excluded_by_an_errand(network: Network, objective: Objective) -> Tuple[Objective, ...]:
     """Promises, places to be avoided, that cannot all be kept because of an errand; () where none are found."""
     robots = commanded_agents(network)
-    ends = (edge for name in robots for edge in network.automaton(name).edges if edge.is_end)
-    if objective.reaches or any(edge.controllable for edge in ends):
+    if objective.reaches or not are_reported(network, robots):
         return ()
     visits = [
         (next(iter(duty.visits)), duty)

@@ -8,14 +8,15 @@ beside the new ones (delete relaxation, Hoffmann and Nebel 2001), which is quick
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import AbstractSet, Callable, Dict, Iterator, Optional, Set, Tuple
+from typing import Callable, Dict, Iterable, Iterator, Optional, Set, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, listed, warning
 from pursue_gen.language.scenario import Assumption, Scenario
+from pursue_gen.proof.relaxed_reachability import live
 from pursue_gen.synthesis.compile_game import compile_game
-from pursue_gen.synthesis.game import NO_CHANNEL, Game, initial_state, joint_moves
+from pursue_gen.synthesis.game import initial_state, joint_moves
 from pursue_gen.tga import translate
-from pursue_gen.tga.network import Kind, Objective
+from pursue_gen.tga.network import Edge, Kind, Network, Objective
 
 _MOST_MOVES = 10_000
 """The moves between discrete states that are looked at: some tenths of a second. Not measured."""
@@ -23,8 +24,11 @@ _MOST_MOVES = 10_000
 _MOST_EDGES = 20_000
 """The edges of a network that is looked at; beyond that nothing is reported. Not measured."""
 
-_Search = Callable[[Game], Optional[Set[int]]]
-"""The edges of a game that can be taken, or more; None: that would take too long."""
+_Edges = Iterable[Tuple[str, Edge]]
+"""Edges, each with its automaton."""
+
+_Search = Callable[[Network], Optional[_Edges]]
+"""The edges of a network that can be taken, or more; None: that would take too long."""
 
 _Deeds = Set[Tuple[str, str]]
 """Agents with events that they begin."""
@@ -74,21 +78,15 @@ def _possible(scenario: Scenario, assumed: Tuple[Assumption, ...], search: _Sear
     network = translate(replace(scenario, safety=(), reach=(), assumptions=assumed))  # objectives forbid no move
     if sum(len(automaton.edges) for automaton in network.automata) > _MOST_EDGES:
         return None
+    taken = search(network)
+    events = {event.name for event in scenario.events}
+    return None if taken is None else {(name, edge.sent) for name, edge in taken if edge.sent in events}
+
+
+def _by_states(network: Network) -> Optional[_Edges]:
+    """The edges that are taken from discrete states that can be reached whatever the clocks are."""
     anywhere = network.automata[0].name, network.automata[0].initial  # a game has an objective
     game = compile_game(network, Objective(Kind.SAFETY, bad=(anywhere,)))
-    taken = search(game)
-    events = {event.name for event in scenario.events}
-    if taken is None:
-        return None
-    return {
-        (game.automata[edge.automaton].name, game.channels[edge.channel])
-        for edge in (game.edges[k] for k in taken)
-        if edge.sends and edge.channel != NO_CHANNEL and game.channels[edge.channel] in events
-    }
-
-
-def _by_states(game: Game) -> Optional[Set[int]]:
-    """The edges that are taken from discrete states that can be reached whatever the clocks are."""
     first = initial_state(game)
     found, pending, moves = {first}, [first], 0
     taken: Set[int] = set()
@@ -101,36 +99,9 @@ def _by_states(game: Game) -> Optional[Set[int]]:
             if move.target not in found:
                 found.add(move.target)
                 pending.append(move.target)
-    return taken
+    return [network.edges[k] for k in taken]
 
 
-def _relaxed(game: Game) -> Set[int]:
+def _relaxed(network: Network) -> _Edges:
     """The edges that can be taken where nothing is lost that has been reached once."""
-    places = {(number, automaton.initial) for number, automaton in enumerate(game.automata)}
-    values = set(enumerate(game.initial_values))
-    channels = {NO_CHANNEL}
-    taken: Set[int] = set()
-    waiting = set(range(len(game.edges)))
-    while True:
-        new = {k for k in waiting if _can_be_taken(game, k, places, values, channels)}
-        if not new:
-            return taken
-        taken |= new
-        waiting -= new
-        for edge in (game.edges[k] for k in new):
-            places.add((edge.automaton, edge.target))
-            values.update(edge.assignments)
-            channels.update([edge.channel] if edge.sends else [])
-
-
-def _can_be_taken(
-    game: Game,
-    number: int,
-    places: AbstractSet[Tuple[int, int]],
-    values: AbstractSet[Tuple[int, int]],
-    channels: AbstractSet[int],
-) -> bool:
-    edge = game.edges[number]
-    if (edge.automaton, edge.source) not in places or not (edge.sends or edge.channel in channels):
-        return False
-    return all(any(test in values for test in clause) for clause in edge.clauses)
+    return live(network, set(network.edges))[0].edges

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import replace
-from itertools import chain
-from typing import AbstractSet, Collection, Dict, Iterator, List, Sequence, Set, Tuple
+from typing import AbstractSet, Collection, Dict, Iterable, Iterator, List, Sequence, Set, Tuple
 
 from pursue_gen.language.symbols import Role
 from pursue_gen.synthesis.strategy import Place
-from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Network, Test
+from pursue_gen.tga.ends import is_agent, is_nobodys
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Network, Test
 from pursue_gen.tga.part import part_of
 from pursue_gen.tga.pauses import pauses
 
@@ -27,27 +26,24 @@ Measured on large lab 7 and lab 21."""
 def without_turns(game: Network, watching: Collection[str]) -> Network:
     """The network without the rules that only restrict when the controller may begin something, and on which these
     automata do not depend; the network itself where there are none."""
-    heard = {channel for name in watching for channel in _channels(game.automaton(name))}
+    heard = {channel for name in watching for channel in game.automaton(name).channels}
     rules = [each for each in game.automata if each.name not in watching and _is_rule(each)]
-    testing: Dict[str, List[Tuple[Automaton, Edge]]] = {}
-    for automaton in game.automata:
-        for edge in automaton.edges:
-            for variable in dict.fromkeys(_tested(edge)):
-                testing.setdefault(variable, []).append((automaton, edge))
-    unheard = (rule for rule in rules if heard.isdisjoint(_channels(rule)))
-    gone = [rule for rule in unheard if _binds_commands_alone(rule, testing.get(_assigned(rule)[0], ()))]
-    if not gone:
-        return game
-    variables = {name for rule in gone for name in _assigned(rule)}
-    automata = tuple(replace(a, edges=tuple(_free_of(edge, variables) for edge in a.edges)) for a in game.automata)
-    kept = {name for name, _ in game.variables} - variables
-    return part_of(replace(game, automata=automata), {a.name for a in automata} - {rule.name for rule in gone}, kept)
+    testing: Dict[str, List[Tuple[str, Edge]]] = {}
+    for name, edge in game.edges:
+        for variable in edge.tested:
+            testing.setdefault(variable, []).append((name, edge))
+    unheard = (rule for rule in rules if heard.isdisjoint(rule.channels))
+    gone = [rule for rule in unheard if _binds_commands_alone(game, rule, testing.get(rule.assigned[0], ()))]
+    variables = {name for rule in gone for name in rule.assigned}
+    freed = game.with_each(lambda a: a.with_edges(_free_of(edge, variables) for edge in a.edges))
+    names = {automaton.name for automaton in game.automata} - {rule.name for rule in gone}
+    return part_of(freed, names, dict(game.variables).keys() - variables)
 
 
 def without_others(game: Network, bad: Collection[Place], others: AbstractSet[str]) -> Network:
     """The network in which other agents bring nothing to what is to be avoided: where each of several may bring it on
     ("any robot at room6") these do not, and where it takes one of them it never comes."""
-    variables = {name for each in game.automata if each.name in others for name in _assigned(each)}
+    variables = {name for each in game.automata if each.name in others for name in each.assigned}
 
     def freed(edge: Edge) -> Iterator[Edge]:
         clauses = tuple(tuple(t for t in clause if t.variable not in variables) for clause in edge.guard.integers)
@@ -55,13 +51,13 @@ def without_others(game: Network, bad: Collection[Place], others: AbstractSet[st
             yield replace(edge, guard=replace(edge.guard, integers=clauses))
 
     def watching(automaton: Automaton) -> Automaton:
-        edges: List[Edge] = []
-        for edge in automaton.edges:
+        def edges(edge: Edge) -> Iterable[Edge]:
             comes = (automaton.name, edge.target) in bad and edge.sync is None and not edge.controllable
-            edges += freed(edge) if comes else [edge]
-        return replace(automaton, edges=tuple(edges))
+            return freed(edge) if comes else (edge,)
 
-    return replace(game, automata=tuple(map(watching, game.automata)))
+        return automaton.with_each(edges)
+
+    return game.with_each(watching)
 
 
 def with_one_walk(game: Network, watching: Collection[str], hurried: bool = False) -> Iterator[Network]:
@@ -72,11 +68,10 @@ def with_one_walk(game: Network, watching: Collection[str], hurried: bool = Fals
     The environment need not begin any movement, so what it wins so it wins.
     """
     asked = {t for name in watching for e in game.automaton(name).edges for clause in e.guard.integers for t in clause}
-    for automaton in game.automata:
-        if is_agent(automaton) and not any(edge.controllable for edge in automaton.edges):
-            ways = (_way(automaton, test) for test in sorted(asked, key=lambda t: (t.variable, t.value)))
-            walks = ((_standing(game, way), way) for way in dict.fromkeys(ways) if way)
-            yield from (_hurried(walk, automaton.name, way) if hurried else walk for walk, way in walks)
+    for automaton in filter(is_nobodys, game.automata):
+        ways = (_way(automaton, test) for test in sorted(asked, key=lambda t: (t.variable, t.value)))
+        walks = ((standing(game, way), way) for way in dict.fromkeys(ways) if way)
+        yield from (_hurried(walk, automaton.name, way) if hurried else walk for walk, way in walks)
 
 
 def _hurried(game: Network, name: str, way: Collection[Edge]) -> Network:
@@ -94,12 +89,11 @@ def _hurried(game: Network, name: str, way: Collection[Edge]) -> Network:
             starts = edge.source != agent.initial or not game.start
             if starts and all(bounds[0].clock in each.resets for each in enters):
                 until[edge.source] = ClockBound(bounds[0].clock, "<=", bounds[0].bound + 1)
-    places = (
-        replace(place, invariant=(until[place.name],)) if place.name in until and not place.invariant else place
-        for place in agent.locations
-    )
-    changed = replace(agent, locations=tuple(places))
-    return replace(game, automata=tuple(changed if each is agent else each for each in game.automata))
+
+    def bounded(place: Location) -> Location:
+        return replace(place, invariant=(until[place.name],)) if place.name in until and not place.invariant else place
+
+    return game.with_each(lambda each: each.with_locations(bounded) if each is agent else each)
 
 
 def punctual(game: Network, robot: str) -> Network:
@@ -108,17 +102,16 @@ def punctual(game: Network, robot: str) -> Network:
     robot again and again."""
     clocks = frozenset(pauses(game))
     automaton = game.automaton(robot)
-    bounded = {place.name for place in automaton.locations if place.invariant}
-    own = {bound.clock for place in automaton.locations for bound in place.invariant}
-    arrived = {Test(*each) for edge in automaton.edges if edge.target not in bounded for each in edge.assign}
+    own = {bound.clock for bounds in automaton.stays.values() for bound in bounds}
+    arrived = {Test(*each) for edge in automaton.edges if edge.target not in automaton.stays for each in edge.assign}
     if len(own) != 1 or not arrived:
         return game
     (clock,) = own
     at_a_place = tuple(sorted(arrived, key=lambda test: (test.variable, test.value)))
 
     def late(edge: Edge, bounds: Sequence[ClockBound]) -> Edge:
-        listens = edge.sync is not None and not edge.sync.sends
-        if edge.controllable or listens or edge.guard.integers or len(bounds) != 1 or bounds[0].op != "<=":
+        own_move = not edge.controllable and edge.received is None and not edge.guard.integers
+        if not own_move or len(bounds) != 1 or bounds[0].op != "<=":
             return edge
         if any(test.clock != bounds[0].clock or test.op not in (">", ">=") for test in edge.guard.clocks):
             return edge
@@ -126,57 +119,47 @@ def punctual(game: Network, robot: str) -> Network:
 
     def calls(edge: Edge) -> Iterator[Edge]:
         for moment in _MOMENTS if any(test.clock in clocks for test in edge.guard.clocks) else ():
-            then = (*edge.guard.clocks, ClockBound(clock, ">=", moment), ClockBound(clock, "<=", moment))
-            yield replace(edge, guard=Guard(then, (*edge.guard.integers, at_a_place)))
+            yield edge.plus(at_a_place, bounds=(ClockBound(clock, ">=", moment), ClockBound(clock, "<=", moment)))
 
     def less(automaton: Automaton) -> Automaton:
-        bounds = {place.name: place.invariant for place in automaton.locations}
-        edges = (tuple(calls(edge)) or (late(edge, bounds[edge.source]),) for edge in automaton.edges)
-        return replace(automaton, edges=tuple(chain.from_iterable(edges)))
+        return automaton.with_each(lambda e: tuple(calls(e)) or (late(e, automaton.stays.get(e.source, ())),))
 
-    return replace(game, automata=tuple(map(less, game.automata)))
+    return game.with_each(less)
 
 
 def asking_only(game: Network, watching: Collection[str]) -> Network:
     """The network in which agents whom nobody controls begin nothing of which these automata do not hear, other than
     movements, unless they have to in time."""
-    heard = {channel for name in watching for channel in _channels(game.automaton(name))}
+    heard = {channel for name in watching for channel in game.automaton(name).channels}
 
     def quiet(automaton: Automaton) -> Automaton:
-        bounded = {place.name for place in automaton.locations if place.invariant}
-        known = {e.source for e in automaton.edges if e.sync is not None and e.sync.channel in heard}
+        stays = automaton.stays
+        known = {e.source for e in automaton.edges if e.channel in heard}
 
         def is_kept(edge: Edge) -> bool:
-            if edge.sync is None or not edge.sync.sends or edge.sync.channel in heard:
+            if edge.sent is None or edge.sent in heard:
                 return True
             if edge.source == edge.target:
                 return False
-            doing = edge.target in bounded and edge.target in known
-            return edge.source in bounded or edge.enters is Role.WAY or doing
+            doing = edge.target in stays and edge.target in known
+            return edge.source in stays or edge.enters is Role.WAY or doing
 
-        edges = (edge for edge in automaton.edges if is_kept(edge))
-        return replace(automaton, edges=tuple(edges))
+        return automaton.with_edges(filter(is_kept, automaton.edges))
 
-    nobodys = {a.name for a in game.automata if is_agent(a) and not any(edge.controllable for edge in a.edges)}
-    return replace(game, automata=tuple(quiet(a) if a.name in nobodys else a for a in game.automata))
+    return game.with_each(lambda automaton: quiet(automaton) if is_nobodys(automaton) else automaton)
 
 
-def standing(game: Network) -> Network:
-    """The network in which agents whom nobody controls go nowhere unless they have to leave in time."""
-    return _standing(game, ())
+def standing(game: Network, kept: Collection[Edge] = ()) -> Network:
+    """The network in which agents whom nobody controls go nowhere unless they have to leave in time, other than by
+    these edges."""
 
-
-def _standing(game: Network, kept: Collection[Edge]) -> Network:
     def still(automaton: Automaton) -> Automaton:
-        bounded = {place.name for place in automaton.locations if place.invariant}
-        edges = (
-            e
-            for e in automaton.edges
-            if e.controllable or e.enters is not Role.WAY or e.source in bounded or e in kept
-        )
-        return replace(automaton, edges=tuple(edges))
+        def is_kept(edge: Edge) -> bool:
+            return edge.controllable or edge.enters is not Role.WAY or edge.source in automaton.stays or edge in kept
 
-    return replace(game, automata=tuple(map(still, game.automata)))
+        return automaton.with_edges(filter(is_kept, automaton.edges))
+
+    return game.with_each(still)
 
 
 def _way(automaton: Automaton, to: Test) -> Tuple[Edge, ...]:
@@ -196,43 +179,40 @@ def _way(automaton: Automaton, to: Test) -> Tuple[Edge, ...]:
 
 def _is_rule(automaton: Automaton) -> bool:
     """True if the automaton only receives, tests nothing, and has one variable that says where it is."""
-    listens = all(edge.sync is not None and not edge.sync.sends for edge in automaton.edges)
+    listens = all(edge.received is not None for edge in automaton.edges)
     tests = any(edge.guard.integers or edge.guard.clocks for edge in automaton.edges)
-    bounded = any(place.invariant for place in automaton.locations)
-    return not is_agent(automaton) and listens and not tests and not bounded and len(_assigned(automaton)) == 1
+    return not (is_agent(automaton) or tests or automaton.stays) and listens and len(automaton.assigned) == 1
 
 
-def _binds_commands_alone(rule: Automaton, testing: Sequence[Tuple[Automaton, Edge]]) -> bool:
+def _binds_commands_alone(game: Network, rule: Automaton, testing: Sequence[Tuple[str, Edge]]) -> bool:
     """True if the rule's variable is tested, by these edges, only where the controller begins something, and at the
     ends of that, at which it is then always true: an end is no freer without the rule."""
-    for automaton, edge in testing:
-        if _is_command(edge):
+    for name, edge in testing:
+        if edge.is_command:
             continue
-        if not edge.is_end or edge.sync is None or not edge.sync.sends:
+        if not edge.is_end or edge.sent is None:
             return False
-        begins = [begin for begin in automaton.edges if begin.target == edge.source]
-        if not all(_is_command(begin) and _is_followed(rule, begin, edge.sync.channel, edge) for begin in begins):
+        begins = [begin for begin in game.automaton(name).edges if begin.target == edge.source]
+        if not all(begin.is_command and _is_followed(rule, begin, edge) for begin in begins):
             return False
     return True
 
 
-def _is_followed(rule: Automaton, begin: Edge, ending: str, end: Edge) -> bool:
+def _is_followed(rule: Automaton, begin: Edge, end: Edge) -> bool:
     """True if the rule takes part in the begin, and from then on stays where it allows the end."""
-    if begin.sync is None:
-        return False
-    channel = begin.sync.channel
-    there = {edge.target for edge in rule.edges if edge.sync is not None and edge.sync.channel == channel}
+    led = [edge for edge in rule.edges if edge.received == begin.sent]
+    there = {edge.target for edge in led}
     before = -1
     while before < len(there):
         before = len(there)
-        there |= {e.target for e in rule.edges if e.source in there and e.sync is not None and e.sync.channel != ending}
-    starts = {edge.source for edge in rule.edges if edge.sync is not None and edge.sync.channel == channel}
-    return _turns(rule, begin) <= starts and there <= _turns(rule, end)
+        there |= {edge.target for edge in rule.edges if edge.source in there and edge.received != end.sent}
+    starts = {edge.source for edge in led}
+    return begin.sent is not None and _turns(rule, begin) <= starts and there <= _turns(rule, end)
 
 
 def _turns(rule: Automaton, edge: Edge) -> Set[str]:
     """The locations of the rule at which the edge may be taken."""
-    (variable,) = _assigned(rule)
+    (variable,) = rule.assigned
     places = {place.name for place in rule.locations}
     numbers = {e.target: value for e in rule.edges for _, value in e.assign}
     for clause in edge.guard.integers:
@@ -240,22 +220,6 @@ def _turns(rule: Automaton, edge: Edge) -> Set[str]:
             values = {test.value for test in clause if test.variable == variable}
             places &= {name for name, value in numbers.items() if value in values}
     return places
-
-
-def _is_command(edge: Edge) -> bool:
-    return edge.controllable and (edge.sync is None or edge.sync.sends)
-
-
-def _channels(automaton: Automaton) -> Set[str]:
-    return {edge.sync.channel for edge in automaton.edges if edge.sync is not None}
-
-
-def _assigned(automaton: Automaton) -> Tuple[str, ...]:
-    return tuple(dict.fromkeys(name for edge in automaton.edges for name, _ in edge.assign))
-
-
-def _tested(edge: Edge) -> Iterator[str]:
-    return (test.variable for clause in edge.guard.integers for test in clause)
 
 
 def _free_of(edge: Edge, variables: AbstractSet[str]) -> Edge:

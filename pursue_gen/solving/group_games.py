@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Dict, FrozenSet, Iterator, Sequence, Set, Tuple
+from typing import FrozenSet, Iterator, Sequence, Tuple
 
 from pursue_gen.proof.relaxed_reachability import Commanded, is_controllers, live, taken_over
 from pursue_gen.proof.shares import left_to_others
@@ -37,12 +37,7 @@ class GroupGames:
 
     def __init__(self, network: Network, objective: Objective) -> None:
         self._network, self._objective = network, objective
-        self._robots, self._taken = commanded_agents(network), taken_over(network)
-        self._setters: Dict[str, Set[str]] = {name: set() for name, _ in network.variables}
-        for automaton in network.automata:
-            for edge in automaton.edges:
-                for name, _ in edge.assign:
-                    self._setters[name].add(automaton.name)
+        self._robots, self._taken, self._setters = commanded_agents(network), taken_over(network), network.setters
 
     def game(
         self, group: Group, theirs: Commanded, shown: int = ALL, watchers: Tuple[Watcher, ...] = ()
@@ -58,7 +53,7 @@ class GroupGames:
         # The automata of other promises only watch.
         names = {automaton.name for automaton in alive.automata}.difference(name for name, _ in self._objective.bad)
         names.update(name for name, _ in bad)
-        alive = part_of(alive, names, self._setters.keys())
+        alive = part_of(alive, names)
         hidden = {a.name for a in alive.automata if is_agent(a) and a.name not in group.team and shown != ALL}
         tested = {name for _, edge in mine for name in edge.variables}
         while True:
@@ -99,5 +94,4 @@ def without_hidden(strategy: Strategy) -> Strategy:
     """The strategy in the names of the network itself."""
     if not strategy.blocks or strategy.blocks[0].state.locations[-1][0] != HIDDEN:
         return strategy
-    blocks = (replace(b, state=replace(b.state, locations=b.state.locations[:-1])) for b in strategy.blocks)
-    return replace(strategy, blocks=tuple(blocks))
+    return replace(strategy, blocks=tuple(b.with_locations(b.state.locations[:-1]) for b in strategy.blocks))

@@ -27,7 +27,7 @@ from pursue_gen.proof.worst_case import with_counter, with_deadline
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.compile_game import compile_game
-from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone, ZoneKey
+from pursue_gen.synthesis.strategy import Strategy, Zone, ZoneKey, with_edges, with_zones
 from pursue_gen.synthesis.time_bounds import least_time
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.scale import common_denominator, least_common_multiple, scaled
@@ -184,17 +184,9 @@ class _LeastTimeSearch:
 
 def unscaled(strategy: Strategy, network: Network, factor: int) -> Strategy:
     """A strategy for `scaled(network, factor)` as one for the network."""
-    pairs = zip(scaled(network, factor).automata, network.automata)
-    small = {own.name: dict(zip(fine.edges, own.edges)) for fine, own in pairs}
+    own = {fine: edge for fine, (_, edge) in zip(scaled(network, factor).edges, network.edges)}
 
     def zone(one: Zone) -> Zone:
         return tuple(replace(constraint, bound=constraint.bound / factor) for constraint in one)
 
-    def command(one: Command) -> Command:
-        moves = tuple(replace(move, edge=small[move.automaton][move.edge]) for move in one.moves)
-        return replace(one, zones=tuple(map(zone, one.zones)), moves=moves)
-
-    def block(one: Block) -> Block:
-        return replace(one, wait=tuple(map(zone, one.wait)), commands=tuple(map(command, one.commands)))
-
-    return replace(strategy, blocks=tuple(map(block, strategy.blocks)))
+    return replace(strategy, blocks=with_edges(with_zones(strategy.blocks, zone), own))

@@ -20,7 +20,7 @@ from pursue_gen.solving.options import SolveOptions
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.network import Automaton, Kind, Network, Objective
+from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.part import part_of
 from pursue_gen.tga.pauses import acting_at_most
@@ -128,12 +128,7 @@ def only_promises(network: Network, objective: Objective, wanted: Objective) -> 
     broken."""
     kept = {name for name, _ in (*wanted.goal, *wanted.bad)}
     others = {name for name, _ in (*objective.goal, *objective.bad)} - kept
-    names = {each.name for each in network.automata if each.name not in others or not _only_watches(each)}
-    return part_of(network, names, {name for name, _ in network.variables})
-
-
-def _only_watches(automaton: Automaton) -> bool:
-    return not is_agent(automaton) and not any(edge.assign for edge in automaton.edges)
+    return part_of(network, {a.name for a in network.automata if a.name not in others or is_agent(a) or a.assigned})
 
 
 def watched(wanted: Objective) -> Tuple[str, ...]:

@@ -13,7 +13,7 @@ from typing import AbstractSet, Dict, Iterable, List, Mapping, Optional, Sequenc
 
 from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy
-from pursue_gen.tga.network import Edge, Guard, Network
+from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.passages import Passage, with_passages
 
 Value = Union[str, int]
@@ -31,7 +31,7 @@ class Step:
     @property
     def concerned(self) -> List[str]:
         """The automata and variables that it tests, and the automata that it changes."""
-        tested = (t.variable for _, edge in self.moves for clause in edge.guard.integers for t in clause)
+        tested = (name for _, edge in self.moves for name in edge.tested)
         return list(dict.fromkeys((self.sender, *(name for name, _ in self.receivers), *tested)))
 
     @property
@@ -48,26 +48,19 @@ class Play:
         self.now.update(network.variables)
         self.steps: List[Step] = []
         self._ends: Dict[Tuple[str, str], List[Edge]] = {}
-        self._heard: Dict[str, List[Tuple[str, Edge]]] = {}
-        for automaton in network.automata:
-            for edge in automaton.edges:
-                if edge.sync is not None and not edge.sync.sends:
-                    self._heard.setdefault(edge.sync.channel, []).append((automaton.name, edge))
-                elif edge.is_end:
-                    self._ends.setdefault((automaton.name, edge.source), []).append(edge)
-
-    def holds(self, guard: Guard) -> bool:
-        """True if the guard's tests of variables hold now."""
-        return all(any(self.now[test.variable] == test.value for test in clause) for clause in guard.integers)
+        self._heard = network.receivers
+        for name, edge in network.edges:
+            if edge.received is None and edge.is_end:
+                self._ends.setdefault((name, edge.source), []).append(edge)
 
     def take(self, sender: str, edge: Edge) -> bool:
         """The joint move of an edge, and the ends that follow from it; False where it cannot be made, or does not end.
         """
-        if self.now[sender] != edge.source or not self.holds(edge.guard):
+        if self.now[sender] != edge.source or not edge.guard.holds(self.now):
             return False
         receivers: Dict[str, Edge] = {}
-        for name, other in self._heard.get(edge.sync.channel, ()) if edge.sync is not None else ():
-            if name != sender and other.source == self.now[name] and self.holds(other.guard):
+        for name, other in self._heard.get(edge.channel, ()):
+            if name != sender and other.source == self.now[name] and other.guard.holds(self.now):
                 receivers[name] = other
         step = Step(sender, edge, tuple(receivers.items()), dict(self.now))
         self.now[sender] = edge.target

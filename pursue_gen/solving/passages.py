@@ -42,19 +42,23 @@ class Crowd(NamedTuple):
 
 def won_by_passages(
     network: Network, objective: Objective, crowd: Crowd, reaction: Fraction, options: SolveOptions
-) -> Optional[Tuple[Network, Strategy]]:
-    """A proven strategy with orders of passage, and the network with its automata; None where none is found with little
-    work. Raises LimitHit at a limit."""
-    names = {automaton.name for automaton in network.automata}.difference(name for name, _ in objective.bad)
-    names.update(name for name, _ in objective.goal)
-    rest = part_of(network, names, dict(network.variables).keys())
+) -> Optional[Strategy]:
+    """A proven strategy with orders of passage; None where none is found with little work. Raises LimitHit at a
+    limit."""
+    rest = without_bad(network, objective)
     commands = _Rounds(rest, objective, crowd, reaction).commands()
     strategy = None if commands is None else strategy_of(rest, commands, crowd.single)
     if strategy is None:
         return None
     whole = with_automata_of(network, strategy)
     report = verify(whole, objective, strategy, reaction, limits=options.limits, progress=options.progress)
-    return (whole, strategy) if report.ok else None
+    return strategy if report.ok else None
+
+
+def without_bad(network: Network, objective: Objective) -> Network:
+    """The network without the automata of what is to be avoided alone."""
+    names = {automaton.name for automaton in network.automata}.difference(name for name, _ in objective.bad)
+    return part_of(network, names.union(name for name, _ in objective.goal))
 
 
 def crowd_of(network: Network, objective: Objective) -> Optional[Crowd]:
@@ -119,10 +123,9 @@ class _Rounds:
         ways: Dict[str, Dict[str, Dict[str, int]]] = {}
         for robot in robots:
             own = ways[robot.name] = {place.name: {} for place in robot.locations}
-            longest = {place.name: max((b.bound for b in place.invariant), default=0) for place in robot.locations}
             for (origin, target), edge in self._legs[robot.name].items():
                 rest = max((bound.bound for bound in edge.guard.clocks), default=0)
-                own[origin][target] = int(_UNITS * (longest[edge.target] + rest + reaction)) + 1
+                own[origin][target] = int(_UNITS * (robot.longest.get(edge.target, 0) + rest + reaction)) + 1
         self._floor = Floor(ways, single)
         self._ends: Dict[str, List[Edge]] = {}
         for robot in robots:
@@ -168,7 +171,7 @@ class _Rounds:
             is_way = edge.enters is Role.WAY or edge.leaves in UNDER_WAY
             if name in found or is_way or not is_controllers(edge, self._taken):
                 continue
-            if not self._play.holds(edge.guard) or not self._is_heard(edge, plan):
+            if not edge.guard.holds(now) or not self._is_heard(edge, plan):
                 continue
             is_busy = name not in self._robots or edge.source in places
             if is_busy and now[name] != edge.source:
@@ -179,9 +182,8 @@ class _Rounds:
 
     def _is_heard(self, edge: Edge, plan: Sequence[Tuple[str, Edge]]) -> bool:
         """False for an event if its receivers in the plan, or those of its end, are not there yet."""
-        ends = [e.sync for e in self._ends.get(edge.target, ()) if e.sync is not None]
-        channels = {sync.channel for sync in (edge.sync, *ends) if sync is not None}
-        receiving = [(n, e) for n, e in plan if e.sync is not None and not e.sync.sends and e.sync.channel in channels]
+        channels = {each.channel for each in (edge, *self._ends.get(edge.target, ()))} - {None}
+        receiving = [(name, other) for name, other in plan if other.received in channels]
         return not receiving or any(self._play.now[name] == e.source for name, e in receiving)
 
     def _go_to(self, deeds: Mapping[str, Edge]) -> bool:

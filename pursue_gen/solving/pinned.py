@@ -14,7 +14,7 @@ from itertools import product
 from typing import AbstractSet, Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.solving.contradictions import arrivals
-from pursue_gen.solving.duties import Duties, Duty, Standing, at_home, begins, can_be_covered, places_of
+from pursue_gen.solving.duties import Duties, Duty, Standing, are_reported, at_home, begins, can_be_covered
 from pursue_gen.solving.freer import standing as without_walks
 from pursue_gen.solving.freer import without_turns
 from pursue_gen.solving.lost_promises import watched
@@ -35,10 +35,9 @@ def lost_to_pins(
     """Promises, places to be avoided, that are lost because robots have to stay near their duties; () where none are
     found with so much work for all games of one robot, and for one of them."""
     robots = commanded_agents(network)
-    ends = (edge for name in robots for edge in network.automaton(name).edges if edge.is_end)
-    if objective.reaches or any(edge.controllable for edge in ends):
+    if objective.reaches or not are_reported(network, robots):
         return ()
-    everywhere = {robot: places_of(network.automaton(robot)) for robot in robots}
+    everywhere = {robot: network.automaton(robot).lasting for robot in robots}
     all_duties = Duties(network, objective.bad, robots)
     tried: Set[FrozenSet[Tuple[str, Edge]]] = set()
     for standing, stay in _standing(network):
@@ -59,7 +58,7 @@ def lost_to_pins(
             wanted = objective if stay is None else _promises(objective, (duty for duty in duties if duty.ends))
             lost = lost_for_one(game, wanted, reaction, options, work, *starts)
             if lost:
-                heard = {e.sync.channel for n in watched(lost[0]) for e in network.automaton(n).edges if e.sync}
+                heard = {channel for name in watched(lost[0]) for channel in network.automaton(name).channels}
                 some = [d for (r, b), found in pins.items() if heard & _ended(network.automaton(r), b) for d in found]
                 return (_promises(objective, some, lost[0].bad),)
     return ()
@@ -83,11 +82,11 @@ def _starts(game: Network, robot: str) -> Iterator[Network]:
     waits for anything then. None where more could have changed."""
     automaton = game.automaton(robot)
     watching = [a for a in game.automata if a.name != robot and not is_agent(a)]
-    if any(len(places_of(a)) != 2 or a.initial not in places_of(a) for a in watching):
+    if any(len(a.lasting) != 2 or a.initial in a.stays for a in watching):
         return
-    heard = {e.sync.channel for a in watching for e in a.edges if e.sync is not None}
+    heard = {channel for each in watching for channel in each.channels}
     for end in automaton.edges:
-        if end.is_end and end.sync is not None and end.sync.channel in heard:
+        if end.is_end and end.channel in heard:
             there = replace(automaton, initial=end.target)
             automata = tuple(there if a is automaton else a for a in game.automata)
             yield replace(game, automata=automata, variables=_with(game, end))
@@ -157,9 +156,7 @@ def _stays(robot: Automaton, duty: Duty, everywhere: Dict[str, List[str]]) -> bo
 
 def _values(network: Network, robot: Automaton) -> Dict[str, Set[int]]:
     """The values of the variables that only a robot sets while it does not leave the place where it begins."""
-    others = {name for a in network.automata if a is not robot for edge in a.edges for name, _ in edge.assign}
-    set_here = {name for edge in robot.edges for name, _ in edge.assign} - others
-    found = {name: {value} for name, value in network.variables if name in set_here}
+    found = {name: {value} for name, value in network.variables if network.setters[name] == {robot.name}}
     here = {robot.initial, *(e.target for e in robot.edges if e.source == robot.initial and not e.sets_off)}
     for edge in robot.edges:
         for name, value in edge.assign if {edge.source, edge.target} <= here else ():

@@ -10,8 +10,11 @@ is no better way.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from itertools import permutations
-from typing import Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Callable, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, TypeVar
+
+Node = TypeVar("Node")
 
 Time = float
 _NEVER = float("inf")
@@ -100,11 +103,7 @@ def least_wait(robots: Sequence[Robot], visits: Sequence[Visit]) -> Time:
     """
     first, *others = dict.fromkeys(visit.place for visit in visits)
     near = {place: _least_time(robots, first, place) for place in others}
-    branches: List[Time] = []
-    while near:
-        place = min(near, key=lambda each: near[each])
-        branches.append(near.pop(place))
-        near = {each: min(time, _least_time(robots, place, each)) for each, time in near.items()}
+    branches = _branches(near, partial(_least_time, robots))
     kept = sorted(branches)[: max(0, len(branches) + 1 - len(robots))]
     return max(0.0, sum(kept) / len(robots) - max(robot.stay for robot in robots))
 
@@ -126,15 +125,21 @@ def is_too_late(
         return True
     ends = sorted({left[k] for k in root})
     for end in ends[:: -(-len(ends) // _TREES) or 1]:
-        near, length = {k: time for k, time in root.items() if left[k] <= end}, 0.0
-        while near:
-            k = min(near, key=lambda each: near[each])
-            length += near.pop(k)
-            for other in near:
-                near[other] = min(near[other], _least_time(robots, visits[k].place, visits[other].place))
-        if length > end * len(robots) + _ROUNDING:
+        near = {k: time for k, time in root.items() if left[k] <= end}
+        branches = _branches(near, lambda a, b: _least_time(robots, visits[a].place, visits[b].place))
+        if sum(branches) > end * len(robots) + _ROUNDING:
             return True
     return False
+
+
+def _branches(near: Mapping[Node, Time], between: Callable[[Node, Node], Time]) -> List[Time]:
+    """The lengths of the branches of a least spanning tree (Prim 1957), from a root that is so `near` to each node."""
+    branches: List[Time] = []
+    while near:
+        node = min(near, key=near.__getitem__)
+        branches.append(near[node])
+        near = {other: min(time, between(node, other)) for other, time in near.items() if other != node}
+    return branches
 
 
 def _least_time(robots: Sequence[Robot], a: str, b: str) -> Time:

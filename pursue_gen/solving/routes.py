@@ -13,10 +13,26 @@ import heapq
 from collections import deque
 from dataclasses import dataclass
 from itertools import count
-from typing import AbstractSet, Deque, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import (
+    AbstractSet,
+    Deque,
+    Dict,
+    Iterator,
+    List,
+    Mapping,
+    NamedTuple,
+    Optional,
+    Sequence,
+    Set,
+    Tuple,
+    TypeVar,
+)
 
 from pursue_gen.language.numbers import Number
-from pursue_gen.solving.distances import distances_to
+from pursue_gen.solving.distances import backwards, distances_to
+
+Node = TypeVar("Node")
+Step = TypeVar("Step")
 
 Ways = Mapping[str, Mapping[str, int]]
 """From each place the places to which a way leads, and how long that takes at most."""
@@ -64,11 +80,6 @@ def routes(floor: Floor, at: Mapping[str, str], wanted: Mapping[str, str]) -> Op
     return _OneByOne(floor, at, wanted).together() if found is None and len(at) <= _FEW else found
 
 
-def is_free(floor: Floor, place: str, robot: str, at: Mapping[str, str]) -> bool:
-    """True if the robot may set off for the place."""
-    return place not in floor.single or all(other == robot or here != place for other, here in at.items())
-
-
 # In time --------------------------------------------------------------------------------------------------------------
 
 
@@ -97,9 +108,13 @@ class _InTime:
     def _takes(self, move: Move) -> int:
         return self._floor.ways[move.robot][move.origin][move.target]
 
+    def _far(self, name: str, to: str) -> Dict[str, Number]:
+        """How long a robot takes at most to a place, from each place from which a way leads there."""
+        return distances_to([to], backwards(self._floor.ways[name]))
+
     def _orders(self) -> Iterator[List[str]]:
         """Those with the longest ways first, then orders in which somebody else is first."""
-        far = {name: _distances(self._floor.ways[name], place) for name, place in self._wanted.items()}
+        far = {name: self._far(name, place) for name, place in self._wanted.items()}
         length = {name: far[name].get(self._at[name], _NEVER) if name in far else -1 for name in self._at}
         first = sorted(self._at, key=lambda name: -length[name])
         yield first
@@ -126,7 +141,7 @@ class _InTime:
     def _way(self, name: str, taken: Mapping[str, List[Tuple[int, int]]]) -> Optional[List[_Timed]]:
         """The quickest way of a robot that is at no place while others have it."""
         ways, wanted = self._floor.ways[name], self._wanted.get(name)
-        far = {} if wanted is None else _distances(ways, wanted)
+        far = {} if wanted is None else self._far(name, wanted)
         intervals = {place: self._intervals(place, taken) for place in ways}
         start = self._at[name]
         if not intervals[start] or intervals[start][0][0] > 0:
@@ -144,7 +159,7 @@ class _InTime:
             self._left -= 1
             until = intervals[place][k][1]
             if place == (wanted or place) and until == _NEVER:
-                return _back(came, (place, k))
+                return _path(came, (place, k))
             if self._left <= 0:
                 return None
             for target, takes in ways[place].items():
@@ -172,24 +187,14 @@ class _InTime:
         return [*found, (begin, _NEVER)] if begin < _NEVER else found
 
 
-def _back(
-    came: Mapping[Tuple[str, int], Optional[Tuple[Tuple[str, int], _Timed]]], last: Tuple[str, int]
-) -> List[_Timed]:
-    way: List[_Timed] = []
+def _path(came: Mapping[Node, Optional[Tuple[Node, Step]]], last: Node) -> List[Step]:
+    """The steps to a node; `came`: for each node the one before it, and the step from there; None for the first."""
+    way: List[Step] = []
     step = came[last]
     while step is not None:
         way.append(step[1])
         step = came[step[0]]
     return way[::-1]
-
-
-def _distances(ways: Ways, to: str) -> Dict[str, Number]:
-    """How long it takes at most to a place, from each place from which a way leads there."""
-    back: Dict[str, List[Tuple[str, Number]]] = {}
-    for place, targets in ways.items():
-        for target, takes in targets.items():
-            back.setdefault(target, []).append((place, takes))
-    return distances_to([to], back)
 
 
 # One by one -----------------------------------------------------------------------------------------------------------
@@ -244,12 +249,7 @@ class _OneByOne:
             here = queue.popleft()
             self._left -= 1
             if all(place in (None, there) for place, there in zip(wanted, here)):
-                moves = []
-                step = came[here]
-                while step is not None:
-                    moves.append(step[1])
-                    step = came[step[0]]
-                return moves[::-1]
+                return _path(came, here)
             for k, name in enumerate(team):
                 for target in self._floor.ways[name][here[k]]:
                     if target in blocked or (target in here and target in self._floor.single):

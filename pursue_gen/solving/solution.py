@@ -8,13 +8,13 @@ from typing import Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.outcomes import LimitHit, Lost, NotProven
+from pursue_gen.outcomes import Lost, NotProven
 from pursue_gen.proof.independence import named_part
-from pursue_gen.proof.worst_case import LIMIT, with_counter, worst_case
+from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.solving.attempts import decided_by_attempts
 from pursue_gen.solving.decomposition import has_parts, little_work, won_by_some, works_in_parallel
 from pursue_gen.solving.found import Found
-from pursue_gen.solving.least_time import Guarantee, bounds, fastest, unscaled
+from pursue_gen.solving.least_time import Guarantee, bounds
 from pursue_gen.solving.lost_promises import (
     cannot_be_promised,
     lost_promises,
@@ -24,7 +24,7 @@ from pursue_gen.solving.lost_promises import (
     watched,
 )
 from pursue_gen.solving.options import DEFAULT, SolveOptions
-from pursue_gen.solving.passages import crowd_of, won_by_passages
+from pursue_gen.solving.passages import crowd_of, without_bad, won_by_passages
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL, Rules, played
@@ -38,9 +38,8 @@ from pursue_gen.synthesis.limits import NO_LIMITS, Limits
 from pursue_gen.synthesis.solve import Stats, Verdict, solve
 from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tga.ends import is_agent
+from pursue_gen.tga.ends import is_nobodys
 from pursue_gen.tga.network import Kind, Network, Objective
-from pursue_gen.tga.part import part_of
 from pursue_gen.tga.pauses import pauses
 
 _CANNOT_BE_MET = "SYN021"
@@ -126,11 +125,9 @@ def _first(
     alone = in_parts and not options.most_work and not pauses(game) and not has_parts(game, objective)
     if in_parts and not alone:
         known = _with_little_work(game, objective, rules.reaction, options)
-        if isinstance(known, Found):
-            watched = with_automata_of(game, known.strategy)
-            return Solution(watched, objective, known.strategy, rules.reaction, known.stats, rules=rules)
-        if isinstance(known, Solution):
-            return replace(known, rules=rules)
+        if isinstance(known, (Found, Strategy)):
+            strategy, stats = (known.strategy, known.stats) if isinstance(known, Found) else (known, None)
+            return Solution(with_automata_of(game, strategy), objective, strategy, rules.reaction, stats, rules=rules)
         if isinstance(known, tuple):
             return known
         verdict = known
@@ -186,7 +183,7 @@ def _smaller(won: Solution, options: SolveOptions) -> Optional[Solution]:
 
 def _with_little_work(
     game: Network, objective: Objective, reaction: Fraction, options: SolveOptions
-) -> Union[Verdict, Solution, Found, Tuple[Objective, ...], None]:
+) -> Union[Verdict, Found, Strategy, Tuple[Objective, ...], None]:
     """The verdict in one piece, or a proven strategy with orders of passage, or one that leaves out agents, or pauses
     of the environment, or parts of the objective that are lost; None where little work finds neither (see `passages`,
     `shares`, `lost_promises`, `decomposition` and `without_pauses`)."""
@@ -196,7 +193,7 @@ def _with_little_work(
     large = crowd is not None and len(crowd.robots) >= _CROWD
     passed = won_by_passages(game, objective, crowd, reaction, options) if crowd is not None and large else None
     if passed is not None:
-        return Solution(passed[0], objective, passed[1], reaction)
+        return passed
     found = won_by_tours(game, objective, reaction, options) if len(promises(objective)) >= PATROL else None
     found = found or won_beside_tours(game, objective, reaction, options)
     if found is not None:
@@ -205,7 +202,7 @@ def _with_little_work(
     if verdict is None and crowd is not None and not large:
         passed = won_by_passages(game, objective, crowd, reaction, options.since(start))
         if passed is not None:
-            return Solution(passed[0], objective, passed[1], reaction)
+            return passed
     if verdict is None and (several or shared):
         known = decided_by_attempts(game, objective, reaction, options.since(start))
         if known:
@@ -224,35 +221,6 @@ def _with_little_work(
     return won_by_some(game, objective, reaction, options.since(start))
 
 
-def fastest_solution(network: Network, objective: Objective, rules: Rules, options: SolveOptions = DEFAULT) -> Solution:
-    """As `solution`, with the proven strategy that takes the least time to the goal at worst, as far as it is found.
-
-    Raises as `solution`, and with exit status 2 for an objective without a goal. A limit that is hit after the first
-    strategy ends the search, and the best one that is proven counts.
-    """
-    check_goal(objective, "--optimize time")
-    start, limits = options.limits.now(), options.limits.chosen
-    won = solution(network, objective, rules, options)
-    known = guaranteed(won, LIMIT, limits.since(start))
-    more = replace(options, limits=limits.since(start))
-    found, faster = fastest(won.part, objective, rules.reaction, known.worst, more)
-    if faster is None:
-        return replace(won, guarantee=found)
-    delay = rules.reaction * faster.fine
-    left = limits.since(start)
-    try:
-        strategy = prove(faster.game, objective, faster.strategy, delay, faster.ranks, replace(options, limits=left))
-    except LimitHit:
-        return replace(won, guarantee=replace(found, worst=known.worst, most=known.most))
-    counted = with_clocks_of(with_counter(won.part), won.network)
-    fast = replace(won, network=counted).with_strategy(unscaled(strategy, counted, faster.fine))
-    took = guaranteed(fast, LIMIT, left)
-    if took.worst is None or took.most is None or found.most is None:
-        return replace(fast, guarantee=found)
-    most = min(found.most, max(took.most, found.least))
-    return replace(fast, guarantee=replace(found, worst=min(took.worst, faster.kept), most=most))
-
-
 def check_goal(objective: Objective, option: str) -> None:
     """Raises PursueError (exit status 2) for an objective without a goal, where an option is about the time to it."""
     if not objective.reaches:
@@ -266,17 +234,8 @@ def guaranteed(won: Solution, states: int = 500, limits: Limits = NO_LIMITS) -> 
     if not won.strategy.passages:
         return bounds(won.part, won.objective, won.reaction, worst)
     # The automata of what is to be avoided are many where many must not meet, and say nothing of the least time.
-    names = {automaton.name for automaton in won.network.automata}.difference(name for name, _ in won.objective.bad)
-    names.update(name for name, _ in won.objective.goal)
-    rest = part_of(won.network, names, dict(won.network.variables).keys())
+    rest = without_bad(won.network, won.objective)
     return bounds(rest, Objective(Kind.REACH, won.objective.goal), won.reaction, worst)
-
-
-def with_clocks_of(counted: Network, network: Network) -> Network:
-    """The network with the clock that was added to a part of it."""
-    added = tuple(clock for clock in counted.clocks if clock not in network.clocks)
-    start = tuple(c for c in counted.start if c.left in added)
-    return replace(network, clocks=(*network.clocks, *added), start=(*network.start, *start)) if added else network
 
 
 def solve_scenario(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAULT) -> Solution:
@@ -303,7 +262,7 @@ def _cannot_be_met(
 ) -> Diagnostic:
     message = f"{what} with ends {rules.ends} and a reaction of {float(rules.reaction):g} time units"
     hint = "give the robots more time or speed, or fewer duties"
-    if any(is_agent(each) and not any(edge.controllable for edge in each.edges) for each in network.automata):
+    if any(map(is_nobodys, network.automata)):
         hint = f"the agents that nobody controls can always prevent it: {hint}"
     alone = out_of_reach(network, objective)
     if alone:

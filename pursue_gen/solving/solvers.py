@@ -11,10 +11,11 @@ from dataclasses import replace
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.calm import calm
+from pursue_gen.solving.deadlines import fastest_solution
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.quick import quick, within
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.solving.solution import Solution, check_goal, fastest_solution, guaranteed, solution
+from pursue_gen.solving.solution import Solution, check_goal, guaranteed, solution
 from pursue_gen.synthesis.enforced import enforced
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tga.network import Network, Objective

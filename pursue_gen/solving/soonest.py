@@ -85,16 +85,26 @@ def soonest(
 ) -> Optional[Solution]:
     """A solution that is much quicker than what is known, as `first` is; None: none is found with so much work."""
     start = options.limits.now()
-    search = _Small(won, known, first.network, budget, work)
-    found = search.within(first.worst * _NEAR, options) if first.easy else None
+
+    def small(worst: Fraction) -> Optional[Solution]:
+        """A proven solution for a deadline near this time that is much quicker than what is known: games with a
+        deadline begin with few moves."""
+        deadline = in_units(worst * _NEAR, won)
+        if known.worst is not None and deadline * MUCH > known.worst:
+            return None
+        late = won.reaction * _LATE[0]
+        faster, _ = tried(with_counter(first.network), won.objective, late, deadline, budget, work)
+        return None if faster is None else better(won, known, faster, options.since(start), _PROOF)
+
+    found = small(first.worst) if first.easy else None
     if found is not None:
         return found
     found = _in_order(won, known, first, budget, work, options.since(start))
-    if found is None or _commands(found) <= _LARGER * _commands(won):
+    if found is None or found.strategy.size <= _LARGER * won.strategy.size:
         return found
     assert found.guarantee is not None and found.guarantee.worst is not None
-    small = search.within(found.guarantee.worst * _NEAR, options.since(start))
-    return found if small is None or _LARGER * _commands(small) > _commands(found) else small
+    fewer = small(found.guarantee.worst)
+    return found if fewer is None or _LARGER * fewer.strategy.size > found.strategy.size else fewer
 
 
 def _in_order(
@@ -112,26 +122,6 @@ def _in_order(
             if found is not None:
                 return found
     return None
-
-
-@dataclass(frozen=True)
-class _Small:
-    """Games with a deadline in this network, which begin with few moves, each with so much work."""
-
-    won: Solution
-    known: Guarantee
-    network: Network
-    budget: Budget
-    work: int
-
-    def within(self, deadline: Fraction, options: SolveOptions) -> Optional[Solution]:
-        """A proven solution for the deadline that is much quicker than what is known; None: none is found."""
-        worst, reaction, deadline = self.known.worst, self.won.reaction, in_units(deadline, self.won)
-        if worst is not None and deadline * MUCH > worst:
-            return None
-        game = with_counter(self.network), self.won.objective, reaction * _LATE[0], deadline
-        faster, _ = tried(*game, self.budget, self.work)
-        return None if faster is None else better(self.won, self.known, faster, options, _PROOF)
 
 
 def _verdict(network: Network, won: Solution, reaction: Fraction, budget: Budget, work: int) -> Optional[Verdict]:
@@ -160,7 +150,3 @@ def _proven(
     if guarantee.worst is None or (known.worst is not None and guarantee.worst * MUCH > known.worst):
         return None
     return replace(found, guarantee=replace(guarantee, least=max(known.least, guarantee.least)))
-
-
-def _commands(won: Solution) -> int:
-    return sum(len(block.commands) for block in won.strategy.blocks)

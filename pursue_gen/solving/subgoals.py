@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import islice
-from typing import Dict, FrozenSet, Iterable, Iterator, List, Optional, Set, Tuple
+from typing import Dict, FrozenSet, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
 from pursue_gen.proof.relaxed_reachability import is_controllers, taken_over
 from pursue_gen.synthesis.strategy import Place
+from pursue_gen.tga.ending import owner_of
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Automaton, Edge, Network
 
@@ -46,16 +47,7 @@ class _SubgoalSearch:
     def __init__(self, network: Network) -> None:
         self._network = network
         self._commanded = set(commanded_agents(network))
-        self._senders: Dict[str, List[Tuple[Automaton, Edge]]] = {}
-        self._setters: Dict[str, Set[str]] = {}
-        for automaton in network.automata:
-            for edge in automaton.edges:
-                if edge.sync is not None and edge.sync.sends:
-                    self._senders.setdefault(edge.sync.channel, []).append((automaton, edge))
-                for name, _ in edge.assign:
-                    self._setters.setdefault(name, set()).add(automaton.name)
         self._initial = dict(network.variables)
-        self._agents = {a.name for a in network.automata if is_agent(a)}
 
     def of(self, goal: Place) -> Tuple[Subgoal, ...]:
         """The subgoals of the goal, and the goal."""
@@ -72,10 +64,9 @@ class _SubgoalSearch:
 
     def _other_values(self, fact: Tuple[str, FrozenSet[int]]) -> Iterator[Subgoal]:
         variable, needed = fact
-        setters = self._setters.get(variable, set())
-        if len(setters) != 1 or self._initial[variable] not in needed:
+        owner = owner_of(self._network, variable)
+        if owner is None or self._initial[variable] not in needed:
             return
-        (owner,) = setters
         doers: Dict[int, Set[str]] = {}
         for edge in self._network.automaton(owner).edges:
             for name, value in edge.assign:
@@ -100,28 +91,25 @@ class _SubgoalSearch:
                 earlier.update([before], known.before if known else ())
         found[place] = Subgoal(place, frozenset(doers), frozenset(earlier))
 
-    def _moves(self, automaton: str, edge: Edge) -> List[Tuple[str, Edge]]:
+    def _moves(self, automaton: str, edge: Edge) -> Sequence[Tuple[str, Edge]]:
         """Who may make the edge be taken, and by which edges."""
-        if edge.sync is None or edge.sync.sends:
-            return [(automaton, edge)]
-        return [(sender.name, sending) for sender, sending in self._senders.get(edge.sync.channel, ())]
+        return [(automaton, edge)] if edge.received is None else self._network.senders.get(edge.received, ())
 
     def _doers(self, moves: Iterable[Tuple[str, Edge]]) -> Iterator[str]:
         """The commanded agents who make these moves or whose position they need."""
         for name, edge in moves:
-            owners = {name}
-            for clause in edge.guard.integers:
-                for test in clause:
-                    owners |= self._setters.get(test.variable, set()) & self._agents
+            owners = {name}.union(*(self._network.setters.get(tested, ()) for tested in edge.tested))
             yield from owners & self._commanded
 
     def _place_of(self, fact: Tuple[str, FrozenSet[int]], asking: str) -> Optional[Place]:
         """The one place that makes the fact true; None where it is true at first, an agent's, or not of one place."""
         variable, values = fact
-        setters = self._setters.get(variable, set())
-        if self._initial.get(variable) in values or len(setters) != 1 or setters & self._agents or asking in setters:
+        name = owner_of(self._network, variable)
+        if self._initial.get(variable) in values or name in (None, asking):
             return None
-        owner = self._network.automaton(next(iter(setters)))
+        owner = self._network.automaton(name or "")
+        if is_agent(owner):
+            return None
         places = {e.target for e in owner.edges if any(n == variable and v in values for n, v in e.assign)}
         if len(places) != 1 or places == {owner.initial}:
             return None

@@ -44,12 +44,16 @@ def won_by_tours(
     found."""
     start = options.limits.now()
     strategy = tours_of(network, objective, reaction)
-    if strategy is None:
-        return None
-    seconds = options.limits.now() - start
+    return None if strategy is None else proven_tours(network, objective, strategy, reaction, options, start)
+
+
+def proven_tours(
+    network: Network, objective: Objective, strategy: Strategy, reaction: Fraction, options: SolveOptions, start: float
+) -> Optional[Found]:
+    """The strategy, found by work that began at `start` (of `limits.now`), if it is proven; else None."""
+    stats = Stats("tours", len(strategy.blocks), 0, options.limits.now() - start)
     with suppress(NotProven, LimitHit):
-        proven = prove(network, objective, strategy, reaction, options=options.since(start))
-        return Found(proven, Stats("tours", len(strategy.blocks), 0, seconds, 0, 0))
+        return Found(prove(network, objective, strategy, reaction, options=options.since(start)), stats)
     return None
 
 

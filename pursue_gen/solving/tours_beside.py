@@ -6,20 +6,16 @@ Whether they are in each other's way is for the checker to say, which takes both
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from typing import AbstractSet, Optional
 
-from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.solving.due_moves import duties, patrols
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.options import SolveOptions
-from pursue_gen.solving.proving import prove
 from pursue_gen.solving.shares import won_in_shares
 from pursue_gen.solving.subgoals import commanded_agents
-from pursue_gen.solving.tours import PATROL, tours_of
-from pursue_gen.synthesis.solve import Stats
+from pursue_gen.solving.tours import PATROL, proven_tours, tours_of
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.tga.part import part_of
@@ -48,12 +44,7 @@ def won_beside_tours(
     others = won_in_shares(game, rest, reaction, replace(options, limits=replace(options.limits, work=_WORK)))
     if others is None:
         return None
-    both = _together(tours, others.strategy)
-    seconds = options.limits.now() - start
-    with suppress(NotProven, LimitHit):
-        proven = prove(network, objective, both, reaction, options=options.since(start))
-        return Found(proven, Stats("tours", len(both.blocks), 0, seconds, 0, 0))
-    return None
+    return proven_tours(network, objective, _together(tours, others.strategy), reaction, options, start)
 
 
 def _only_ones(network: Network, visited: Objective, known: AbstractSet[str]) -> AbstractSet[str]:
@@ -65,27 +56,15 @@ def _only_ones(network: Network, visited: Objective, known: AbstractSet[str]) ->
 def _needed(network: Network, rest: Objective) -> AbstractSet[str]:
     """The robots that can do something which the automata of these promises hear."""
     names = {name for name, _ in rest.bad}
-    heard = {
-        edge.sync.channel
-        for automaton in network.automata
-        if automaton.name in names
-        for edge in automaton.edges
-        if edge.sync is not None
-    }
-    return {
-        name
-        for name in commanded_agents(network)
-        for edge in network.automaton(name).edges
-        if edge.sync is not None and edge.sync.channel in heard
-    }
+    heard = {channel for automaton in network.automata if automaton.name in names for channel in automaton.channels}
+    return {name for name in commanded_agents(network) if heard & network.automaton(name).channels}
 
 
 def _without(network: Network, gone: AbstractSet[str]) -> Network:
     """The network without these automata, and what their edges alone set."""
     kept = [automaton for automaton in network.automata if automaton.name not in gone]
-    theirs = {name for a in network.automata if a.name in gone for edge in a.edges for name, _ in edge.assign}
-    own = {name for automaton in kept for edge in automaton.edges for name, _ in edge.assign}
-    variables = {name for name, _ in network.variables if name in own or name not in theirs}
+    setters = network.setters
+    variables = {name for name, _ in network.variables if not setters[name] or setters[name] - gone}
     return part_of(network, {automaton.name for automaton in kept}, variables)
 
 

@@ -37,14 +37,14 @@ class _UseSearch:
             for edge in automaton.edges:
                 if edge.enters is Role.WAY or edge.leaves is Role.WAY:
                     self.found.add((automaton.name, edge))
-                    self._variables.update(test.variable for clause in edge.guard.integers for test in clause)
+                    self._variables.update(edge.tested)
 
     def need(self, edges: Iterable[Edge]) -> None:
         """Take in what these edges receive, and which variables they test or set."""
         for edge in edges:
             self._variables.update(edge.variables)
-            if edge.sync is not None:
-                self._channels.add(edge.sync.channel)
+            if edge.channel is not None:
+                self._channels.add(edge.channel)
 
     def grow(self) -> bool:
         """Take in what may change that, by one step more; False if that is nothing."""
@@ -54,17 +54,15 @@ class _UseSearch:
         for automaton in self._team:
             own = [edge for name, edge in self.found if name == automaton.name]
             ends = {edge.source for edge in own if edge.leaves is Role.WORK}
-            tested = {test.variable for edge in own for clause in edge.guard.integers for test in clause}
+            tested = {name for edge in own for name in edge.tested}
             new = [edge for edge in automaton.edges if self._matters(edge, ends) or _charges(edge, tested)]
             self.found.update((automaton.name, edge) for edge in new)
-            self._variables.update(t.variable for edge in new for clause in edge.guard.integers for t in clause)
+            self._variables.update(name for edge in new for name in edge.tested)
         return before != (len(self._channels), len(self._variables), len(self.found))
 
     def _matters(self, edge: Edge, begun: AbstractSet[str]) -> bool:
         """True for an edge that changes what is needed, or begins what an edge from one of these locations ends."""
-        if edge.sync is not None and edge.sync.sends and edge.sync.channel in self._channels:
-            return True
-        return edge.source != edge.target and edge.target in begun
+        return edge.sent in self._channels or (edge.source != edge.target and edge.target in begun)
 
 
 def _charges(edge: Edge, tested: AbstractSet[str]) -> bool:

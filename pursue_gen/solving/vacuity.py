@@ -13,7 +13,7 @@ from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits, careful_memory
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.network import Edge, Network
+from pursue_gen.tga.network import Network
 
 _WORK = 3_000_000
 """The work for all games together: half a second at most. What it does not decide gives no warning. Not measured."""
@@ -52,14 +52,6 @@ def _holds(scenario: Scenario, objective: Safety, assumptions: Tuple[Assumption,
 
 def idle(network: Network, names: Collection[str]) -> Network:
     """The network in which the controlled of these agents begin nothing; they take part in what others begin."""
-
-    def stays(edge: Edge) -> bool:
-        return not edge.controllable or (edge.sync is not None and not edge.sync.sends)
-
-    return replace(
-        network,
-        automata=tuple(
-            replace(one, edges=tuple(edge for edge in one.edges if stays(edge))) if one.name in names else one
-            for one in network.automata
-        ),
+    return network.with_each(
+        lambda a: a.with_edges(edge for edge in a.edges if not edge.is_command) if a.name in names else a
     )

@@ -34,7 +34,7 @@ def verdict_text(won: Solution) -> str:
     stages, shares, passages = (len(some) for some in (won.strategy.stages, won.strategy.shares, won.strategy.passages))
     order = f" in {counted(stages, 'stage')}" if stages else f" in {counted(shares, 'share')}" if shares else ""
     order = f" with the order of passage at {counted(passages, 'place')}" if passages else order
-    text = f"won{kept}: {rules_text(won.rules)}{took}; {counted(_commands(won), 'command')}{order}, proven"
+    text = f"won{kept}: {rules_text(won.rules)}{took}; {counted(won.strategy.size, 'command')}{order}, proven"
     return text if won.guarantee is None else f"{text}\n{won.guarantee.in_words()}"
 
 
@@ -70,7 +70,7 @@ def verdict_json(
             engine=stats.engine, states=stats.discrete_states, zones=stats.zones, seconds=round(stats.seconds, 6)
         )
     if won:
-        result.update(blocks=len(won.strategy.blocks), commands=_commands(won), left_out=_left_out(won))
+        result.update(blocks=len(won.strategy.blocks), commands=won.strategy.size, left_out=_left_out(won))
     if won and margin:
         playable = margin.wins > 0 and not decides_ends(won.strategy)
         result.update(margin=margin.as_json(), playable=playable)
@@ -109,7 +109,3 @@ def _left_out(won: Solution) -> List[str]:
     if won.strategy.passages or won.strategy.tours:
         named.update(name for name, _ in won.objective.bad)  # kept, though no block names them
     return [automaton.name for automaton in won.network.automata if automaton.name not in named]
-
-
-def _commands(won: Solution) -> int:
-    return sum(len(block.commands) for block in won.strategy.blocks)

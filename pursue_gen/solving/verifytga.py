@@ -44,8 +44,6 @@ _LAST_LINES, _LAST_COLUMNS = 6, 200
 _SLEEPS = 10
 """A tool that waits takes no processor time: it is ended after so many times the limit of real time. Not measured."""
 
-"""The exit statuses of the failures: not met or not winning; time or memory; no tool, or one that does not work."""
-
 _ESCAPE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 _HEADER = re.compile(r"^[ \t]*(?:Counter[ -])?strategy to [^\n:]*:", re.MULTILINE | re.IGNORECASE)
 _VERDICT = re.compile(r"(?:Property|Formula) is (NOT )?satisfied")
@@ -195,13 +193,7 @@ def _first_with_strategy(tool: str, network: Network, objective: Objective, limi
 
 def _all_named(network: Network) -> Network:
     """The network with a name for each location, so that nothing depends on how a version prints ids."""
-    return replace(
-        network,
-        automata=tuple(
-            replace(automaton, locations=tuple(replace(location, named=True) for location in automaton.locations))
-            for automaton in network.automata
-        ),
-    )
+    return network.with_each(lambda each: each.with_locations(lambda location: replace(location, named=True)))
 
 
 def _run(command: Tuple[str, ...], folder: Path, limits: Limits) -> Run:

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.language.network_names import LOSE
-from pursue_gen.solving.distances import distances_to
+from pursue_gen.solving.distances import backwards, distances_to
 from pursue_gen.solving.due_moves import Duty, duties, patrols
 from pursue_gen.solving.rounds import Robot, Visit
 from pursue_gen.solving.subgoals import commanded_agents
@@ -78,7 +78,8 @@ def patrol_of(
     known = () if objective.reaches else duties(network, objective, patrols(network))
     if not known or len(known) != len(bad) or any(place != LOSE for _, place in objective.bad):
         return None
-    if any(len(places) != 1 for duty in known for places in duty.visits.values()) or _in_order(network, known):
+    in_order = any(network.automaton(duty.name).assigned for duty in known)  # a visit counts at some times only
+    if in_order or any(len(places) != 1 for duty in known for places in duty.visits.values()):
         return None
     unit = Fraction(1, least_common_multiple((_UNITS, common_denominator([reaction, *network.times]))))
     late = reaction if prompt else reaction + unit
@@ -97,19 +98,12 @@ def patrol_of(
     return Patrol(tuple(able), known, tuple(visits), unit, late)
 
 
-def _in_order(network: Network, known: Sequence[Duty]) -> bool:
-    """True if a visit counts at some times only."""
-    automata = (network.automaton(duty.name) for duty in known)
-    return any(edge.assign for automaton in automata for edge in automaton.edges)
-
-
 def _walker(robot: Automaton, late: Fraction, under_way: bool) -> Optional[Walker]:
     """The robot with the ways that depend on nothing but its rest; None where there are none, or it starts on one and
     is not `under_way` in the middle of a play."""
-    clocks = {bound.clock for place in robot.locations for bound in place.invariant}
+    clocks = {bound.clock for bounds in robot.stays.values() for bound in bounds}
     if len(clocks) != 1:
         return None
-    bounds = {place.name: place.invariant for place in robot.locations}
     (clock,) = clocks
     ways: Dict[str, Dict[str, Way]] = {}
     for place, led in ways_of(robot).items():
@@ -117,13 +111,13 @@ def _walker(robot: Automaton, late: Fraction, under_way: bool) -> Optional[Walke
             ends = [other for other in robot.edges if other.source == edge.target and other.target == following]
             if any(each.guard.integers or clock not in each.resets for each in (edge, *ends)):
                 continue
-            if len(ends) != 1 or len(bounds[edge.target]) != 1:
+            if len(ends) != 1 or len(robot.stays.get(edge.target, ())) != 1:
                 continue
             rest, least = (_since(each.guard, clock) for each in (edge, *ends))
             end = ends[0] if ends[0].controllable else None
-            lasts = Fraction(bounds[edge.target][0].bound) if end is None else least + late
+            lasts = Fraction(robot.longest[edge.target]) if end is None else least + late
             ways.setdefault(place, {})[following] = Way(edge, rest, least, lasts, end)
-    if not ways or (bounds[robot.initial] and not under_way):
+    if not ways or (robot.initial in robot.stays and not under_way):
         return None
     steps = {a: {b: float(way.rest + late + way.lasts) for b, way in led.items()} for a, led in ways.items()}
     times, following_of = _all_ways(steps)
@@ -141,10 +135,7 @@ def _all_ways(
     steps: Mapping[str, Mapping[str, float]]
 ) -> Tuple[Dict[str, Dict[str, float]], Dict[Tuple[str, str], str]]:
     """How long it takes from each place to each other one, and where one goes first."""
-    back: Dict[str, List[Tuple[str, float]]] = {}
-    for start, led in steps.items():
-        for place, takes in led.items():
-            back.setdefault(place, []).append((start, takes))
+    back = backwards(steps)
     times: Dict[str, Dict[str, float]] = {start: {} for start in steps}
     following: Dict[Tuple[str, str], str] = {}
     for place in dict.fromkeys((*steps, *back)):

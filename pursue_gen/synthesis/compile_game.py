@@ -49,7 +49,6 @@ def compile_game(
         scale=tables.scale,
         delta=int(reaction * tables.scale),
         clocks=network.clocks,
-        max_constants=_max_constants(len(network.clocks) + 1, automata, edges),
         variables=tuple(name for name, _ in network.variables),
         initial_values=tuple(value for _, value in network.variables),
         channels=network.channels,
@@ -189,12 +188,3 @@ class _Tables:
 
 def _numbers(automaton: Automaton) -> Dict[str, int]:
     return {location.name: k for k, location in enumerate(automaton.locations)}
-
-
-def _max_constants(dim: int, automata: Sequence[GameAutomaton], edges: Sequence[GameEdge]) -> Tuple[int, ...]:
-    largest = [0] * dim
-    compared = [(i or j, bound) for edge in edges for i, j, bound in edge.bounds]
-    compared += [pair for automaton in automata for invariant in automaton.invariants for pair in invariant]
-    for clock, bound in compared:
-        largest[clock] = max(largest[clock], abs(constant(bound)))
-    return tuple(largest)

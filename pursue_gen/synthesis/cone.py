@@ -14,7 +14,6 @@ agents that are left out stay where they are, and those that are not make no det
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import replace
 from typing import Dict, FrozenSet, Sequence, Set, Tuple
 
 from pursue_gen.synthesis.detours import Detour, detours
@@ -30,9 +29,7 @@ def cone_of_influence(network: Network, objective: Objective) -> Network:
     while cone.grow():
         pass
     gone = cone.unnoticed()
-    if any(gone.get(name) for name in cone.automata):
-        without = (replace(a, edges=tuple(e for e in a.edges if e not in gone[a.name])) for a in network.automata)
-        network = replace(network, automata=tuple(without))
+    network = network.with_each(lambda a: a.with_edges(e for e in a.edges if e not in gone[a.name]))
     return part_of(network, cone.automata, cone.variables)
 
 
@@ -69,8 +66,8 @@ class _Cone:
             for edge in automaton.edges:
                 if edge not in gone[automaton.name] and not self._may_go(automaton, edge):
                     self.variables.update(edge.variables)
-                    if edge.sync is not None:
-                        (sent if edge.sync.sends else received).add(edge.sync.channel)
+                    if edge.channel is not None:
+                        (received if edge.sent is None else sent).add(edge.channel)
         for automaton in self._network.automata:
             if automaton.name not in self.automata and any(
                 self._is_seen(edge, sent, received) for edge in automaton.edges
@@ -96,7 +93,7 @@ class _Cone:
 
     def _is_heard(self, detour: Detour, others: Sequence[Automaton]) -> bool:
         """True if one of these automata hears that the detour begins or ends."""
-        return any(self._hears(other, edge) for other in others for edge in detour.edges if edge.sync is not None)
+        return any(self._hears(a, edge.sync.channel) for a in others for edge in detour.edges if edge.sync is not None)
 
     def _may_go(self, automaton: Automaton, edge: Edge) -> bool:
         """True for an edge that needs a variable which does not matter, and does nothing that does."""
@@ -104,31 +101,19 @@ class _Cone:
             return False
         if any(name in self.variables for name, _ in edge.assign):
             return False
-        if edge.sync is None:
-            return True
-        listeners = (a for a in self._network.automata if a.name in self.automata)
-        if edge.sync.sends:
-            return not any(self._hears(other, edge) for other in listeners if other is not automaton)
-        return edge.controllable and not self._hears(automaton, edge, edge.source)
+        if edge.received is not None:
+            return edge.controllable and not self._hears(automaton, edge.received, edge.source)
+        others = (a for a in self._network.automata if a.name in self.automata and a is not automaton)
+        return edge.sent is None or not any(self._hears(other, edge.sent) for other in others)
 
-    def _hears(self, automaton: Automaton, sender: Edge, source: str = "") -> bool:
-        """True if the automaton has a receiving edge on the channel of the other edge that does not go."""
-        return any(
-            edge.sync is not None
-            and sender.sync is not None
-            and not edge.sync.sends
-            and edge.sync.channel == sender.sync.channel
-            and source in ("", edge.source)
-            and self.variables.issuperset(edge.variables)
-            for edge in automaton.edges
-        )
+    def _hears(self, automaton: Automaton, channel: str, source: str = "") -> bool:
+        """True if the automaton has a receiving edge on the channel that does not go."""
+        heard = (e for e in automaton.edges if e.received == channel and source in ("", e.source))
+        return any(self.variables.issuperset(edge.variables) for edge in heard)
 
     def _is_seen(self, edge: Edge, sent: Set[str], received: Set[str]) -> bool:
         """True for an edge of another automaton that changes something which matters."""
         if any(name in self.variables for name, _ in edge.assign) or not self._clocks.isdisjoint(edge.resets):
             return True
-        if edge.sync is None:
-            return False
-        if edge.sync.sends:
-            return edge.sync.channel in received
-        return edge.sync.channel in sent and not edge.controllable  # the move is the environment's because of it
+        # One who receives may make the move the environment's.
+        return edge.sent in received or (edge.received in sent and not edge.controllable)

@@ -9,11 +9,11 @@ depends on, then need not matter.
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import dataclass
 from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Optional, Tuple
 
-from pursue_gen.synthesis.time_passes import is_own, may_be_left
+from pursue_gen.synthesis.time_passes import may_be_left, taken_over
 from pursue_gen.tga.network import Automaton, Edge, Network, Objective
 
 
@@ -47,20 +47,11 @@ def detours(network: Network, objective: Objective) -> Mapping[str, Tuple[Detour
     """By automaton what may be a detour, as far as it depends on the automaton alone, and on who may take it out of the
     controller's hands."""
     named = {*objective.goal, *objective.bad}
-    obliged = {
-        edge.sync.channel
-        for automaton in network.automata
-        for edge in automaton.edges
-        if edge.sync is not None and not edge.sync.sends and not edge.controllable
-    }
-    named_by: Dict[str, int] = defaultdict(int)
-    for automaton in network.automata:
-        for clock in automaton.clocks:
-            named_by[clock] += 1
+    named_by = Counter(clock for automaton in network.automata for clock in automaton.clocks)
     found = {}
     for automaton in network.automata:
         own = frozenset(clock for clock in automaton.clocks if named_by[clock] == 1)
-        some = tuple(_of(automaton, own, network, named, obliged))
+        some = tuple(_of(automaton, own, network, named, taken_over(network)))
         if some:
             found[automaton.name] = some
     return found
@@ -68,7 +59,7 @@ def detours(network: Network, objective: Objective) -> Mapping[str, Tuple[Detour
 
 def _of(
     automaton: Automaton, clocks: AbstractSet[str], network: Network, named: AbstractSet[Tuple[str, str]],
-    obliged: AbstractSet[str],
+    taken: AbstractSet[str],
 ) -> Iterator[Detour]:  # fmt: skip
     """The detours of one automaton, whose own clocks these are."""
     into: Dict[str, List[Edge]] = defaultdict(list)
@@ -76,24 +67,23 @@ def _of(
     for edge in automaton.edges:
         into[edge.target].append(edge)
         out[edge.source].append(edge)
-    bounded = {location.name: location for location in automaton.locations if location.invariant}
     for here, ways in tuple(out.items()):
-        if here in bounded or (automaton.name, here) in named or not all(e.controllable and is_own(e) for e in ways):
+        if here in automaton.stays or (automaton.name, here) in named or not all(edge.is_command for edge in ways):
             continue
         for there in dict.fromkeys(edge.target for edge in ways):
             begins = tuple(edge for edge in ways if edge.target == there)
             ends = () if there == here else tuple(out[there])
             resets = {clock for edge in (*begins, *ends) for clock in edge.resets}
-            if not resets <= clocks or any(edge.sync is not None and edge.sync.channel in obliged for edge in begins):
+            if not resets <= clocks or any(edge.sent in taken for edge in begins):
                 continue
             if any(_is_hindered(edge, resets) for edge in ways):
                 continue
             if there != here and (
                 (automaton.name, there) in named
-                or there not in bounded
+                or there not in automaton.stays
                 or any(edge.source != here for edge in into[there])
-                or any(edge.target != here or edge.controllable or not is_own(edge) for edge in ends)
-                or not may_be_left(automaton, bounded[there], network)
+                or any(edge.target != here or edge.controllable or edge.received is not None for edge in ends)
+                or not may_be_left(automaton, there, network)
             ):
                 continue
             others = [edge for edge in into[here] if edge not in begins]
@@ -113,7 +103,7 @@ def _values(
     name: str, network: Network, automaton: Automaton, here: str, begins: Tuple[Edge, ...], others: List[Edge]
 ) -> Optional[FrozenSet[int]]:
     """The value of the variable at the place, and those during the detour; None if it is not always the same there."""
-    if any(set_ == name for a in network.automata if a is not automaton for e in a.edges for set_, _ in e.assign):
+    if network.setters[name] != {automaton.name}:
         return None
     at_place = {dict(edge.assign).get(name) for edge in others if edge.source != here or name in edge.variables}
     if automaton.initial == here:

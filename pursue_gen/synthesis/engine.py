@@ -11,17 +11,17 @@ from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 
 
 @dataclass(frozen=True)
-class Counts:
-    """What deciding a game took.
+class Stats:
+    """What exploring and deciding a game took: the name of the engine, discrete states, zones of the result, seconds.
 
-    `discrete_states`: those that were reached; `zones`: of the result; `evaluations`: of discrete states by the
-    fixpoint; `symbolic_states`: zones whose successors were computed, as other tools count them (0: not counted);
-    `work`: as `Limits.work` counts it.
+    `symbolic_states` are zones whose successors were computed, as other tools count them; 0: not counted. `work`: as
+    `Limits.work` counts it.
     """
 
+    engine: str
     discrete_states: int
     zones: int
-    evaluations: int
+    seconds: float
     symbolic_states: int = 0
     work: int = 0
 
@@ -34,18 +34,12 @@ class Outcome:
     for each discrete state that a play by it can come to (others may have one), canonical zones in the game's scale,
     pairwise disjoint; commands stand in the order in which their zones were won. `ranks` (of a reach game, where the
     engine keeps them): per block and zone a number that every step of the game lowers, across discrete states.
-    `seconds`: what exploring and deciding took.
     """
 
     won: bool
     blocks: Tuple[RawBlock, ...]
     ranks: Optional[Tuple[Tuple[int, ...], ...]]
-    counts: Counts
-    seconds: float
-
-
-NOT_GUESSED = Outcome(False, (), None, Counts(0, 0, 0), 0.0)
-"""No policy was tried."""
+    stats: Stats
 
 
 class Engine(ABC):
@@ -75,7 +69,7 @@ class Engine(ABC):
         overlap, and those of commands, too. `late`: the automata of patrols; policies by which these wait until they
         are due. `progress` and what it raises: as `solve`. An engine need not know any policy.
         """
-        return NOT_GUESSED
+        return not_guessed(self)
 
     @abstractmethod
     def solve(
@@ -92,3 +86,8 @@ class Engine(ABC):
         that the strategy is quick; that may be much more work. Raises PursueError (SYN010, exit status 5) at one of the
         limits, and where the system gives no more memory.
         """
+
+
+def not_guessed(engine: Engine) -> Outcome:
+    """The outcome where no policy was tried."""
+    return Outcome(False, (), None, Stats(engine.name, 0, 0, 0.0))

@@ -75,7 +75,7 @@ class GameAutomaton:
 
 @dataclass(frozen=True)
 class Game:
-    """The game. `delta` is the scaled reaction delay; `max_constants[i]` the largest scaled constant of clock i.
+    """The game. `delta` is the scaled reaction delay.
 
     `goal` and `bad` are pairs (automaton, location), as the objective has them. `edges[k]` is made from `origins[k]`,
     an edge of the network. `start` bounds the clocks at the start (see `start_zone`); empty: they are 0. `unseen` and
@@ -88,7 +88,6 @@ class Game:
     scale: int
     delta: int
     clocks: Tuple[str, ...]
-    max_constants: Tuple[int, ...]
     variables: Tuple[str, ...]
     initial_values: Tuple[int, ...]
     channels: Tuple[str, ...]

@@ -14,7 +14,7 @@ name is printed by its id with an underscore before it. A plan of ours names wha
 from __future__ import annotations
 
 import re
-from typing import Dict, List, Optional, Set, Tuple
+from typing import Collection, Dict, Iterator, List, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_gen.outcomes import Invalid, NotProven
@@ -32,10 +32,7 @@ from pursue_gen.synthesis.plan_reader import RUN_AGAIN, Names, Reader, printed_l
 from pursue_gen.synthesis.plan_text import assign_text, guard_text, sync_text, zones_text
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Move, Strategy, Zone, with_automata_of
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tga.passages import with_passages
-from pursue_gen.tga.tours import with_tours
 from pursue_gen.tga.uppaal_keywords import with_own_names
-from pursue_gen.tga.watchers import with_watchers
 
 _ESCAPE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 _HEADER = re.compile(r"^[ \t]*(Strategy|Counter[ -]strategy) to [^\n:]*:[ \t\r]*$", re.MULTILINE | re.IGNORECASE)
@@ -44,17 +41,8 @@ _STATE = re.compile(r"State: \((.*?)\)(.*)")
 _WAIT = re.compile(r"While you are in[ \t]+(.*?),[ \t]*wait\.")
 _COMMAND = re.compile(r"When you are in[ \t]+(.*?),[ \t]*take transition (\S.*)")
 
-
-class _Open:
-    """The block, and in it the command, that is being read; `place` is the last line of that command."""
-
-    def __init__(self, state: DiscreteState) -> None:
-        self.state = state
-        self.wait: Tuple[Zone, ...] = ()
-        self.commands: List[Command] = []
-        self.zones: Tuple[Zone, ...] = ()
-        self.moves: Tuple[Move, ...] = ()
-        self.place = (0, "")
+_Line = Tuple[int, str]
+"""A line of the file, behind its number."""
 
 
 def read_plan(text: str, network: Network, file: str) -> Strategy:
@@ -64,10 +52,9 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     that the property does not hold), where the text is cut or damaged, and where it does not fit the network.
     """
     text = _ESCAPE.sub("", text).replace("\r\n", "\n")
-    watchers = read_watchers(text.partition("\nState:")[0], network, file)
-    passages = read_passages(text.partition("\nState:")[0], network, file)
-    tours = read_tours(text.partition("\nState:")[0], network, file)
-    network = with_tours(with_passages(with_watchers(network, watchers), passages), tours)
+    named = text.partition("\nState:")[0], network, file
+    watchers, passages, tours = read_watchers(*named), read_passages(*named), read_tours(*named)
+    network = with_automata_of(network, Strategy((), watchers=watchers, passages=passages, tours=tours))
     text = with_own_names(text, network)
     header = _HEADER.search(text)
     if header is None:
@@ -77,87 +64,76 @@ def read_plan(text: str, network: Network, file: str) -> Strategy:
     left_out_clocks = read_left_out_clocks(above, network, file)
     reader = Reader(Names(spoken_of(above, network, file)), file, bool(stages or shares or passages))
     first = text.count("\n", 0, header.end()) + 1
-    blocks: List[Block] = []
-    seen: Set[DiscreteState] = set()
-    opened: Optional[_Open] = None
-    for offset, line in enumerate(text[header.end() :].split("\n")):
-        line = line.rstrip()
-        if not line:
-            continue
+    groups: List[List[_Line]] = []
+    for number, line in enumerate(map(str.rstrip, text[header.end() :].split("\n")), first):
         if line.startswith("State:"):
-            _close(reader, opened, blocks)
-            reader.line, reader.text = first + offset, line
-            opened = _start(reader, line, seen)
-        else:
-            reader.line, reader.text = first + offset, line
-            if opened is None:
-                reader.fail("PLN004", "expected a line that starts with `State: (`", RUN_AGAIN)
-            _continue(reader, opened, line)
-    _close(reader, opened, blocks)
+            groups.append([])
+        elif line and not groups:
+            reader.line, reader.text = number, line
+            reader.fail("PLN004", "expected a line that starts with `State: (`", RUN_AGAIN)
+        if line:
+            groups[-1].append((number, line))
+    blocks: Dict[DiscreteState, Block] = {}
+    for group in groups:
+        state = _state(reader, group[0], blocks)
+        blocks[state] = _block(reader, state, group[1:])
     if not blocks:
         reader.line, reader.text = first, ""
         reader.fail("PLN003", "the strategy is empty: no state follows its title", RUN_AGAIN)
     counter = header.group(1).lower().startswith("counter")
-    return Strategy(tuple(blocks), counter, stages, left_out_clocks, shares, watchers, passages, tours)
+    return Strategy(tuple(blocks.values()), counter, stages, left_out_clocks, shares, watchers, passages, tours)
 
 
-def _start(reader: Reader, line: str, seen: Set[DiscreteState]) -> _Open:
-    """The block that a line `State: …` starts."""
-    match = _STATE.fullmatch(line)
+def _state(reader: Reader, line: _Line, known: Collection[DiscreteState]) -> DiscreteState:
+    """The discrete state that a line `State: …` names."""
+    reader.line, reader.text = line
+    match = _STATE.fullmatch(line[1])
     if not match:
         reader.fail(
             "PLN004", "this is no state; expected `State: ( automaton.location … ) variable=value …`", RUN_AGAIN
         )
     state = reader.state(match.group(1), match.group(2))
-    if state in seen:
+    if state in known:
         reader.fail("PLN006", "the plan has this state twice", RUN_AGAIN)
-    seen.add(state)
-    return _Open(state)
+    return state
 
 
-def _continue(reader: Reader, opened: _Open, line: str) -> None:
-    """Takes a line within a block: a wait, a command, or one more automaton of the command before."""
-    command = _COMMAND.fullmatch(line)
-    if command:
-        _finish_command(reader, opened)
-        opened.zones, opened.moves = reader.zones(command.group(1)), (reader.move(command.group(2)),)
-        opened.place = (reader.line, reader.text)
-        return
-    wait = _WAIT.fullmatch(line)
-    if wait:
-        _finish_command(reader, opened)
-        opened.wait += reader.zones(wait.group(1))
-    elif opened.moves and "->" in line and not line.startswith(("When", "While")):
-        opened.moves += (reader.move(line),)
-        opened.place = (reader.line, reader.text)
-    else:
-        reader.fail(
-            "PLN004",
-            "this line is cut or damaged; expected `While you are in …, wait.`, "
-            "`When you are in …, take transition …` or a transition",
-            RUN_AGAIN,
-        )
-
-
-def _finish_command(reader: Reader, opened: _Open) -> None:
-    """Adds the command whose last line has been read."""
-    if opened.moves:
-        here = (reader.line, reader.text)
-        reader.line, reader.text = opened.place
-        reader.check_joint(opened.state, opened.moves)
-        reader.line, reader.text = here
-        opened.commands.append(Command(opened.zones, opened.moves))
-        opened.moves = ()
-
-
-def _close(reader: Reader, opened: Optional[_Open], blocks: List[Block]) -> None:
-    """Adds the block whose last line has been read."""
-    if opened is None:
-        return
-    _finish_command(reader, opened)
-    if not opened.wait and not opened.commands:
+def _block(reader: Reader, state: DiscreteState, lines: Sequence[_Line]) -> Block:
+    """What these lines say is to be done: each a wait, a command, or one more automaton of the command before."""
+    wait: Tuple[Zone, ...] = ()
+    commands: List[Command] = []
+    zones: Tuple[Zone, ...] = ()
+    moves: Tuple[Move, ...] = ()
+    for line in lines:
+        command, waits = _COMMAND.fullmatch(line[1]), _WAIT.fullmatch(line[1])
+        if command or waits:
+            commands += _joint(reader, state, zones, moves)
+            moves = ()
+        reader.line, reader.text = line
+        if command:
+            zones, moves = reader.zones(command.group(1)), (reader.move(command.group(2)),)
+        elif waits:
+            wait += reader.zones(waits.group(1))
+        elif moves and "->" in line[1] and not line[1].startswith(("When", "While")):
+            moves += (reader.move(line[1]),)
+        else:
+            reader.fail(
+                "PLN004",
+                "this line is cut or damaged; expected `While you are in …, wait.`, "
+                "`When you are in …, take transition …` or a transition",
+                RUN_AGAIN,
+            )
+    commands += _joint(reader, state, zones, moves)
+    if not wait and not commands:
         reader.fail("PLN003", "the plan is cut: it does not say what to do in this state", RUN_AGAIN)
-    blocks.append(Block(opened.state, opened.wait, tuple(opened.commands)))
+    return Block(state, wait, tuple(commands))
+
+
+def _joint(reader: Reader, state: DiscreteState, zones: Tuple[Zone, ...], moves: Tuple[Move, ...]) -> Iterator[Command]:
+    """The command of these moves, whose last line has been read; none of no moves."""
+    if moves:
+        reader.check_joint(state, moves)
+        yield Command(zones, moves)
 
 
 def _no_strategy(text: str, file: str) -> PursueError:

@@ -20,22 +20,24 @@ from 1, of the one that follows the last.
 from __future__ import annotations
 
 import re
-from typing import List, Match, Pattern, Set, Tuple
+from typing import Callable, List, Match, Optional, Pattern, Set, Tuple, TypeVar
 
 from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_gen.outcomes import Invalid
 from pursue_gen.synthesis.strategy import Place, Strategy
 from pursue_gen.tga.ending import is_value
-from pursue_gen.tga.network import Network
+from pursue_gen.tga.network import Automaton, Network
 from pursue_gen.tga.part import part_of
 from pursue_gen.tga.passages import Passage, passage_automaton
 from pursue_gen.tga.tours import Tour, tour_automaton
 from pursue_gen.tga.watchers import Watcher, watched_by
 
+Own = TypeVar("Own", Watcher, Passage, Tour)
+
 _STAGE = re.compile(r"^ -- Stage:(.*)$", re.MULTILINE)
-_WATCHER = re.compile(r"^ -- Watcher:(.*)$", re.MULTILINE)
-_PASSAGE = re.compile(r"^ -- Passage:(.*)$", re.MULTILINE)
-_TOUR = re.compile(r"^ -- Tour:(.*)$", re.MULTILINE)
+_OWN = {
+    what: re.compile(rf"^ -- {what.capitalize()}:(.*)$", re.MULTILINE) for what in ("watcher", "passage", "tour")
+}
 _SHARE = re.compile(r"^ -- Share:(.*)$", re.MULTILINE)
 _LEFT_OUT_CLOCKS = re.compile(r"^ -- Left out clocks:(.*)$", re.MULTILINE)
 _LEFT_OUT = re.compile(r"^ -- Left out:(.*)$", re.MULTILINE)
@@ -87,43 +89,42 @@ def read_shares(text: str, network: Network, file: str) -> Tuple[Tuple[Place, ..
 
 def read_watchers(text: str, network: Network, file: str) -> Tuple[Watcher, ...]:
     """The watchers of such a plan. Raises PursueError for one that nobody can be."""
-    watchers: List[Watcher] = []
-    for match in _WATCHER.finditer(text):
-        words = match.group(1).split()
-        watcher = Watcher(words[0], tuple(words[1:])) if words else Watcher("", ())
-        if watched_by(network, watcher) is None and watcher.name not in {each.name for each in network.automata}:
-            message = f"the plan has a watcher '{' '.join(words)}', which the network cannot have"
-            raise _unknown(text, match, message, file)
-        watchers.append(watcher)
-    return tuple(watchers)
+    return _read_own(text, network, file, "watcher", lambda each: Watcher(each[0], tuple(each[1:])), watched_by)
 
 
 def read_passages(text: str, network: Network, file: str) -> Tuple[Passage, ...]:
     """The passages of such a plan. Raises PursueError for one that cannot be."""
-    passages: List[Passage] = []
-    for match in _PASSAGE.finditer(text):
-        words = match.group(1).split()
-        passage = Passage(words[0], tuple(words[1:])) if len(words) > 1 else None
-        known = {each.name for each in network.automata}
-        if passage is None or (passage_automaton(network, passage) is None and passage.name not in known):
-            message = f"the plan has a passage '{' '.join(words)}', which the network cannot have"
-            raise _unknown(text, match, message, file)
-        passages.append(passage)
-    return tuple(passages)
+    return _read_own(text, network, file, "passage", lambda each: Passage(each[0], tuple(each[1:])), passage_automaton)
 
 
 def read_tours(text: str, network: Network, file: str) -> Tuple[Tour, ...]:
     """The tours of such a plan. Raises PursueError for one that cannot be."""
-    tours: List[Tour] = []
-    for match in _TOUR.finditer(text):
-        words = match.group(1).split()
+
+    def tour(words: List[str]) -> Tour:
         again = words[1] if len(words) > 1 and words[1].isascii() and words[1].isdigit() else "0"
-        tour = Tour(words[0], tuple(words[2:]), int(again[:9]) - 1) if words else Tour("", ())
-        if tour_automaton(network, tour) is None and tour.name not in {each.name for each in network.automata}:
-            message = f"the plan has a tour '{' '.join(words)}', which the network cannot have"
+        return Tour(words[0], tuple(words[2:]), int(again[:9]) - 1)
+
+    return _read_own(text, network, file, "tour", tour, tour_automaton)
+
+
+def _read_own(
+    text: str,
+    network: Network,
+    file: str,
+    what: str,
+    made: Callable[[List[str]], Own],
+    automaton_of: Callable[[Network, Own], Optional[Automaton]],
+) -> Tuple[Own, ...]:
+    """The strategy's own automata of one kind, as the words of their lines say."""
+    found: List[Own] = []
+    for match in _OWN[what].finditer(text):
+        words = match.group(1).split()
+        own = made(words) if words else None
+        if own is None or (automaton_of(network, own) is None and own.name not in network.names):
+            message = f"the plan has a {what} '{' '.join(words)}', which the network cannot have"
             raise _unknown(text, match, message, file)
-        tours.append(tour)
-    return tuple(tours)
+        found.append(own)
+    return tuple(found)
 
 
 def _read_places(

@@ -17,7 +17,7 @@ from pursue_gen.synthesis.plan_text import (
     sync_text,
 )
 from pursue_gen.synthesis.strategy import Constraint, DiscreteState, Move, Zone
-from pursue_gen.tga.network import Edge, Guard, Network
+from pursue_gen.tga.network import Edge, Network
 
 _EDGE = re.compile(r"([^\s.]+)\.(\S+?)->([^\s.]+)\.(\S+)\s*\{\s*([^,{}]*),\s*([^,{}\s]*)\s*,([^{}]*)\}")
 
@@ -34,7 +34,7 @@ class Names:
         self.automata = tuple(automaton.name for automaton in network.automata)
         self.locations: Dict[str, Dict[str, str]] = {}
         self.edges: Dict[Tuple[str, str, str, str], List[Edge]] = {}
-        self.receivers: Dict[str, List[Tuple[str, Edge]]] = {}
+        self.receivers = network.receivers
         for automaton in network.automata:
             printed = {printed_location(loc.name, loc.named): loc.name for loc in automaton.locations}
             # A network whose unnamed locations have got names in the meantime still reads the plan.
@@ -43,8 +43,6 @@ class Names:
             self.locations[automaton.name] = printed
             for edge in automaton.edges:
                 self.edges.setdefault((automaton.name, edge.source, edge.target, sync_text(edge)), []).append(edge)
-                if edge.sync and not edge.sync.sends:
-                    self.receivers.setdefault(edge.sync.channel, []).append((automaton.name, edge))
 
 
 class Reader:
@@ -172,7 +170,7 @@ class Reader:
         """Fails unless exactly the automata take part that must in this state; a cut or mixed-up file shows so."""
         at, value = dict(state.locations), dict(state.values)
         for move in moves:
-            if at.get(move.automaton) != move.edge.source or not _integers_hold(move.edge.guard, value):
+            if at.get(move.automaton) != move.edge.source or not move.edge.guard.holds(value):
                 self.fail("PLN008", f"'{move.automaton}' cannot make this move in the state above", RUN_AGAIN)
         sync = moves[0].edge.sync
         if sync is not None and not sync.sends:
@@ -184,7 +182,7 @@ class Reader:
         taking = [move.automaton for move in moves[1:]]
         due: Set[str] = set()
         for automaton, edge in self.names.receivers.get(sync.channel, []) if sync else []:
-            able = at.get(automaton) == edge.source and _integers_hold(edge.guard, value)
+            able = at.get(automaton) == edge.source and edge.guard.holds(value)
             if automaton != moves[0].automaton and able:
                 due.add(automaton)
         channels = {move.edge.sync and move.edge.sync.channel for move in moves}
@@ -196,11 +194,6 @@ class Reader:
                 f"{', '.join(taking) or 'nobody'}",
                 RUN_AGAIN,
             )
-
-
-def _integers_hold(guard: Guard, value: Dict[str, int]) -> bool:
-    """True where the values satisfy the guard's tests of variables."""
-    return all(any(value.get(test.variable) == test.value for test in clause) for clause in guard.integers)
 
 
 def printed_location(location: str, named: bool) -> str:

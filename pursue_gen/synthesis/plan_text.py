@@ -36,11 +36,6 @@ def constraint_text(constraint: Constraint, space: str = "") -> str:
     return f"{left}{space}-{space}{right}{op}{decimal_text(bound)}"
 
 
-def _equality_text(constraint: Constraint, space: str) -> str:
-    """The constraint with its `<=` made `==`."""
-    return constraint_text(constraint, space).replace("<=", "==")
-
-
 def _is_equality(one: Constraint, other: Constraint) -> bool:
     """True where `one` and then `other` is what the reader makes of an equality."""
     return (
@@ -60,7 +55,7 @@ def constraint_texts(zone: Zone, space: str = "", known: Optional[Dict[int, str]
     index = 0
     while index < len(zone):
         if index + 1 < len(zone) and _is_equality(zone[index], zone[index + 1]):
-            yield _equality_text(zone[index], space)
+            yield constraint_text(zone[index], space).replace("<=", "==")
             index += 2
         else:
             constraint = zone[index]

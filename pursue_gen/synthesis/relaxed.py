@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import heapq
 from dataclasses import dataclass
-from typing import AbstractSet, Dict, FrozenSet, List, Sequence, Set, Tuple
+from typing import Callable, Dict, FrozenSet, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
-from pursue_gen.synthesis.game import NO_CHANNEL, Game, JointMove, State
+from pursue_gen.synthesis.game import NO_CHANNEL, Game, GameEdge, JointMove, State
 
 Fact = Tuple[str, int, int]
 """("at", automaton, location), ("is", variable, value) or ("channel", channel, 0)."""
@@ -29,7 +29,15 @@ class Operator:
 
     preconditions: Tuple[Precondition, ...]
     effects: Tuple[Fact, ...]
-    cost: int
+
+
+class Achieved(NamedTuple):
+    """When each fact comes, the edge that gives it (-1: it holds at first), and the facts that made each edge possible.
+    """
+
+    times: Mapping[Fact, int]
+    by: Mapping[Fact, int]
+    support: Mapping[int, Mapping[int, Fact]]
 
 
 class RelaxedPlanner:
@@ -37,7 +45,9 @@ class RelaxedPlanner:
 
     def __init__(self, game: Game) -> None:
         self._game = game
-        self._operators = [_operator(game, k) for k in range(len(game.edges))]
+        self._operators = [_operator(edge) for edge in game.edges]
+        self._costs = [_cost(game, edge) for edge in game.edges]
+        self._goals: Set[Fact] = {("at", automaton, location) for automaton, location in game.goal}
         self._watchers: Dict[Fact, List[Tuple[int, int]]] = {}
         for k, operator in enumerate(self._operators):
             for position, precondition in enumerate(operator.preconditions):
@@ -56,58 +66,69 @@ class RelaxedPlanner:
 
     def plan(self, state: State) -> Set[int]:
         """The edges of a relaxed plan from the state to the goal; empty if there is none."""
-        goals: List[Fact] = [("at", automaton, location) for automaton, location in self._game.goal]
-        achiever, support = self._achievers(state, set(goals))
+        _, by, support = self.achieved(state, lambda k, cost, _: cost + self._costs[k])
         plan: Set[int] = set()
-        wanted = goals if all(goal in achiever for goal in goals) else []
+        wanted = [*self._goals] if self._goals <= by.keys() else []
         while wanted:
-            operator = achiever.get(wanted.pop(), -1)
+            operator = by.get(wanted.pop(), -1)
             if operator >= 0 and operator not in plan:
                 plan.add(operator)
-                wanted += support[operator]
+                wanted += support[operator].values()
         return plan
 
-    def _achievers(self, state: State, goals: AbstractSet[Fact]) -> Tuple[Dict[Fact, int], Dict[int, List[Fact]]]:
-        """The cheapest edge to each fact (-1: it holds), and the facts that made each edge possible.
+    def time_to_goal(
+        self, state: State, comes: Callable[[int, int, Mapping[Fact, int]], Optional[int]]
+    ) -> Optional[int]:
+        """When the last location of the goal is come to (see `achieved`); None where one never is."""
+        times = self.achieved(state, comes).times
+        return max(times[goal] for goal in self._goals) if self._goals <= times.keys() else None
 
-        Dijkstra's algorithm over facts; an edge is possible once all of its preconditions hold. Stops with the last
-        of the goals.
+    def achieved(
+        self, state: State, comes: Callable[[int, int, Mapping[Fact, int]], Optional[int]]
+    ) -> Achieved:
+        """What comes before the last location of the goal, or with it; `comes`: when the effects of an edge do of which
+        the last precondition holds from a time on, given the times of all others; None: never.
+
+        Dijkstra's algorithm over facts; an edge is possible once all of its preconditions hold.
         """
         now: List[Fact] = [("at", k, location) for k, location in enumerate(state.locations)]
         now += [("is", k, value) for k, value in enumerate(state.values)]
         queue: List[Tuple[int, int, Fact]] = [(0, -1, fact) for fact in now]
         heapq.heapify(queue)
+        times: Dict[Fact, int] = {}
         achiever: Dict[Fact, int] = {}
         met: Dict[int, Dict[int, Fact]] = {}
-        while queue and not goals <= achiever.keys():
-            cost, by, fact = heapq.heappop(queue)
+        while queue and not self._goals <= achiever.keys():
+            time, by, fact = heapq.heappop(queue)
             if fact in achiever:
                 continue
-            achiever[fact] = by
+            times[fact], achiever[fact] = time, by
             for k, position in self._watchers.get(fact, ()):
                 preconditions = met.setdefault(k, {})
                 if position in preconditions:
                     continue
                 preconditions[position] = fact
-                operator = self._operators[k]
-                if len(preconditions) == len(operator.preconditions):
-                    for given in operator.effects:
-                        heapq.heappush(queue, (cost + operator.cost, k, given))
-        return achiever, {k: list(preconditions.values()) for k, preconditions in met.items()}
+                if len(preconditions) == len(self._operators[k].preconditions):
+                    then = comes(k, time, times)
+                    for given in () if then is None else self._operators[k].effects:
+                        heapq.heappush(queue, (then or 0, k, given))
+        return Achieved(times, achiever, met)
 
 
-def _operator(game: Game, number: int) -> Operator:
-    edge = game.edges[number]
+def _operator(edge: GameEdge) -> Operator:
     preconditions: List[Precondition] = [frozenset({("at", edge.automaton, edge.source)})]
     preconditions += [frozenset(("is", variable, value) for variable, value in clause) for clause in edge.clauses]
     effects: List[Fact] = [("at", edge.automaton, edge.target)]
     effects += [("is", variable, value) for variable, value in edge.assignments]
-    cost = edge.duration + 1
     if not edge.sends:
         preconditions.append(frozenset({("channel", edge.channel, 0)}))
-        cost = 0
     elif edge.channel != NO_CHANNEL:
         effects.append(("channel", edge.channel, 0))
-    if edge.sends and not edge.controllable and not game.automata[edge.automaton].invariants[edge.source]:
-        cost += UNRELIABLE
-    return Operator(tuple(preconditions), tuple(effects), cost)
+    return Operator(tuple(preconditions), tuple(effects))
+
+
+def _cost(game: Game, edge: GameEdge) -> int:
+    if not edge.sends:
+        return 0
+    unreliable = not edge.controllable and not game.automata[edge.automaton].invariants[edge.source]
+    return edge.duration + 1 + (UNRELIABLE if unreliable else 0)

@@ -11,7 +11,8 @@ from pursue_gen.diagnostics import error
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.cone import cone_of_influence
-from pursue_gen.synthesis.engine import Engine, Outcome
+from pursue_gen.synthesis.engine import Engine
+from pursue_gen.synthesis.engine import Stats as Stats
 from pursue_gen.synthesis.game import Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.native.engine import NativeEngine
@@ -20,22 +21,6 @@ from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.synthesis.strategy_from import to_ranks, to_strategy
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.pauses import pauses, with_calls_that_are_heard, without_clocks
-
-
-@dataclass(frozen=True)
-class Stats:
-    """What it took: the name of the engine, discrete states, zones of the result, seconds to decide.
-
-    `symbolic_states` are zones whose successors were computed, as other tools count them; 0: not counted. `work`: as
-    `Limits.work` counts it.
-    """
-
-    engine: str
-    discrete_states: int
-    zones: int
-    seconds: float
-    symbolic_states: int = 0
-    work: int = 0
 
 
 def _none() -> None:
@@ -92,7 +77,7 @@ def solve(
     game, gone = _compiled(network, objective, reaction, engine, whole, without_pauses)
     start = limits.now()
     outcome = engine.giving_first(limits.work if first is None else first).solve(game, limits, progress, soonest)
-    stats = _stats(engine, outcome)
+    stats = outcome.stats
     if not outcome.won:
         part = cone_of_influence(network, objective)
         heard = part if without_pauses or not reaction else with_calls_that_are_heard(part)
@@ -138,7 +123,7 @@ def guess(
     """
     game, gone = _compiled(network, objective, reaction, engine, whole, without_pauses)
     outcome = engine.guess(game, limits, progress, late)
-    return to_strategy(game, outcome.blocks, gone) if outcome.won else None, _stats(engine, outcome)
+    return to_strategy(game, outcome.blocks, gone) if outcome.won else None, outcome.stats
 
 
 def _compiled(
@@ -161,12 +146,6 @@ def _compiled(
         message = "the solver cannot hold the game: its times are too large, or it has too many clocks"
         raise LimitHit([error("SYN012", message, hint=hint)])
     return game, gone
-
-
-def _stats(engine: Engine, outcome: Outcome) -> Stats:
-    counts = outcome.counts
-    took = outcome.seconds, counts.symbolic_states, counts.work
-    return Stats(engine.name, counts.discrete_states, counts.zones, *took)
 
 
 def _cautious(

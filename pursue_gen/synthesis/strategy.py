@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Iterable, Mapping, Optional, Tuple, Union
+from typing import Callable, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Tuple, Union
 
 from pursue_gen.tga.network import Constraint as Constraint
 from pursue_gen.tga.network import Edge, Network
@@ -19,6 +19,9 @@ from pursue_gen.tga.watchers import Watcher, with_watchers
 Place = Tuple[str, str]
 """An automaton and one of its locations; as a milestone also a variable and one of its values."""
 
+ZoneKey = Tuple[int, Union[str, int], int]
+"""Where a zone stands in a strategy: number of the block, "wait" or number of the command in it, number of the zone."""
+
 Zone = Tuple[Constraint, ...]
 """All of these constraints, and every clock >= 0; the empty zone tuple `()` is: always."""
 
@@ -29,6 +32,11 @@ class DiscreteState:
 
     locations: Tuple[Tuple[str, str], ...]
     values: Tuple[Tuple[str, int], ...]
+
+    @property
+    def names(self) -> Tuple[FrozenSet[str], FrozenSet[str]]:
+        """The automata that it names, and the variables."""
+        return frozenset(name for name, _ in self.locations), frozenset(name for name, _ in self.values)
 
     @property
     def facts(self) -> Mapping[str, object]:
@@ -59,6 +67,17 @@ class Block:
     state: DiscreteState
     wait: Tuple[Zone, ...]
     commands: Tuple[Command, ...]
+
+    @property
+    def zones(self) -> Iterator[Zone]:
+        """Its zones, those in which to wait first."""
+        yield from self.wait
+        for command in self.commands:
+            yield from command.zones
+
+    def with_locations(self, locations: Iterable[Place]) -> Block:
+        """The same where these automata are."""
+        return replace(self, state=replace(self.state, locations=tuple(locations)))
 
 
 @dataclass(frozen=True)
@@ -129,9 +148,25 @@ class Strategy:
     @cached_property
     def scale(self) -> int:
         """The least scale in which all of its bounds are integers."""
-        zones = (zone for b in self.blocks for zones in (b.wait, *(c.zones for c in b.commands)) for zone in zones)
-        once = {id(zone): zone for zone in zones}  # most zones stand in many places
-        return common_denominator(constraint.bound for zone in once.values() for constraint in zone)
+        return common_denominator(constraint.bound for constraint in self.constraints)
+
+    @cached_property
+    def constraints(self) -> Tuple[Constraint, ...]:
+        """Those of all of its zones; one that stands in many places perhaps once."""
+        zones = {id(zone): zone for block in self.blocks for zone in block.zones}
+        return tuple({id(constraint): constraint for zone in zones.values() for constraint in zone}.values())
+
+    def keys_of(self, number: int) -> List[ZoneKey]:
+        """Where the zones of a block stand, in order: those in which to wait first."""
+        block = self.blocks[number]
+        parts: List[Tuple[Union[str, int], int]] = [("wait", len(block.wait))]
+        parts += [(k, len(command.zones)) for k, command in enumerate(block.commands)]
+        return [(number, part, n) for part, count in parts for n in range(count)]
+
+    @property
+    def size(self) -> int:
+        """The number of its commands, over all states."""
+        return sum(len(block.commands) for block in self.blocks)
 
 
 def with_automata_of(network: Network, strategy: Strategy) -> Network:
@@ -139,17 +174,20 @@ def with_automata_of(network: Network, strategy: Strategy) -> Network:
     return with_tours(with_passages(with_watchers(network, strategy.watchers), strategy.passages), strategy.tours)
 
 
-def with_edges(blocks: Iterable[Block], automaton: str, changed: Mapping[Edge, Edge]) -> Tuple[Block, ...]:
-    """The blocks whose commands take other edges of the automaton in place of these."""
+def with_edges(blocks: Iterable[Block], changed: Mapping[Tuple[str, Edge], Edge]) -> Tuple[Block, ...]:
+    """The blocks whose commands take other edges in place of these, each of an automaton."""
     if not changed:
         return tuple(blocks)
 
     def moved(command: Command) -> Command:
-        moves = (replace(m, edge=changed.get(m.edge, m.edge)) if m.automaton == automaton else m for m in command.moves)
+        moves = (replace(move, edge=changed.get((move.automaton, move.edge), move.edge)) for move in command.moves)
         return replace(command, moves=tuple(moves))
 
     return tuple(replace(block, commands=tuple(map(moved, block.commands))) for block in blocks)
 
 
-ZoneKey = Tuple[int, Union[str, int], int]
-"""Where a zone stands in a strategy: number of the block, "wait" or number of the command in it, number of the zone."""
+def with_zones(blocks: Iterable[Block], changed: Callable[[Zone], Zone]) -> Iterator[Block]:
+    """The blocks with what this makes of their zones."""
+    for block in blocks:
+        commands = (replace(command, zones=tuple(map(changed, command.zones))) for command in block.commands)
+        yield replace(block, wait=tuple(map(changed, block.wait)), commands=tuple(commands))

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections import deque
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Deque, Dict, Iterable, List, Sequence, Set, Tuple
+from typing import Dict, Iterable, List, Optional, Sequence, Tuple
 
-from pursue_gen.synthesis.game import Action, Bound, Game, RawBlock, State, initial_state, is_bad, is_goal, joint_moves
+from pursue_gen.synthesis.game import Action, Bound, Game, RawBlock
 from pursue_gen.synthesis.native.engine import core
 from pursue_gen.synthesis.strategy import (
     Block,
@@ -62,30 +61,12 @@ def to_ranks(blocks: Iterable[RawBlock], ranks: Iterable[Sequence[int]]) -> Dict
     return found
 
 
-def followed(game: Game, blocks: Sequence[RawBlock]) -> List[int]:
-    """The numbers of the blocks whose discrete states a play by the strategy can come to (whatever the clocks)."""
-    by_state = {State(tuple(block[0]), tuple(block[1])): number for number, block in enumerate(blocks)}
-    start = initial_state(game)
-    met: Set[State] = {start}
-    waiting: Deque[State] = deque([start])
-    while waiting:
-        state = waiting.popleft()
-        if is_goal(game, state) or is_bad(game, state) or state not in by_state:
-            continue
-        commanded = {tuple(action) for _, action in blocks[by_state[state]][2] if action is not None}
-        for move in joint_moves(game, state):
-            if move.target not in met and (not move.controllable or move.edges in commanded):
-                met.add(move.target)
-                waiting.append(move.target)
-    return [number for state, number in by_state.items() if state in met]
-
-
 def _block(game: Game, block: RawBlock, known: _Known) -> Block:
     locations, values, pieces = block
     by_action: Dict[Action, List[Zone]] = {}
     for matrix, action in pieces:
         key = None if action is None else tuple(action)
-        by_action.setdefault(key, []).append(_zone(game, tuple(matrix), known))
+        by_action.setdefault(key, []).append(zone_text(game, tuple(matrix), known))
     places = tuple([each[k] for each, k in zip(known.places, locations)])
     state = DiscreteState(places, tuple(zip(game.variables, values)))
     commands = (
@@ -104,13 +85,9 @@ def _moves(game: Game, edges: Tuple[int, ...], known: _Known) -> Tuple[Move, ...
     return found
 
 
-def zone_text(game: Game, matrix: Matrix) -> Zone:
+def zone_text(game: Game, matrix: Matrix, known: Optional[_Known] = None) -> Zone:
     """The constraints that make the zone, fewest bounds, in time units; the canonical matrix has the game's scale."""
-    return _zone(game, matrix, _Known())
-
-
-def _zone(game: Game, matrix: Matrix, known: _Known) -> Zone:
-    """The same, with what is known."""
+    known = known or _Known()
     found = known.zones.get(matrix)
     if found is not None:
         return found

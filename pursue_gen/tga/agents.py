@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import FrozenSet, Iterable, Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.language import network_names as names
@@ -69,7 +69,8 @@ class Surroundings:
 
     def others(self, event: Event, doer: str) -> Tuple[str, ...]:
         """The agents but the doer who react to an event."""
-        return tuple(agent.name for agent in self.scenario.agents if _reacts(agent, event.name) and agent.name != doer)
+        reacting = (a for a in self.scenario.agents if any(ref.name == event.name for ref in a.reacts_to))
+        return tuple(agent.name for agent in reacting if agent.name != doer)
 
     def doers(self, event: Event) -> Tuple[Agent, ...]:
         """The agents who can do an event."""
@@ -111,10 +112,6 @@ def agent_automaton(agent: Agent, around: Surroundings) -> Automaton:
         locations += [Location(names.doing(name, poi)) for poi in places]
         edges += [edge for poi in places for edge in shape.sharing(event, poi)]
     return Automaton(names.agent(agent.name), tuple(locations), names.at(agent.location.name), tuple(edges))
-
-
-def _reacts(agent: Agent, event: str) -> bool:
-    return any(ref.name == event for ref in agent.reacts_to)
 
 
 @dataclass(frozen=True)
@@ -166,18 +163,16 @@ class _Shape:
         codes, at_work, end = self.around.positions, names.doing(event.name, poi), names.done(event.name)
         working = self.around.conditions
         ending = self._edge(at_work, poi, end, window[0], self.around.turn(end), codes.at(poi))
-        ending = replace(ending, assign=(*ending.assign, *working.ends(self.agent.name)))
+        ending = ending.plus(assign=working.ends(self.agent.name))
         conditions = self._conditions(event, codes.at(poi), Value("at", poi))
         if conditions is None:
             return (ending,)
         start = self._edge(poi, at_work, names.event(event.name), PAUSE, conditions, codes.doing(poi))
-        start = replace(start, assign=(*start.assign, *working.begins(self.agent.name, event.name, poi)))
+        start = start.plus(assign=working.begins(self.agent.name, event.name, poi))
         if not self.around.is_contested(event):
             return start, ending
         busy = names.busy(event.name)
-        guard = replace(start.guard, integers=(*start.guard.integers, (Test(busy, 0),)))
-        start = replace(start, guard=guard, assign=(*start.assign, (busy, 1)))
-        return start, replace(ending, assign=(*ending.assign, (busy, 0)))
+        return start.plus((Test(busy, 0),), assign=((busy, 1),)), ending.plus(assign=((busy, 0),))
 
     def sharing(self, event: Event, poi: str) -> Tuple[Edge, Edge]:
         """Taking part in an event of another agent at a POI, from its beginning to its end.

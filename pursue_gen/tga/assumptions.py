@@ -7,7 +7,7 @@ A mission in which an assumption has been broken goes on with 0 in it, and plans
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple, Type
+from typing import Any, Callable, Dict, List, Mapping, Tuple, Type
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Clauses, clauses_of
@@ -17,7 +17,7 @@ from pursue_gen.language.symbols import Role
 from pursue_gen.tga.agents import PAUSE
 from pursue_gen.tga.changes import Change, beginning, setting_off, states_set
 from pursue_gen.tga.conditions import Conditions
-from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Location, Test
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Location, Test
 
 
 def assumed(automaton: Automaton, scenario: Scenario, conditions: Conditions) -> Automaton:
@@ -58,7 +58,7 @@ def without_broken(automaton: Automaton, values: Mapping[str, int]) -> Automaton
     def free(location: Location) -> Location:
         return replace(location, invariant=tuple(bound for bound in location.invariant if bound.clock not in broken))
 
-    return replace(automaton, locations=tuple(free(location) for location in automaton.locations))
+    return automaton.with_locations(free)
 
 
 def _never_holds(
@@ -83,9 +83,9 @@ def _never_holds(
     }
 
     def edges(edge: Edge) -> List[Edge]:
-        if edge.sync is None or not edge.sync.sends or edge.is_end:
+        if edge.sent is None or edge.is_end:
             return [edge]
-        change = Change(states_set(edge.sync.channel, scenario))
+        change = Change(states_set(edge.sent, scenario))
         if edge.source != edge.target:
             change = ways.get(edge.target) or works.get(edge.target) or change
         changed = {who for who, _ in change.becomes}
@@ -93,15 +93,10 @@ def _never_holds(
         if not touched:
             return [edge]
         guard = change.guard([change.before(touched, domains)], domains)
-        kept = [] if guard is None else [_where(edge, conditions.tests(guard))]
+        kept = [] if guard is None else [edge.plus(*conditions.tests(guard))]
         return [*kept, _when_broken(edge, number)] if guard != () else [edge]
 
-    return _each(automaton, edges)
-
-
-def _where(edge: Edge, tests: Tuple[Clause, ...]) -> Edge:
-    """The edge with these tests."""
-    return replace(edge, guard=replace(edge.guard, integers=(*edge.guard.integers, *tests)))
+    return automaton.with_each(edges)
 
 
 def _at_most(automaton: Automaton, number: int, assumption: AtMost, *_: object) -> Automaton:
@@ -109,12 +104,12 @@ def _at_most(automaton: Automaton, number: int, assumption: AtMost, *_: object) 
     count = names.assumption_count(number)
 
     def edges(edge: Edge) -> List[Edge]:
-        if not _sends(edge, assumption.event.name):
+        if edge.sent != assumption.event.name:
             return [edge]
-        counted = [_with(edge, (Test(count, k),), assign=(count, k + 1)) for k in range(assumption.times)]
+        counted = [edge.plus((Test(count, k),), assign=((count, k + 1),)) for k in range(assumption.times)]
         return [*counted, _when_broken(edge, number)]
 
-    return _each(automaton, edges)
+    return automaton.with_each(edges)
 
 
 def _not_before(automaton: Automaton, number: int, assumption: NotBefore, *_: object) -> Automaton:
@@ -122,91 +117,60 @@ def _not_before(automaton: Automaton, number: int, assumption: NotBefore, *_: ob
     late = ClockBound(names.assumption_clock(number), ">", assumption.time)
 
     def edges(edge: Edge) -> List[Edge]:
-        return [_with(edge, bound=late), _when_broken(edge, number)] if _sends(edge, assumption.event.name) else [edge]
+        return [edge.plus(bounds=(late,)), _when_broken(edge, number)] if edge.sent == assumption.event.name else [edge]
 
-    return _each(automaton, edges)
+    return automaton.with_each(edges)
 
 
 def _waits(automaton: Automaton, number: int, assumption: Waits, *_: object) -> Automaton:
     """The first time is free; a clock runs from the end of each one to the next."""
     count, clock, event = names.assumption_count(number), names.assumption_clock(number), assumption.event.name
-    lasts = any(_sends(edge, names.done(event)) for edge in automaton.edges)
+    lasts = any(edge.sent == names.done(event) for edge in automaton.edges)
 
     def edges(edge: Edge) -> List[Edge]:
-        if _sends(edge, names.done(event)):
-            return [_with(edge, reset=clock)]
-        if not _sends(edge, event):
+        if edge.sent == names.done(event):
+            return [edge.plus(resets=(clock,))]
+        if edge.sent != event:
             return [edge]
-        reset = "" if lasts else clock
-        again = _with(edge, (Test(count, 1),), bound=ClockBound(clock, ">=", assumption.time), reset=reset)
-        first = _with(edge, (Test(count, 0),), assign=(count, 1), reset=reset)
-        return [first, again, _with(_when_broken(edge, number), reset=reset)]
+        begun = edge if lasts else edge.plus(resets=(clock,))
+        again = begun.plus((Test(count, 1),), bounds=(ClockBound(clock, ">=", assumption.time),))
+        return [begun.plus((Test(count, 0),), assign=((count, 1),)), again, _when_broken(begun, number)]
 
-    return _each(automaton, edges)
+    return automaton.with_each(edges)
 
 
 def _leaves(automaton: Automaton, number: int, assumption: Leaves, *_: object) -> Automaton:
     """An invariant where it stands; what it does there begins only where it can set off in time afterwards."""
     place, clock, most = assumption.place.name, names.assumption_clock(number), assumption.time
-    takes = {location.name: max((b.bound for b in location.invariant), default=0) for location in automaton.locations}
     here = ClockBound(clock, "<=", most)
-    locations = tuple(
-        replace(location, invariant=(*location.invariant, here)) if location.name == place else location
-        for location in automaton.locations
-    )
+
+    def bounded(location: Location) -> Location:
+        return replace(location, invariant=(*location.invariant, here)) if location.name == place else location
 
     def edges(edge: Edge) -> List[Edge]:
         if edge.target == place and edge.leaves is Role.WAY:
-            return [_with(edge, reset=clock)]
-        if edge.sync is not None and not edge.sync.sends:
+            return [edge.plus(resets=(clock,))]
+        if edge.received is not None:
             # Whoever takes part in what another agent does is kept until that ends; its time begins anew then.
-            return [_with(edge, reset=clock)] if edge.target == place else [edge]
+            return [edge.plus(resets=(clock,))] if edge.target == place else [edge]
         if edge.source != place or edge.enters is Role.WAY:
             return [edge]
-        lasts = 0 if edge.target == place else takes[edge.target]
-        in_time = _with(edge, bound=ClockBound(clock, "<", exact(most - PAUSE - lasts)))
+        lasts = 0 if edge.target == place else automaton.longest.get(edge.target, 0)
+        in_time = edge.plus(bounds=(ClockBound(clock, "<", exact(most - PAUSE - lasts)),))
         return [in_time, _when_broken(edge, number)]
 
-    return _each(replace(automaton, locations=locations), edges)
+    return automaton.with_locations(bounded).with_each(edges)
 
 
 def _never_at(automaton: Automaton, number: int, assumption: NeverAt, *_: object) -> Automaton:
     place = assumption.place.name
     ways = {edge.source for edge in automaton.edges if edge.target == place and edge.leaves is Role.WAY}
-    return _each(automaton, lambda edge: [_when_broken(edge, number) if edge.target in ways else edge])
-
-
-def _each(automaton: Automaton, edges: Callable[[Edge], List[Edge]]) -> Automaton:
-    """The automaton with these edges in the place of each one."""
-    return replace(automaton, edges=tuple(new for edge in automaton.edges for new in edges(edge)))
-
-
-def _sends(edge: Edge, channel: str) -> bool:
-    return edge.sync is not None and edge.sync.sends and edge.sync.channel == channel
+    return automaton.with_each(lambda edge: [_when_broken(edge, number) if edge.target in ways else edge])
 
 
 def _when_broken(edge: Edge, number: int) -> Edge:
     """The edge for a mission in which the assumption has been broken."""
-    return _with(edge, (Test(names.assumption(number), 0),))
-
-
-def _with(
-    edge: Edge,
-    clause: Clause = (),
-    bound: Optional[ClockBound] = None,
-    assign: Optional[Tuple[str, int]] = None,
-    reset: str = "",
-) -> Edge:
-    """The edge with one more test, bound, assignment or reset."""
-    guard = edge.guard
-    guard = replace(guard, integers=(*guard.integers, clause)) if clause else guard
-    guard = replace(guard, clocks=(*guard.clocks, bound)) if bound else guard
-    return replace(
-        edge,
-        guard=guard,
-        assign=(*edge.assign, assign) if assign else edge.assign,
-        resets=(*edge.resets, reset) if reset else edge.resets,
-    )
+    return edge.plus((Test(names.assumption(number), 0),))
 
 
 _KEPT: Mapping[Type[Assumption], Callable[[Automaton, int, Any, Scenario, Conditions], Automaton]] = {

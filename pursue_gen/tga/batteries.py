@@ -6,7 +6,6 @@ that ends an action at the dock has an instance for each level, and adds what wa
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Dict, List, Tuple
 
 from pursue_gen.language import network_names as names
@@ -43,11 +42,10 @@ def _with_battery(automaton: Automaton, scenario: Scenario, battery: Battery) ->
         after = ((level, min(battery.capacity, level - use + gain)) for level in possible if level >= use)
         return [_at_level(edge, battery, before, then) for before, then in after]
 
-    return replace(automaton, edges=tuple(new for edge in automaton.edges for new in edges(edge)))
+    return automaton.with_each(edges)
 
 
 def _at_level(edge: Edge, battery: Battery, before: int, then: int) -> Edge:
     """The edge at this level of the battery, and the level that it leads to."""
     variable = names.level(battery.agent.name)
-    guard = replace(edge.guard, integers=(*edge.guard.integers, (Test(variable, before),)))
-    return replace(edge, guard=guard, assign=(*edge.assign, (variable, then)) if then != before else edge.assign)
+    return edge.plus((Test(variable, before),), assign=((variable, then),) if then != before else ())

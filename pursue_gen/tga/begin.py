@@ -50,12 +50,11 @@ def beginning_in(network: Network, states: Sequence[State]) -> Network:
 
 def _latest(network: Network, states: Sequence[State]) -> List[Constraint]:
     """How much the clocks may be that an invariant bounds in every state."""
-    invariants = [{place.name: place.invariant for place in automaton.locations} for automaton in network.automata]
     found: Dict[str, List[Tuple[Number, bool]]] = {clock: [] for clock in network.clocks}
     for locations, _ in states:
         bounds: Dict[str, List[Tuple[Number, bool]]] = {}
-        for here, name in zip(invariants, locations):
-            for bound in here[name]:
+        for automaton, place in zip(network.automata, locations):
+            for bound in automaton.stays.get(place, ()):
                 bounds.setdefault(bound.clock, []).append((bound.bound, bound.op == "<="))
         for clock, some in bounds.items():
             found[clock].append(min(some))

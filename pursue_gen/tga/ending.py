@@ -7,7 +7,7 @@ can lead to a location of their own, which then stands for the value.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Dict, Mapping, NamedTuple, Optional, Tuple
+from typing import Mapping, NamedTuple, Optional, Tuple
 
 from pursue_gen.tga.network import Edge, Location, Network
 
@@ -19,11 +19,12 @@ Milestone = Tuple[str, str]
 
 
 class Ending(NamedTuple):
-    """A network that ends at a milestone, the location that stands for it, and the edges that were changed for that."""
+    """A network that ends at a milestone, the location that stands for it, and the edges that were changed for that,
+    each with its automaton."""
 
     network: Network
     goal: Tuple[str, str]
-    changed: Mapping[Edge, Edge]
+    changed: Mapping[Tuple[str, Edge], Edge]
 
 
 def ending_at(network: Network, milestone: Milestone, owner: Optional[str] = None) -> Ending:
@@ -39,19 +40,17 @@ def ending_at(network: Network, milestone: Milestone, owner: Optional[str] = Non
     if owner is None:
         raise ValueError(f"{name} is not set by one automaton alone")
     automaton = network.automaton(owner)
-    changed: Dict[Edge, Edge] = {
-        edge: replace(edge, target=REACHED) for edge in automaton.edges if dict(edge.assign).get(name) == int(value)
-    }
-    edges = tuple(changed.get(edge, edge) for edge in automaton.edges)
+    giving = [edge for edge in automaton.edges if dict(edge.assign).get(name) == int(value)]
+    changed = {(owner, edge): replace(edge, target=REACHED) for edge in giving}
+    edges = tuple(changed.get((owner, edge), edge) for edge in automaton.edges)
     ended = replace(automaton, locations=(*automaton.locations, Location(REACHED)), edges=edges)
-    automata = tuple(ended if other.name == owner else other for other in network.automata)
-    return Ending(replace(network, automata=automata), (owner, REACHED), changed)
+    return Ending(network.with_each(lambda a: ended if a.name == owner else a), (owner, REACHED), changed)
 
 
 def owner_of(network: Network, variable: str) -> Optional[str]:
     """The one automaton that sets the variable; None where none does, or several."""
-    setters = {a.name for a in network.automata for edge in a.edges if any(name == variable for name, _ in edge.assign)}
-    return setters.pop() if len(setters) == 1 else None
+    setters = network.setters.get(variable, frozenset())
+    return min(setters) if len(setters) == 1 else None
 
 
 def is_value(network: Network, milestone: Milestone) -> bool:
@@ -63,8 +62,7 @@ def is_value(network: Network, milestone: Milestone) -> bool:
     owner = owner_of(network, name)
     if owner is None or any(automaton.name == name for automaton in network.automata):
         return False
-    stays = {location.name: location.invariant for location in network.automaton(owner).locations}
-    giving = [edge for edge in network.automaton(owner).edges if value == str(dict(edge.assign).get(name))]
-    return bool(giving) and all(
-        bound.op == "<=" and bound.clock in edge.resets for edge in giving for bound in stays[edge.target]
-    )
+    automaton = network.automaton(owner)
+    giving = [edge for edge in automaton.edges if value == str(dict(edge.assign).get(name))]
+    stays = ((edge, bound) for edge in giving for bound in automaton.stays.get(edge.target, ()))
+    return bool(giving) and all(bound.op == "<=" and bound.clock in edge.resets for edge, bound in stays)

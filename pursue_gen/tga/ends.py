@@ -49,25 +49,29 @@ def _sharing(network: Network) -> Mapping[str, Tuple[str, ...]]:
     sharing: Dict[str, Tuple[str, ...]] = {}
     for automaton in network.automata:
         for edge in automaton.edges:
-            if edge.is_end and edge.sync is not None and not edge.sync.sends:
+            if edge.is_end and edge.received is not None:
                 sharing[edge.source] = (*sharing.get(edge.source, ()), automaton.name)
     return sharing
 
 
 def is_agent(automaton: Automaton) -> bool:
     """True for the automaton of an agent: it sends, or it can be on its way or at work."""
-    return any(edge.sync is not None and edge.sync.sends for edge in automaton.edges) or any(
+    return any(edge.sent is not None for edge in automaton.edges) or any(
         location.role in UNDER_WAY for location in automaton.locations
     )
+
+
+def is_nobodys(automaton: Automaton) -> bool:
+    """True for the automaton of an agent whom nobody controls."""
+    return is_agent(automaton) and not any(edge.controllable for edge in automaton.edges)
 
 
 def _reported(automaton: Automaton, slack: Mapping[str, int]) -> Automaton:
     """`slack`: by which each of its locations may be left later."""
     if not is_agent(automaton):
         return automaton
-    edges = tuple(with_controllability(edge, edge.controllable and not edge.is_end) for edge in automaton.edges)
-    locations = tuple(_late(location, slack[location.name]) for location in automaton.locations)
-    return replace(automaton, locations=locations, edges=edges)
+    edges = (with_controllability(edge, edge.controllable and not edge.is_end) for edge in automaton.edges)
+    return automaton.with_edges(edges).with_locations(lambda location: _late(location, slack[location.name]))
 
 
 def _late(location: Location, slack: int) -> Location:

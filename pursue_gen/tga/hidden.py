@@ -13,7 +13,7 @@ where somebody in the part sends it. The move is not its own: nobody at the boun
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import AbstractSet, Dict, Iterator, List, Optional, Sequence, Tuple
+from typing import AbstractSet, Dict, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Network, Sync, Test
 
@@ -38,7 +38,7 @@ def with_hidden(network: Network, part: Network) -> Network:
         kept.append(Automaton(HIDDEN, (Location(HIDDEN),), HIDDEN, tuple(hidden)))
     elif tuple(kept) == part.automata:
         return part
-    sent = {edge.sync.channel for edge in hidden if edge.sync is not None}
+    sent = {edge.channel for edge in hidden if edge.channel is not None}
     channels = [channel for channel in network.channels if channel in sent or channel in part.channels]
     channels += sorted(sent.difference(channels))
     return replace(part, automata=tuple(kept), channels=tuple(channels))
@@ -52,14 +52,13 @@ def has_hidden(network: Network) -> bool:
 def why_not_hidden(automaton: Automaton, part: Network) -> str:
     """Why an automaton cannot be hidden from the part; "" if it can: what it does when it receives must not matter."""
     variables, clocks = {name for name, _ in part.variables}, set(part.clocks)
-    sent = {e.sync.channel for a in part.automata for e in a.edges if e.sync is not None and e.sync.sends}
     for edge in automaton.edges:
-        if edge.sync is None or edge.sync.sends:
+        if edge.received is None:
             continue
-        if not edge.controllable and edge.sync.channel in sent:
-            return f"takes {edge.sync.channel} out of the controller's hands"
+        if not edge.controllable and edge.received in part.senders:
+            return f"takes {edge.received} out of the controller's hands"
         if not clocks.isdisjoint(edge.resets) or any(name in variables for name, _ in edge.assign):
-            return f"changes something that matters when it receives {edge.sync.channel}"
+            return f"changes something that matters when it receives {edge.received}"
     return ""
 
 
@@ -67,10 +66,9 @@ def is_loosened(edge: Edge, automaton: Automaton, kept: Automaton) -> bool:
     """True for an edge that the part does not have, because of a hidden variable, and whose tests of that may be left
     out: what the controller does must not depend on them, nor which of several edges is taken; no invariant may oblige
     anybody to take it, nor forbid where it leads. `kept`: the automaton in the part."""
-    stays = {location.name: location.invariant for location in automaton.locations}
-    if edge.sync is None or edge.sync.sends:
-        return not edge.controllable and not stays[edge.source]
-    stay = stays[edge.target]
+    if edge.received is None:
+        return not edge.controllable and edge.source not in automaton.stays
+    stay = automaton.stays.get(edge.target, ())
     rival = any(other.sync == edge.sync and other.source == edge.source for other in kept.edges)
     return edge.controllable and not rival and {bound.clock for bound in stay}.issubset(edge.resets)
 
@@ -79,13 +77,9 @@ def _all_seen(network: Network, part: Network) -> Iterator[Edge]:
     """What the part sees of the hidden automata."""
     kept = {automaton.name for automaton in part.automata}
     variables, clocks = {name for name, _ in part.variables}, set(part.clocks)
-    edges = (edge for automaton in part.automata for edge in automaton.edges)
-    received = {edge.sync.channel for edge in edges if edge.sync is not None and not edge.sync.sends}
-    for automaton in network.automata:
-        for edge in automaton.edges if automaton.name not in kept else ():
-            if edge.sync is not None and not edge.sync.sends:
-                continue
-            sync = edge.sync if edge.sync is not None and edge.sync.channel in received else None
+    for name, edge in network.edges:
+        if name not in kept and edge.received is None:
+            sync = edge.sync if edge.sent in part.receivers else None
             resets = tuple(clock for clock in edge.resets if clock in clocks)
             seen = Edge(HIDDEN, HIDDEN, _tests(edge, variables), sync, _assigned(edge, variables), resets, False)
             if sync is not None or seen.assign or resets:
@@ -105,10 +99,10 @@ def _loosened(
         guard = _tests(edge, variables, tuple(bound for bound in edge.guard.clocks if bound.clock in part.clocks))
         resets = tuple(clock for clock in edge.resets if clock in part.clocks)
         loose = replace(edge, guard=guard, assign=_assigned(edge, variables), resets=resets)
-        if edge.sync is None or edge.sync.sends:
+        if edge.received is None:
             yield loose, None
         elif loose.assign or loose.resets or loose.source != loose.target:
-            for sender, its in _senders(network, edge.sync.channel):
+            for sender, its in network.senders.get(edge.received, ()):
                 after = _right_after(network, loose, its if sender in there else None, variables, part.clocks)
                 channel = "_".join([HIDDEN, automaton.name, *(bound.clock for bound in after.clocks)])
                 told = Edge(HIDDEN, HIDDEN, Guard(after.clocks), Sync(channel, sends=True), controllable=False)
@@ -120,9 +114,7 @@ def _right_after(
 ) -> Guard:
     """When an edge that receives may be taken later: at once after the one that is `sent` in the part, else at any time
     at which it may hold what the edge tests."""
-    assert edge.sync is not None
-    edges = (other for automaton in network.automata for other in automaton.edges if other.sync is not None)
-    with_it = [e for e in edges if e.sync is not None and e.sync.channel == edge.sync.channel]
+    with_it = [e for _, e in network.edges if edge.received in (e.sent, e.received)]
     changed = {name for other in with_it for name, _ in other.assign}
     tests = tuple(clause for clause in edge.guard.integers if not any(test.variable in changed for test in clause))
     if sent is None:
@@ -131,15 +123,6 @@ def _right_after(
     values = tuple((Test(name, value),) for name, value in sent.assign if name in variables - others)
     now = tuple(ClockBound(clock, "<=", 0) for clock in sent.resets if clock in clocks)
     return Guard(now, (*tests, *values))
-
-
-def _senders(network: Network, channel: str) -> List[Tuple[str, Edge]]:
-    return [
-        (automaton.name, edge)
-        for automaton in network.automata
-        for edge in automaton.edges
-        if edge.sync is not None and edge.sync.sends and edge.sync.channel == channel
-    ]
 
 
 def _tests(edge: Edge, variables: AbstractSet[str], clocks: Tuple[ClockBound, ...] = ()) -> Guard:

@@ -11,7 +11,7 @@ import enum
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Dict, FrozenSet, Mapping, Optional, Tuple
+from typing import AbstractSet, Callable, Dict, FrozenSet, Iterable, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
@@ -60,6 +60,15 @@ class Guard:
 
     clocks: Tuple[ClockBound, ...] = ()
     integers: Tuple[Clause, ...] = ()
+
+    def holds(self, values: Mapping[str, object]) -> bool:
+        """True if the tests hold of these values of variables, whatever the clocks are."""
+        return all(any(values.get(test.variable) == test.value for test in clause) for clause in self.integers)
+
+    @property
+    def since(self) -> Number:
+        """The largest lower bound of a clock: how long it makes one wait at most; 0 for none."""
+        return max((bound.bound for bound in self.clocks if bound.op in (">", ">=")), default=0)
 
 
 @dataclass(frozen=True)
@@ -119,11 +128,46 @@ class Edge:
         """True for the beginning of a movement."""
         return self.enters is Role.WAY and self.source != self.target
 
+    def plus(
+        self,
+        *tests: Clause,
+        bounds: Tuple[ClockBound, ...] = (),
+        assign: Tuple[Tuple[str, int], ...] = (),
+        resets: Tuple[str, ...] = (),
+    ) -> Edge:
+        """The edge with these tests, bounds, assignments and resets behind its own."""
+        guard = Guard((*self.guard.clocks, *bounds), (*self.guard.integers, *tests))
+        return replace(self, guard=guard, assign=(*self.assign, *assign), resets=(*self.resets, *resets))
+
+    @cached_property
+    def channel(self) -> Optional[str]:
+        """The channel on which it sends or receives; None for a step of its own."""
+        return None if self.sync is None else self.sync.channel
+
+    @cached_property
+    def sent(self) -> Optional[str]:
+        """The channel on which it sends; None where it does not."""
+        return self.channel if self.sync is not None and self.sync.sends else None
+
+    @cached_property
+    def received(self) -> Optional[str]:
+        """The channel on which it receives; None where it begins a move itself."""
+        return None if self.sync is None or self.sync.sends else self.channel
+
+    @property
+    def is_command(self) -> bool:
+        """True for the beginning of a move in the controller's hands, as far as those who receive leave it there."""
+        return self.controllable and self.received is None
+
+    @cached_property
+    def tested(self) -> Tuple[str, ...]:
+        """The variables that it tests, each once."""
+        return tuple(dict.fromkeys(test.variable for clause in self.guard.integers for test in clause))
+
     @cached_property
     def variables(self) -> Tuple[str, ...]:
         """The variables that it tests or sets, each once."""
-        tested = (test.variable for clause in self.guard.integers for test in clause)
-        return tuple(dict.fromkeys((*tested, *(name for name, _ in self.assign))))
+        return tuple(dict.fromkeys((*self.tested, *(name for name, _ in self.assign))))
 
 
 @dataclass(frozen=True)
@@ -161,6 +205,48 @@ class Automaton:
         tested.update(bound.clock for edge in self.edges for bound in edge.guard.clocks)
         return frozenset(tested.union(*(edge.resets for edge in self.edges)))
 
+    @cached_property
+    def stays(self) -> Mapping[str, Tuple[ClockBound, ...]]:
+        """By location the bounds of a stay there, of those that have any."""
+        return {location.name: location.invariant for location in self.locations if location.invariant}
+
+    @cached_property
+    def longest(self) -> Mapping[str, Number]:
+        """By location how long a stay there lasts at most, of those that have bounds."""
+        return {name: max(bound.bound for bound in bounds) for name, bounds in self.stays.items()}
+
+    @property
+    def lasting(self) -> List[str]:
+        """The locations in which it may stay for ever, as far as their invariants go."""
+        return [location.name for location in self.locations if not location.invariant]
+
+    @cached_property
+    def assigned(self) -> Tuple[str, ...]:
+        """The variables that it sets, each once."""
+        return tuple(dict.fromkeys(name for edge in self.edges for name, _ in edge.assign))
+
+    @cached_property
+    def channels(self) -> FrozenSet[str]:
+        """The channels on which it sends or receives."""
+        return frozenset(edge.channel for edge in self.edges if edge.channel is not None)
+
+    def with_locations(self, changed: Callable[[Location], Location]) -> Automaton:
+        """The automaton with what this makes of each of its locations."""
+        return replace(self, locations=tuple(map(changed, self.locations)))
+
+    def with_edges(self, edges: Iterable[Edge]) -> Automaton:
+        """The automaton with these edges in place of its own; itself where they are the same."""
+        some = tuple(edges)
+        return self if some == self.edges else replace(self, edges=some)
+
+    def with_each(self, changed: Callable[[Edge], Iterable[Edge]]) -> Automaton:
+        """The automaton with what this makes of each of its edges; itself where nothing changes."""
+        return self.with_edges(new for edge in self.edges for new in changed(edge))
+
+
+ByChannel = Mapping[Optional[str], Sequence[Tuple[str, Edge]]]
+"""By channel some edges, each with the name of its automaton; the None of steps of their own is never in it."""
+
 
 @dataclass(frozen=True)
 class Network:
@@ -184,6 +270,41 @@ class Network:
         return frozenset((*(bound.bound for bound in bounds), *(constraint.bound for constraint in self.start)))
 
     @cached_property
+    def names(self) -> FrozenSet[str]:
+        """The names of its automata, clocks, variables and channels: of one space, in which each stands for one."""
+        variables = (name for name, _ in self.variables)
+        return frozenset((*(a.name for a in self.automata), *self.clocks, *variables, *self.channels))
+
+    @cached_property
+    def edges(self) -> Tuple[Tuple[str, Edge], ...]:
+        """All edges, in order, each with the name of its automaton."""
+        return tuple((automaton.name, edge) for automaton in self.automata for edge in automaton.edges)
+
+    @cached_property
+    def senders(self) -> ByChannel:
+        """By channel the edges that send on it, in order; channels on which nobody sends are not in it."""
+        return _by_channel((edge.sent, name, edge) for name, edge in self.edges)
+
+    @cached_property
+    def receivers(self) -> ByChannel:
+        """By channel the edges that receive on it, likewise."""
+        return _by_channel((edge.received, name, edge) for name, edge in self.edges)
+
+    @cached_property
+    def setters(self) -> Mapping[str, AbstractSet[str]]:
+        """For each variable the automata that set it."""
+        found: Dict[str, Set[str]] = {name: set() for name, _ in self.variables}
+        for automaton in self.automata:
+            for name in automaton.assigned:
+                found.setdefault(name, set()).add(automaton.name)
+        return found
+
+    def with_each(self, changed: Callable[[Automaton], Automaton]) -> Network:
+        """The network with what this makes of each of its automata; itself where nothing changes."""
+        some = tuple(map(changed, self.automata))
+        return self if some == self.automata else replace(self, automata=some)
+
+    @cached_property
     def places(self) -> Mapping[Tuple[str, str], str]:
         """By automaton and text the name of each location, which knows its role: for those who have the text alone."""
         return {(a.name, place.name): place.name for a in self.automata for place in a.locations}
@@ -194,6 +315,14 @@ class Network:
             if automaton.name == name:
                 return automaton
         raise KeyError(name)
+
+
+def _by_channel(edges: Iterable[Tuple[Optional[str], str, Edge]]) -> ByChannel:
+    found: Dict[Optional[str], List[Tuple[str, Edge]]] = {}
+    for channel, name, edge in edges:
+        if channel is not None:
+            found.setdefault(channel, []).append((name, edge))
+    return found
 
 
 class Kind(enum.Enum):

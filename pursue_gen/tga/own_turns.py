@@ -6,12 +6,13 @@ the number of its turn, an edge for each turn.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
 from typing import Iterator, List, Sequence, Tuple
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Rule, Scenario
-from pursue_gen.tga.network import Automaton, Edge, Guard, Test
+from pursue_gen.tga.network import Automaton, Edge, Test
 from pursue_gen.tga.rules import rule_automaton
 
 
@@ -44,30 +45,19 @@ def own_turns(scenario: Scenario) -> Iterator[OwnTurn]:
 
 def bound(automaton: Automaton, turns: Sequence[OwnTurn]) -> Automaton:
     """The automaton of an agent that keeps to its turns; those of other agents change nothing."""
-    edges = list(automaton.edges)
-    for turn in turns:
-        if turn.agent == automaton.name:
-            edges = [one for edge in edges for one in _in_turn(edge, turn)]
-    return replace(automaton, edges=tuple(edges))
+    for turn in (turn for turn in turns if turn.agent == automaton.name):
+        automaton = automaton.with_each(partial(_in_turn, turn))
+    return automaton
 
 
-def _in_turn(edge: Edge, turn: OwnTurn) -> List[Edge]:
+def _in_turn(turn: OwnTurn, edge: Edge) -> List[Edge]:
     """The edge, once for each number at which it is its turn; alone where the rule does not name what it does."""
-    if edge.sync is None or not edge.sync.sends:
-        return [edge]
-    steps = _steps(turn, edge.sync.channel)
-    return [
-        replace(
-            edge,
-            guard=Guard(edge.guard.clocks, (*edge.guard.integers, (Test(turn.variable, now),))),
-            assign=(*edge.assign, (turn.variable, then)),
-        )
-        for now, then in steps
-    ] or [edge]
+    steps = [] if edge.sent is None else _steps(turn, edge.sent)
+    return [edge.plus((Test(turn.variable, now),), assign=((turn.variable, then),)) for now, then in steps] or [edge]
 
 
 def _steps(turn: OwnTurn, channel: str) -> List[Tuple[int, int]]:
     """From which number to which one the channel leads."""
     numbers = {location.name: number for number, location in enumerate(turn.order.locations)}
-    steps = (edge for edge in turn.order.edges if edge.sync is not None and edge.sync.channel == channel)
+    steps = (edge for edge in turn.order.edges if edge.channel == channel)
     return [(numbers[step.source], numbers[step.target]) for step in steps]

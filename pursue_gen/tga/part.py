@@ -9,20 +9,22 @@ from typing import AbstractSet, Optional, Sequence, Tuple
 from pursue_gen.tga.network import Automaton, Constraint, Network
 
 
-def part_of(network: Network, automata: AbstractSet[str], variables: AbstractSet[str]) -> Network:
-    """The network of these automata and variables alone.
+def part_of(network: Network, automata: AbstractSet[str], variables: Optional[AbstractSet[str]] = None) -> Network:
+    """The network of these automata and variables alone; None: of all variables.
 
     Of their edges those are left out that test or set another variable; clocks go that only left-out automata name, and
     what `start` says of these; channels that are on no edge any more. All else, and every order, stays. The network
     itself where nothing is left out.
     """
+    variables = dict(network.variables).keys() if variables is None else variables
     if len(automata) == len(network.automata) and len(variables) == len(network.variables):
         return network
-    kept = tuple(_with_edges_on(a, variables) for a in network.automata if a.name in automata)
+    some = (automaton for automaton in network.automata if automaton.name in automata)
+    kept = tuple(a.with_edges(edge for edge in a.edges if variables >= {*edge.variables}) for a in some)
     gone = {clock for a in network.automata if a.name not in automata for clock in a.clocks}
     gone -= {clock for a in kept for clock in a.clocks}
     clocks = tuple(clock for clock in network.clocks if clock not in gone)
-    used = {edge.sync.channel for a in kept for edge in a.edges if edge.sync is not None}
+    used = {channel for automaton in kept for channel in automaton.channels}
     return Network(
         clocks,
         tuple((name, value) for name, value in network.variables if name in variables),
@@ -51,8 +53,3 @@ def start_of(network: Network, clocks: Sequence[str]) -> Tuple[Constraint, ...]:
     if network.start and not start and clocks:
         return (Constraint(None, clocks[0], Fraction(0), False),)  # without any bound all clocks would be 0
     return start
-
-
-def _with_edges_on(automaton: Automaton, variables: AbstractSet[str]) -> Automaton:
-    edges = tuple(edge for edge in automaton.edges if variables >= set(edge.variables))
-    return automaton if len(edges) == len(automaton.edges) else replace(automaton, edges=edges)

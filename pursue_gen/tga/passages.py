@@ -54,9 +54,7 @@ def passage_automaton(network: Network, passage: Passage) -> Optional[Automaton]
     """The automaton of a passage. None where its name is taken, where a robot in it never moves to and from the place,
     or where the one that starts there is not the first."""
     robots = {automaton.name: automaton for automaton in network.automata if automaton.name in passage.robots}
-    taken = {*network.clocks, *network.channels, *(name for name, _ in network.variables)}
-    taken.update(automaton.name for automaton in network.automata)
-    if network.start or passage.name in taken or not passage.robots or robots.keys() != set(passage.robots):
+    if network.start or passage.name in network.names or not passage.robots or robots.keys() != set(passage.robots):
         return None
     there = [name for name, automaton in robots.items() if automaton.initial == passage.place]
     if there and there != [passage.robots[0]]:
@@ -88,9 +86,9 @@ def _channels(robot: Automaton, place: str) -> Tuple[List[str], List[str]]:
     entering: Dict[str, None] = {}
     leaving: Dict[str, None] = {}
     for edge in robot.edges:
-        if edge.sync is not None and edge.sync.sends and edge.sets_off:
+        if edge.sent is not None and edge.sets_off:
             if edge.source == place:
-                leaving[edge.sync.channel] = None
+                leaving[edge.sent] = None
             elif ends.get(edge.target) == {place}:
-                entering[edge.sync.channel] = None
+                entering[edge.sent] = None
     return list(entering), list(leaving)

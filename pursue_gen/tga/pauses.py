@@ -33,11 +33,7 @@ def with_calls_that_are_heard(network: Network) -> Network:
     Such a move makes commands stale, but not those of a strategy that leaves the clock of the pause out.
     """
     clocks = frozenset(pauses(network))
-    automata = tuple(
-        replace(a, edges=tuple(heard for edge in a.edges for heard in _heard(edge, clocks))) if clocks & a.clocks else a
-        for a in network.automata
-    )
-    return network if automata == network.automata else replace(network, automata=automata)
+    return network.with_each(lambda a: a.with_each(lambda edge: _heard(edge, clocks)) if clocks & a.clocks else a)
 
 
 def _heard(edge: Edge, clocks: AbstractSet[str]) -> Tuple[Edge, ...]:
@@ -55,20 +51,18 @@ def without_clocks(network: Network, clocks: Collection[str]) -> Network:
     if not gone:
         return network
     kept = tuple(clock for clock in network.clocks if clock not in gone)
-    automata = tuple(replace(a, edges=tuple(_without(edge, gone) for edge in a.edges)) for a in network.automata)
-    return replace(network, clocks=kept, automata=automata, start=start_of(network, kept))
+    rest = network.with_each(lambda a: a.with_edges(_without(edge, gone) for edge in a.edges))
+    return replace(rest, clocks=kept, start=start_of(network, kept))
 
 
 def _compared_otherwise(automaton: Automaton) -> AbstractSet[str]:
     """The clocks that the automaton names in another way than a pause is named."""
-    found = {bound.clock for location in automaton.locations for bound in location.invariant}
-    bounded = {location.name for location in automaton.locations if location.invariant}
+    found = {bound.clock for bounds in automaton.stays.values() for bound in bounds}
     for edge in automaton.edges:
-        sends = edge.sync is None or edge.sync.sends
         tests = edge.guard.clocks
         if edge.controllable:
             found.update(edge.resets)
-        if edge.controllable or not sends or edge.source in bounded:
+        if edge.controllable or edge.received is not None or edge.source in automaton.stays:
             found.update(bound.clock for bound in tests)
         found.update(bound.clock for bound in tests if bound.op not in (">", ">="))
     return found
@@ -91,9 +85,8 @@ def acting_at_most(network: Network, objective: Objective, times: int) -> Networ
     """
     clocks = frozenset(pauses(network))
     named = {name for name, _ in (*objective.goal, *objective.bad)}
-    heard = with_calls_that_are_heard(network).automata
-    automata = (a if a.name in named else _counting(a, clocks, times) for a in heard)
-    return replace(network, automata=tuple(automata))
+    heard = with_calls_that_are_heard(network)
+    return heard.with_each(lambda a: a if a.name in named else _counting(a, clocks, times))
 
 
 def _counting(automaton: Automaton, clocks: AbstractSet[str], times: int) -> Automaton:

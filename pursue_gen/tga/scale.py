@@ -8,7 +8,7 @@ from math import gcd
 from typing import Iterable, Tuple
 
 from pursue_gen.language.numbers import Number, exact
-from pursue_gen.tga.network import Automaton, ClockBound, Edge, Location, Network
+from pursue_gen.tga.network import ClockBound, Edge, Location, Network
 
 
 def least_common_multiple(numbers: Iterable[int]) -> int:
@@ -36,8 +36,6 @@ def scaled(network: Network, factor: Number) -> Network:
     def edge(one: Edge) -> Edge:
         return replace(one, guard=replace(one.guard, clocks=bounds(one.guard.clocks)))
 
-    def automaton(one: Automaton) -> Automaton:
-        return replace(one, locations=tuple(map(location, one.locations)), edges=tuple(map(edge, one.edges)))
-
     start = tuple(replace(constraint, bound=Fraction(constraint.bound * factor)) for constraint in network.start)
-    return replace(network, automata=tuple(map(automaton, network.automata)), start=start)
+    changed = network.with_each(lambda a: a.with_locations(location).with_edges(map(edge, a.edges)))
+    return replace(changed, start=start)

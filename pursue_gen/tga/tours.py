@@ -53,9 +53,7 @@ def tour_automaton(network: Network, tour: Tour) -> Optional[Automaton]:
     """The automaton of a tour. None where its name is taken, in the middle of a play, where the robot does not start at
     the first stop, or does not move by commands from each stop to the next."""
     robot = next((automaton for automaton in network.automata if automaton.name == tour.robot), None)
-    taken = {*network.clocks, *network.channels, *(name for name, _ in network.variables)}
-    taken.update(automaton.name for automaton in network.automata)
-    if network.start or robot is None or tour.name in taken or not 0 <= tour.again <= len(tour.stops):
+    if network.start or robot is None or tour.name in network.names or not 0 <= tour.again <= len(tour.stops):
         return None
     if not tour.stops or robot.initial != tour.stops[0]:
         return None
@@ -68,7 +66,7 @@ def tour_automaton(network: Network, tour: Tour) -> Optional[Automaton]:
             return None
         for other, edge in ways.get(place, {}).items():
             target = OFF if after is None or other != following else tour.at(after)
-            edges.append(Edge(tour.at(stop), target, sync=Sync(_channel(edge), sends=False)))
+            edges.append(Edge(tour.at(stop), target, sync=Sync(edge.sent or "", sends=False)))
     stops = tuple(Location(tour.at(stop)) for stop in range(len(tour.stops)))
     return Automaton(tour.name, (*stops, Location(OFF)), tour.at(0), tuple(edges))
 
@@ -83,7 +81,7 @@ def ways_of(robot: Automaton) -> Dict[str, Dict[str, Edge]]:
     ways: Dict[str, Dict[str, Edge]] = {}
     several: Set[Tuple[str, str]] = set()
     for edge in robot.edges:
-        if edge.sync is None or not edge.sync.sends or edge.enters is not Role.WAY or edge.leaves is Role.WAY:
+        if edge.sent is None or edge.enters is not Role.WAY or edge.leaves is Role.WAY:
             continue
         for place in ends.get(edge.target, set()):
             if place in ways.setdefault(edge.source, {}) or len(ends[edge.target]) > 1:
@@ -92,8 +90,3 @@ def ways_of(robot: Automaton) -> Dict[str, Dict[str, Edge]]:
     for source, place in several:
         ways[source].pop(place, None)
     return ways
-
-
-def _channel(edge: Edge) -> str:
-    assert edge.sync is not None
-    return edge.sync.channel

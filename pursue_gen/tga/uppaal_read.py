@@ -94,16 +94,11 @@ def read_query(text: str, file: str) -> Objective:
     Several locations to reach are joined by `and`, several to avoid by `or`: `not(x.lose or z.lose)`. Raises
     PursueError where the file has another query, none, or several.
     """
-    words = _uncommented(text, "")
-    reach = _QUERIES[Kind.REACH].fullmatch(words)
-    if reach:
-        return Objective(Kind.REACH, goal=_places(reach.group("goal")))
-    safety = _QUERIES[Kind.SAFETY].fullmatch(words)
-    if safety:
-        return Objective(Kind.SAFETY, bad=_places(safety.group("bad")))
-    both = _QUERIES[Kind.REACH_WHILE_SAFE].fullmatch(words)
-    if both:
-        return Objective(Kind.REACH_WHILE_SAFE, goal=_places(both.group("goal")), bad=_places(both.group("bad")))
+    for kind, query in _QUERIES.items():
+        found = query.fullmatch(_uncommented(text, ""))
+        if found:
+            parts = {name: _places(part) for name, part in found.groupdict().items()}
+            return Objective(kind, parts.get("goal", ()), parts.get("bad", ()))
     hint = "control: A<> x.win, control: A[] not(x.lose) or control: A[ not(x.lose) U y.win ], and only one of them"
     lines = text.rstrip().split("\n")
     span = Span(file, 1, 1, len(lines), len(lines[-1]) + 1)

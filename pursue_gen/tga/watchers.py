@@ -49,10 +49,8 @@ def with_watchers(network: Network, watchers: Iterable[Watcher]) -> Network:
 def watched_by(network: Network, watcher: Watcher) -> Optional[Automaton]:
     """The automaton of a watcher. None where its names are taken, where the objective has no deadline or sets a
     variable, where it would watch the same, or in the middle of a play."""
-    taken = {*network.clocks, *network.channels, *(name for name, _ in network.variables)}
-    taken.update(automaton.name for automaton in network.automata)
     watched = next((each for each in network.automata if each.name == watcher.objective), None)
-    if network.start or watched is None or {watcher.name, watcher.clock} & taken or not _has_deadline(watched):
+    if network.start or watched is None or {watcher.name, watcher.clock} & network.names or not _has_deadline(watched):
         return None
     (clock,) = watched.clocks
     channels, variables = _only_of_others(network, watcher.team)
@@ -71,7 +69,7 @@ def _has_deadline(automaton: Automaton) -> bool:
     """True for an automaton with a deadline, its only clock, that sends, tests no clock, and sets nothing."""
     if {location.name for location in automaton.locations} != {IDLE, AT_RISK, LOSE} or len(automaton.clocks) != 1:
         return False
-    return not any(e.assign or e.guard.clocks or (e.sync is not None and e.sync.sends) for e in automaton.edges)
+    return not any(e.assign or e.guard.clocks or e.sent is not None for e in automaton.edges)
 
 
 def _only_of_others(network: Network, team: Iterable[str]) -> Tuple[Set[str], Set[str]]:
@@ -80,10 +78,8 @@ def _only_of_others(network: Network, team: Iterable[str]) -> Tuple[Set[str], Se
     assigned: Tuple[Set[str], Set[str]] = set(), set()
     for automaton in network.automata:
         other = is_agent(automaton) and automaton.name not in team and any(e.controllable for e in automaton.edges)
-        for edge in automaton.edges:
-            assigned[other].update(name for name, _ in edge.assign)
-            if edge.sync is not None and edge.sync.sends:
-                sent[other].add(edge.sync.channel)
+        assigned[other].update(automaton.assigned)
+        sent[other].update(edge.sent for edge in automaton.edges if edge.sent is not None)
     return sent[True] - sent[False], assigned[True] - assigned[False]
 
 
@@ -91,7 +87,7 @@ def _narrowed(edges: Iterable[Edge], channels: AbstractSet[str], variables: Abst
     """The edges as if nobody sent on these channels: towards the risk whatever these variables are, away from it only
     because of others."""
     for edge in edges:
-        if edge.sync is not None and edge.sync.channel in channels:
+        if edge.channel in channels:
             continue
         clauses = edge.guard.integers
         tests = [(clause, tuple(test for test in clause if test.variable not in variables)) for clause in clauses]
@@ -111,11 +107,6 @@ def _renamed(location: Location, clock: str, new: str) -> Location:
 def _is_kept_at_start(network: Network, watched: Automaton, team: Iterable[str]) -> bool:
     """True if one of the team keeps the objective at the start; or none of them ever breaks it by going away."""
     feared = {edge.sync.channel for edge in watched.edges if edge.target == AT_RISK and edge.sync is not None}
-    leaving = [
-        (automaton.initial, edge)
-        for automaton in network.automata
-        if automaton.name in team
-        for edge in automaton.edges
-        if edge.sync is not None and edge.sync.channel in feared
-    ]
+    robots = [automaton for automaton in network.automata if automaton.name in team]
+    leaving = [(a.initial, edge) for a in robots for edge in a.edges if edge.channel in feared]
     return not leaving or any(edge.source == initial for initial, edge in leaving)

@@ -7,6 +7,7 @@ analysis of timed games, CONCUR 2005), here with a closed interval: a tie is los
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Iterable, List, Sequence, Tuple
 
 from pursue_gen.zones.dbm import Dbm, Number
@@ -104,20 +105,12 @@ class Federation:
     def reduced(self) -> Federation:
         """The same points in fewer zones: none inside another, and no two whose union is convex."""
         zones = list(_maximal(self.zones))
-        merged = len(zones) > 1
-        while merged:
-            merged = False
-            for k in range(len(zones)):
-                for n in range(k + 1, len(zones)):
-                    hull = zones[k].joined(zones[n])
-                    if hull is not None:
-                        rest = zones[:k] + zones[k + 1 : n] + zones[n + 1 :]
-                        zones = [zone for zone in rest if not hull.includes(zone)] + [hull]
-                        merged = True
-                        break
-                if merged:
-                    break
-        return Federation(tuple(zones))
+        while True:
+            hulls = (one.joined(other) for one, other in combinations(zones, 2))
+            hull = next((each for each in hulls if each is not None), None)
+            if hull is None:
+                return Federation(tuple(zones))
+            zones = [zone for zone in zones if not hull.includes(zone)] + [hull]
 
     def disjoint(self) -> Tuple[Dbm, ...]:
         """The same points in zones that do not overlap, few of them."""

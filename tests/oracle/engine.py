@@ -19,13 +19,12 @@ import itertools
 from abc import ABC, abstractmethod
 from collections import deque
 from dataclasses import dataclass
-from typing import ClassVar, Deque, Dict, Iterable, List, Optional, Set, Tuple
+from typing import ClassVar, Deque, Dict, Iterable, List, Optional, Sequence, Set, Tuple
 
-from pursue_gen.synthesis.engine import Counts, Engine, Outcome
-from pursue_gen.synthesis.game import Action, Game, RawBlock, State, is_bad, is_goal
+from pursue_gen.synthesis.engine import Engine, Outcome, Stats
+from pursue_gen.synthesis.game import Action, Game, RawBlock, State, initial_state, is_bad, is_goal, joint_moves
 from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor, Limits, Listener
 from pursue_gen.synthesis.relaxed import RelaxedPlanner
-from pursue_gen.synthesis.strategy_from import followed
 from pursue_gen.zones.dbm import Dbm
 from pursue_gen.zones.federation import Federation, predt
 from tests.oracle.zone_graph import Node, Transition, ZoneGraph
@@ -66,7 +65,9 @@ class ReferenceEngine(Engine):
                 blocks = tuple(blocks[k] for k in followed(game, blocks))
         except MemoryError:
             raise monitor.stopped("memory") from None
-        return Outcome(won, blocks, None, fixpoint.counts(), limits.now() - start)
+        zones = sum(len(federation.zones) for federation in fixpoint.found)
+        stats = Stats(self.name, len(fixpoint.graph.nodes), zones, limits.now() - start, work=monitor.work)
+        return Outcome(won, blocks, None, stats)
 
 
 class _Fixpoint(ABC):
@@ -74,7 +75,6 @@ class _Fixpoint(ABC):
 
     def __init__(self, graph: ZoneGraph) -> None:
         self.graph = graph
-        self.evaluations = 0
         self.found: List[Federation] = []
         self.rest: List[Federation] = []
         self._queue: Deque[int] = deque()
@@ -102,7 +102,6 @@ class _Fixpoint(ABC):
         number = self._queue.popleft()
         self._queued.discard(number)
         self.check(1 + self._pairs(number))
-        self.evaluations += 1
         return number
 
     def check(self, work: int = 1) -> None:
@@ -149,11 +148,6 @@ class _Fixpoint(ABC):
             if move.target >= 0 and targets[move.target]:
                 result = result.union(self.graph.pre(number, move, targets[move.target]))
         return result.reduced()
-
-    def counts(self) -> Counts:
-        """What it took so far."""
-        zones = sum(len(federation.zones) for federation in self.found)
-        return Counts(len(self.graph.nodes), zones, self.evaluations, work=self.graph.monitor.work)
 
 
 def _union(parts: Iterable[Federation]) -> Federation:
@@ -305,7 +299,6 @@ class _Soonest(_Reach):
             if self._due.get(number) == self._now:
                 del self._due[number]
                 self.check(1 + self._pairs(number))
-                self.evaluations += 1
                 return number
         return None
 
@@ -384,3 +377,21 @@ class _Safety(_Fixpoint):
                 pieces: List[Piece] = [(zone, None) for zone in safe.minus(threatened).disjoint()]
                 blocks.append(_block(node.state, [*pieces, *_assign(threatened, cpre)]))
         return tuple(blocks)
+
+
+def followed(game: Game, blocks: Sequence[RawBlock]) -> List[int]:
+    """The numbers of the blocks whose discrete states a play by the strategy can come to (whatever the clocks)."""
+    by_state = {State(tuple(block[0]), tuple(block[1])): number for number, block in enumerate(blocks)}
+    start = initial_state(game)
+    met: Set[State] = {start}
+    waiting: Deque[State] = deque([start])
+    while waiting:
+        state = waiting.popleft()
+        if is_goal(game, state) or is_bad(game, state) or state not in by_state:
+            continue
+        commanded = {tuple(action) for _, action in blocks[by_state[state]][2] if action is not None}
+        for move in joint_moves(game, state):
+            if move.target not in met and (not move.controllable or move.edges in commanded):
+                met.add(move.target)
+                waiting.append(move.target)
+    return [number for state, number in by_state.items() if state in met]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, field
-from typing import Callable, Deque, Dict, Iterable, List, Optional, Sequence, Set
+from typing import Callable, Deque, Dict, Iterable, List, Optional, Sequence, Set, Tuple
 
 from pursue_gen.synthesis.game import (
     Game,
@@ -22,7 +22,7 @@ from pursue_gen.synthesis.game import (
     start_zone,
 )
 from pursue_gen.synthesis.limits import LimitMonitor
-from pursue_gen.zones.dbm import Dbm, complement
+from pursue_gen.zones.dbm import Dbm, complement, constant
 from pursue_gen.zones.federation import Federation
 
 Chooser = Callable[[State, Sequence[JointMove]], Sequence[JointMove]]
@@ -66,6 +66,7 @@ class ZoneGraph:
         self._waiting: Deque[int] = deque()
         self._queued: Set[int] = set()
         self.start = start_zone(game)
+        self._max_constants = max_constants(game)
         within = Dbm.universe(game.dim).constrained_all(invariant(game, initial_state(game)))
         if within is not None and within.includes(self.start):
             self._enter(initial_state(game), self.start)
@@ -182,7 +183,17 @@ class ZoneGraph:
     def _closed(self, zone: Dbm, within: Dbm) -> Dbm:
         """The zone and its future within the invariant, extrapolated."""
         future = _common(zone.up(), within)
-        return _common(future.extrapolated(self.game.max_constants).up(), within)
+        return _common(future.extrapolated(self._max_constants).up(), within)
+
+
+def max_constants(game: Game) -> Tuple[int, ...]:
+    """The largest scaled constant that each clock is compared with, for extrapolation; 0 for the constant 0."""
+    largest = [0] * game.dim
+    compared = [(i or j, bound) for edge in game.edges for i, j, bound in edge.bounds]
+    compared += [pair for automaton in game.automata for invariant in automaton.invariants for pair in invariant]
+    for clock, bound in compared:
+        largest[clock] = max(largest[clock], abs(constant(bound)))
+    return tuple(largest)
 
 
 def _common(a: Dbm, b: Dbm) -> Dbm:

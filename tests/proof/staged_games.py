@@ -227,8 +227,8 @@ def _won(
         return []
     if verdict.strategy is None:
         return []
-    back = {there: here for here, there in ending.changed.items()}
-    return list(with_edges(_without_begin(verdict.strategy), goal[0], back))
+    back = {(name, there): here for (name, here), there in ending.changed.items()}
+    return list(with_edges(_without_begin(verdict.strategy), back))
 
 
 def _for_others(draw: st.DrawFn, place: Place, reached: Sequence[str]) -> Set[str]:

@@ -65,8 +65,7 @@ def twin() -> None:
 
 def strategy_for(game: Game, reaction: Fraction = DELAY) -> Optional[Strategy]:
     crowd = crowd_of(*game)
-    found = None if crowd is None else won_by_passages(*game, crowd, reaction, SolveOptions())
-    return None if found is None else found[1]
+    return None if crowd is None else won_by_passages(*game, crowd, reaction, SolveOptions())
 
 
 def judged(game: Game, strategy: Strategy, reaction: Fraction = DELAY) -> Optional[ProofReport]:

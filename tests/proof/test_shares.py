@@ -16,7 +16,6 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.checker import LIMIT, ProofReport, verify
-from pursue_gen.proof.shares import names_of
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules, played
@@ -158,14 +157,14 @@ def test_each_robot_keeps_a_promise_and_nobody_waits_for_those_whom_it_does_not_
     network, objective, strategy = in_shares(BUILDINGS)
     assert strategy.shares == ((("obj", "lose"),), (("obj2", "lose"),))
     firsts = [strategy.blocks[strategy.numbers_of(k, share[0])[0]] for k, share in enumerate(strategy.shares)]
-    assert [names_of(block)[0] for block in firsts] == [{"bot1", "obj"}, {"bot2", "obj2"}]
+    assert [block.state.names[0] for block in firsts] == [{"bot1", "obj"}, {"bot2", "obj2"}]
     assert reason(network, objective, strategy) == ""
 
 
 def test_who_follows_a_person_need_not_know_where_other_robots_are() -> None:
     network, objective, strategy = in_shares(FOLLOWED)
     firsts = [strategy.blocks[strategy.numbers_of(k, share[0])[0]] for k, share in enumerate(strategy.shares)]
-    seen = [names_of(block)[0] for block in firsts]
+    seen = [block.state.names[0] for block in firsts]
     assert {"bot1", "guest", "obj", "obj2"} in seen
     assert reason(network, objective, strategy) == ""
 
@@ -252,7 +251,7 @@ def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     blocks[number] = changed
     if block.state.locations and draw(st.booleans()):
         name = draw(st.sampled_from([name for name, _ in block.state.locations]))
-        blocks = [_without(each, name) if names_of(each) == names_of(block) else each for each in blocks]
+        blocks = [_without(each, name) if each.state.names == block.state.names else each for each in blocks]
         blocks = list({each.state: each for each in blocks}.values())
     shares = strategy.shares
     if len(shares) > 1 and draw(st.booleans()):

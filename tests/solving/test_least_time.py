@@ -23,10 +23,11 @@ from pursue_gen.proof.worst_case import (
     with_deadline,
     worst_case,
 )
+from pursue_gen.solving.deadlines import fastest_solution
 from pursue_gen.solving.least_time import TOLERANCE, fastest, unscaled
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import IDEAL, Rules
-from pursue_gen.solving.solution import fastest_solution, guaranteed, solution
+from pursue_gen.solving.solution import guaranteed, solution
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.solve import solve

@@ -18,11 +18,12 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import partition
 from pursue_gen.partition.strategy_data import cover_data, strategy_data
 from pursue_gen.proof.margin import strategy_margin
+from pursue_gen.solving.deadlines import fastest_solution
 from pursue_gen.solving.given_plan import trials
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL
-from pursue_gen.solving.solution import Solution, fastest_solution, guaranteed, solution
+from pursue_gen.solving.solution import Solution, guaranteed, solution
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.tga import scenario_objective, translate

@@ -9,8 +9,9 @@ import pytest
 from pursue_gen.explanation.explain import explain, render
 from pursue_gen.language import parse
 from pursue_gen.proof.checker import verify
+from pursue_gen.solving.deadlines import fastest_solution
 from pursue_gen.solving.rules import DEFAULT
-from pursue_gen.solving.solution import fastest_solution, guaranteed, solve_scenario
+from pursue_gen.solving.solution import guaranteed, solve_scenario
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tools.simulation.mission import simulate_mission

@@ -174,7 +174,7 @@ reach_objective: do hand
     assert crowd is not None
     found = won_by_passages(network, objective, crowd, DEFAULT.reaction, SolveOptions())
     assert found is not None
-    assert verify(network, objective, found[1], DEFAULT.reaction).ok
+    assert verify(network, objective, found, DEFAULT.reaction).ok
 
 
 def test_objectives_that_orders_of_passage_keep_do_matter() -> None:

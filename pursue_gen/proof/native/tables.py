@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.language.numbers import Number
 from pursue_gen.synthesis.limits import LimitMonitor
@@ -62,7 +62,8 @@ class Tables:
 
     def numbers(self, values: Mapping[ZoneKey, int], default: int) -> List[int]:
         """The values of all zones, in the tables' order."""
-        return [values.get(key, default) for b in range(len(self.strategy.blocks)) for key in self._keys(b)]
+        keys = (key for b in range(len(self.strategy.blocks)) for key in self.strategy.keys_of(b))
+        return [values.get(key, default) for key in keys]
 
     def keys(self, numbers: Sequence[int]) -> List[ZoneKey]:
         """Where the zones with these numbers, which rise, stand in the strategy."""
@@ -73,15 +74,9 @@ class Tables:
             while number >= self.firsts[b + 1]:
                 b += 1
                 keys = []
-            keys = keys or self._keys(b)
+            keys = keys or self.strategy.keys_of(b)
             found.append(keys[number - self.firsts[b]])
         return found
-
-    def _keys(self, b: int) -> List[ZoneKey]:
-        block = self.strategy.blocks[b]
-        parts: List[Tuple[Union[str, int], int]] = [("wait", len(block.wait))]
-        parts += [(k, len(command.zones)) for k, command in enumerate(block.commands)]
-        return [(b, part, n) for part, count in parts for n in range(count)]
 
 
 _latest: List[Tables] = []

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Callable, ClassVar, Collection, Dict, List, Optional, Tuple
 
-from pursue_gen.synthesis.engine import NOT_GUESSED, Counts, Engine, Outcome
+from pursue_gen.synthesis.engine import Engine, Outcome, Stats, not_guessed
 from pursue_gen.synthesis.game import Action, Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, NOTHING_YET, Limits, Listener, Progress, limit_reached
 from pursue_gen.synthesis.native import not_built
@@ -62,11 +62,9 @@ class NativeEngine(Engine):
         self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None, late: Collection[str] = ()
     ) -> Outcome:
         """Try simple policies, see `Engine`."""
-        if game.goal:
-            return NOT_GUESSED
         put_off = [k for k, automaton in enumerate(game.automata) if automaton.name in late]
-        if late and not put_off:
-            return NOT_GUESSED
+        if game.goal or (late and not put_off):
+            return not_guessed(self)
         return self._run(game, limits, progress, partial(core().guess, late=put_off))
 
     def solve(
@@ -110,14 +108,8 @@ def _outcome(game: Game, result: Dict[str, Any]) -> Outcome:
         for d, pieces in states
     ]
     ranks = tuple(tuple(rank for _, _, rank in pieces) for _, pieces in states)
-    counts = Counts(
-        discrete_states=result["discrete_states"],
-        zones=result["zones"],
-        evaluations=result["evaluations"],
-        symbolic_states=result["symbolic_states"],
-        work=result["work"],
-    )
-    return Outcome(result["won"], tuple(blocks), ranks, counts, result["seconds"])
+    counts = (result[count] for count in ("discrete_states", "zones", "seconds", "symbolic_states", "work"))
+    return Outcome(result["won"], tuple(blocks), ranks, Stats(NativeEngine.name, *counts))
 
 
 def _matrix(bounds: bytes, known: Dict[bytes, Tuple[int, ...]]) -> Tuple[int, ...]:
