@@ -49,7 +49,7 @@ DECLARED: Mapping[str, str] = {token: kind.declares for token, kind in STATEMENT
 TAIL = "TAIL"
 """The token of the query that the original's tools leave behind the objective, which is no statement."""
 
-_ALL = (*(word for kind in STATEMENTS.values() for word in kind.words), *WORDS)
+_ALL = (*(word for kind in STATEMENTS.values() for word in kind.own_words), *WORDS)
 
 KEYWORDS: Dict[str, str] = {word.token: word.text for word in _ALL}
 """The words of the language, by token."""

@@ -55,7 +55,7 @@ def unknown_statement(chunk: Sequence[Token], span: Span) -> Diagnostic:
     if _invisible(token):
         return _unseen(token, span)
     if token.type in ("HUMAN", "CONTROLLABLE", "MOBILE", "RADIUS", "TOLERANCE", "INFLATION"):
-        hint = f"it belongs to an agent: {STATEMENTS['AGENT'].form}"
+        hint = f"it belongs to an agent: {STATEMENTS['AGENT'].form()}"
     elif token.type in KEYWORDS and _MEANT.get(str(token)) not in _STARTERS:
         hint = f"{token} stands inside a statement; one begins with " + _list(list(_STARTERS))
     else:
@@ -151,7 +151,7 @@ def _hint(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     if token.type == "RPAR":
         return "this `)` has no `(`"
     if token.type in ("TRUE_IF", "FALSE_IF") and "COMMA" in expected:
-        return "put a comma behind true or false: " + STATEMENTS["STATE"].form
+        return "put a comma behind true or false: " + STATEMENTS["STATE"].form()
     if token.type == "COLON" and "COLON" not in expected:
         return f"delete the colon behind {chunk[index - 1]}; {_form(chunk)}"
     return _meant(chunk, index, expected)
@@ -192,8 +192,8 @@ def _stray(chunk: Sequence[Token], index: int) -> str:
 def _meant(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     """Which word was meant, or what is missing before it."""
     token, statement = chunk[index], kind_of(chunk)
-    if statement in ("EVENT", "AGENT") and f" {token} " in STATEMENTS[statement].form:
-        return f"its parts come in this order: {STATEMENTS[statement].form}"
+    if statement in ("EVENT", "AGENT") and f" {token} " in STATEMENTS[statement].form():
+        return f"its parts come in this order: {STATEMENTS[statement].form()}"
     meant = _MEANT.get(str(token).lower(), "")
     if any(KEYWORDS.get(kind) == meant for kind in expected):
         return f"did you mean {meant}?"
@@ -212,7 +212,7 @@ def _meant(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
 
 
 def _form(chunk: Sequence[Token]) -> str:
-    return "the form is: " + STATEMENTS[kind_of(chunk)].form if kind_of(chunk) in STATEMENTS else "delete it"
+    return "the form is: " + STATEMENTS[kind_of(chunk)].form() if kind_of(chunk) in STATEMENTS else "delete it"
 
 
 def _near(word: str, words: Tuple[str, ...]) -> str:

@@ -42,10 +42,6 @@ class TreeReader:
         token = tree.children[0]
         return self._use(str(token), token)
 
-    def ref_or_none(self, tree: Any) -> Optional[Ref]:
-        """A name, where there is one."""
-        return None if tree is None else self.ref(tree)
-
     def refs(self, tree: Any) -> Tuple[Ref, ...]:
         """A list of names; none where there is no list."""
         return tuple(self.ref(child) for child in tree.children) if tree is not None else ()
@@ -69,10 +65,6 @@ class TreeReader:
         self.findings.append(no_number(token, value, MOST, self.at(token)))
         return 1
 
-    def number_or_none(self, token: Optional[Token]) -> Optional[Number]:
-        """The token's value, where there is one."""
-        return None if token is None else self.number(token)
-
     def count(self, token: Token) -> int:
         """The token's value, which says how often, or a rank; 1 after a complaint."""
         value = read_number(token)
@@ -84,20 +76,12 @@ class TreeReader:
     def window(self, tree: Any) -> Tuple[Number, Optional[Number]]:
         """The numbers of `5 to 8`; one alone has no second one."""
         low, _, high = tree.children
-        return self.number(low), self.number_or_none(high)
+        return self.number(low), None if high is None else self.number(high)
 
     def condition(self, tree: Any) -> Condition:
         """A condition."""
         return condition_of(tree, self.ref)
 
-    def condition_or_none(self, tree: Any) -> Optional[Condition]:
-        """A condition, where there is one."""
-        return None if tree is None else self.condition(tree)
-
     def event_or_condition(self, tree: Any) -> EventOrCondition:
         """The event that is named, or the condition."""
         return self.ref(tree) if tree.data == "ref" else self.condition(tree)
-
-    def label(self, token: Optional[Token]) -> Optional[str]:
-        """What people read, where it is given."""
-        return None if token is None else bare(token)

@@ -22,6 +22,6 @@ KINDS: Mapping[str, Type[Assumption]] = {
 """The kinds of assumptions, by their rules in the grammar."""
 
 NUMBERED: Mapping[str, Type[Assumption]] = {
-    word.upper(): kind for kind in KINDS.values() for word, field in kind.fields() if field == kind.number
+    hole.begins: kind for kind in KINDS.values() for hole in kind.template.holes if kind.number in hole.fields
 }
 """The kinds that have a number, by the word before it, as the token that it is."""

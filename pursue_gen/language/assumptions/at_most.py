@@ -10,6 +10,8 @@ from pursue_gen.language.assumptions.base import AboutOne, Setting
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.template import Template
+from pursue_gen.language.word import Form, Word
 
 MOST_TIMES = 100
 """The most times that an assumption may allow: each is a value of a variable of its own."""
@@ -23,10 +25,9 @@ class AtMost(AboutOne):
     event: Ref
     times: int
     span: Span = NOWHERE
-    title: ClassVar[str] = "how often somebody does something"
-    written: ClassVar[str] = "{agent} does {event} at_most {times} times"
-    example: ClassVar[Mapping[str, str]] = {"agent": "guest", "event": "call", "times": "2"}
-    meanings: ClassVar[Mapping[str, str]] = {"does": "The event that the assumption is about."}
+    template: ClassVar[Template] = Template("{agent=guest} does {event=call} at_most {times:count=2} times")
+    own_words: ClassVar[Tuple[Word, ...]] = (Word("does", "The event that the assumption is about.", True),)
+    forms: ClassVar[Tuple[Form, ...]] = (Form("how often somebody does something", template.to_fill_in),)
     number: ClassVar[str] = "times"
     nearest: ClassVar[int] = MOST_TIMES
     counts: ClassVar[bool] = True

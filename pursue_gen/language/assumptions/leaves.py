@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Mapping, Optional, Sequence
+from typing import ClassVar, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.assumptions.base import AboutOne, Setting
 from pursue_gen.language.numbers import Number, whole_below
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.template import Template
+from pursue_gen.language.word import Form, Word
 
 SHORTEST_STAY = 2
 """Time units: an agent rests for one before it may set off."""
@@ -23,10 +25,9 @@ class Leaves(AboutOne):
     place: Ref
     time: Number
     span: Span = NOWHERE
-    title: ClassVar[str] = "how long somebody stays"
-    written: ClassVar[str] = "{agent} leaves {place} within {time}"
-    example: ClassVar[Mapping[str, str]] = {"agent": "visitor", "place": "hall", "time": "30"}
-    meanings: ClassVar[Mapping[str, str]] = {"leaves": "The place that it leaves in time."}
+    template: ClassVar[Template] = Template("{agent=visitor} leaves {place:POI=hall} within {time:number=30}")
+    own_words: ClassVar[Tuple[Word, ...]] = (Word("leaves", "The place that it leaves in time.", True),)
+    forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody stays", template.to_fill_in),)
     number: ClassVar[str] = "time"
     nearest: ClassVar[int] = SHORTEST_STAY
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Mapping, Optional, Sequence
+from typing import ClassVar, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.assumptions.base import AboutOne, Setting
 from pursue_gen.language.numbers import Number, whole_above
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.template import Template
+from pursue_gen.language.word import Form
 
 
 @dataclass(frozen=True)
@@ -20,9 +22,8 @@ class NotBefore(AboutOne):
     event: Ref
     time: Number
     span: Span = NOWHERE
-    title: ClassVar[str] = "from when on somebody does something"
-    written: ClassVar[str] = "{agent} does {event} after {time}"
-    example: ClassVar[Mapping[str, str]] = {"agent": "guest", "event": "call", "time": "60"}
+    template: ClassVar[Template] = Template("{agent=guest} does {event=call} after {time:number=60}")
+    forms: ClassVar[Tuple[Form, ...]] = (Form("from when on somebody does something", template.to_fill_in),)
     number: ClassVar[str] = "time"
     nearest: ClassVar[int] = 1
 

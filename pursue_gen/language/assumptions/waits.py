@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
+from typing import ClassVar, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.assumptions.at_most import AtMost
@@ -11,6 +11,8 @@ from pursue_gen.language.assumptions.base import AboutOne, Assumption, Setting
 from pursue_gen.language.numbers import Number, whole_above
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.template import Template
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -21,13 +23,12 @@ class Waits(AboutOne):
     event: Ref
     time: Number
     span: Span = NOWHERE
-    title: ClassVar[str] = "how long somebody waits in between"
-    written: ClassVar[str] = "{agent} waits {time} between {event}"
-    example: ClassVar[Mapping[str, str]] = {"agent": "guest", "event": "call", "time": "5"}
-    meanings: ClassVar[Mapping[str, str]] = {
-        "waits": "How many units of time it waits at least.",
-        "between": "The event: from the end of one to the beginning of the next.",
-    }
+    template: ClassVar[Template] = Template("{agent=guest} waits {time:number=5} between {event=call}")
+    own_words: ClassVar[Tuple[Word, ...]] = (
+        Word("waits", "How many units of time it waits at least.", True),
+        Word("between", "The event: from the end of one to the beginning of the next.", True),
+    )
+    forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody waits in between", template.to_fill_in),)
     number: ClassVar[str] = "time"
     nearest: ClassVar[int] = 1
     counts: ClassVar[bool] = True  # whether it has happened: the first time is free

@@ -11,9 +11,16 @@ from pursue_gen.language.objectives.base import StatedObjective, Whole, Words
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.symbols import Role, Symbol
+from pursue_gen.language.template import Filling, Template
+from pursue_gen.language.tree_reader import TreeReader
+from pursue_gen.language.word import Form, Word
 
 MOST_EVENTS = 5
 """So many events stand behind one `do` at most: the order in which they happen is free, and each order counts."""
+
+
+def _things_text(events: Tuple[Ref, ...]) -> str:
+    return " and ".join(event.name for event in events)
 
 
 @dataclass(frozen=True)
@@ -31,11 +38,21 @@ class Reach(StatedObjective):
     limited_by: ClassVar[str] = "within"
     once: ClassVar[bool] = True
 
-    @property
-    def text(self) -> str:
-        after = f" after {self.after}" if self.after else ""
-        within = "" if self.within is None else f" within {self.within}"
-        return f"do {' and '.join(ref.name for ref in self.events)}{after}{within}"
+    template: ClassVar[Template] = Template(
+        "do {events:things=e1 and e2} [after {after:number=10}] [within {within:number=60}]",
+        things=Filling(
+            "things", TreeReader.refs, _things_text, "event", ("do", "and"), 'things: ref ("and" ref)*'
+        ),
+    )
+    note: ClassVar[str] = "or: do e1; after and within are optional"
+    own_words: ClassVar[Tuple[Word, ...]] = (
+        Word("do", "The event that is wanted."),
+        Word("after", "Later than so many units of time after the start."),
+    )
+    forms: ClassVar[Tuple[Form, ...]] = (
+        Form("achieve something once", "do {event}"),
+        Form("achieve several things in time", "do {event} and {event} within {=60}"),
+    )
 
     def sentence(self, shown: Callable[[str], str]) -> str:
         after = f" later than {units(self.after)} after the start" if self.after else ""
@@ -46,9 +63,6 @@ class Reach(StatedObjective):
 
     def broken(self, beside: Callable[[str], str]) -> str:
         return f"{self.words.due} not done within {self.within} of the start"
-
-    def names(self) -> Iterator[Tuple[str, Ref]]:
-        return (("event", ref) for ref in self.events)
 
     def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
         seen: Set[str] = set()

@@ -2,36 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Mapping, Tuple, Union
+from typing import ClassVar, Tuple
 
-from pursue_gen.language.objectives import KINDS, Safety
-from pursue_gen.language.statements.base import StatementKind
-from pursue_gen.language.tree_reader import TreeReader
+from pursue_gen.language.objectives import KINDS
+from pursue_gen.language.statements.base import Headed, forms_behind
 from pursue_gen.language.word import Form, Word
 
 
-class Objective(StatementKind):
+class Objective(Headed):
     """What always holds."""
 
-    words: ClassVar[Tuple[Word, ...]] = (
+    kinds = KINDS
+    own_words: ClassVar[Tuple[Word, ...]] = (
         Word(
             "objective",
             "What must always hold: an answer in time, an event that never happens, two agents who never meet.",
         ),
         *(word for kind in KINDS.values() for word in kind.own_words),
     )
-    grammar: ClassVar[str] = "\n".join(
-        (
-            f'safety: "objective" ":" ({" | ".join(KINDS)})',
-            *(f"{name}: {kind.grammar}" for name, kind in KINDS.items()),
-        )
-    )
-    form: ClassVar[str] = " · ".join(f"objective: {kind.form}" for kind in KINDS.values())
-    forms: ClassVar[Tuple[Form, ...]] = tuple(form for kind in KINDS.values() for form in kind.forms)
-    used: ClassVar[Mapping[str, str]] = {w: kind for each in KINDS.values() for w, kind in each.used.items()}
-    conditions_behind: ClassVar[Tuple[str, ...]] = tuple(w for kind in KINDS.values() for w in kind.conditions_behind)
-
-    @classmethod
-    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Union[Safety, Tuple[Safety, ...]]:
-        (tree,) = children
-        return KINDS[tree.data].read(reader, *tree.children, **at)
+    forms: ClassVar[Tuple[Form, ...]] = forms_behind("objective", KINDS)

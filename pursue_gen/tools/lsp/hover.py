@@ -60,7 +60,7 @@ def hover(document: Draft, offset: int) -> Optional[Hover]:
         return None
     start = start_of(token)
     if token.type in KEYWORDS:
-        form = f"\n\n```pursue\n{STATEMENTS[token.type].form}\n```" if token.type in STATEMENTS else ""
+        form = f"\n\n```pursue\n{STATEMENTS[token.type].form()}\n```" if token.type in STATEMENTS else ""
         return Hover(f"**{token}**: {MEANINGS[token.type]}{form}", start, start + len(token))
     number = read_number(token) if token.type == "NUMBER" else None
     if number is not None and part is not None and number <= MOST:
