@@ -14,7 +14,6 @@ from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import Patrol, Ref, Scenario
-from pursue_gen.language.wording import statement_text
 
 
 def written(scenario: Scenario) -> Scenario:
@@ -89,5 +88,5 @@ def _objectives(objectives: Iterable[pml.StatedObjective]) -> Iterator[str]:
     for objective in objectives:
         turns.append(objective)
         if not isinstance(objective, Patrol) or len(turns) >= len(objective.order):
-            yield statement_text(objective)
+            yield objective.full_text
             turns = []

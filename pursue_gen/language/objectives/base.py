@@ -69,6 +69,12 @@ class StatedObjective(Written):
     once: ClassVar[bool] = False
     """It is reached once, and its limit counts from the start; else each time that something becomes due."""
 
+    @property
+    def full_text(self) -> str:
+        """The whole statement, as in `objective: avoid e`."""
+        optional = f"optional {self.optional} " if self.optional else ""
+        return f"{optional}{self.word}: {self.text}"
+
     def sentence(self, shown: Callable[[str], str]) -> str:
         """What it wants. `shown`: what people read for a name."""
         raise NotImplementedError

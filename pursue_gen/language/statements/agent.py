@@ -39,6 +39,7 @@ class Agent(Labelled):
     inflation: Optional[Number] = None
 
     listed_in: ClassVar[str] = "agents"
+    symbol: ClassVar[str] = "Class"
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("agent", "Somebody who does something: a robot, a person, a thing with a will of its own."),
         Word(
@@ -79,3 +80,16 @@ class Agent(Labelled):
     def is_robot(self) -> bool:
         """True for an agent that gets a controller of its own."""
         return self.controllable and not self.human
+
+    @property
+    def kind_words(self) -> str:
+        """What it is, in words."""
+        if not self.controllable:
+            return "not controlled"
+        return "a person who is instructed" if self.human else "a robot"
+
+    @property
+    def size_words(self) -> str:
+        """What is said of its size; "": nothing."""
+        size = {"radius": self.radius, "goal tolerance": self.tolerance, "inflation radius": self.inflation}
+        return ", ".join(f"{what} {metres} m" for what, metres in size.items() if metres is not None)

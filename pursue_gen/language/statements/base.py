@@ -66,6 +66,9 @@ class StatementKind(Written):
     parts: ClassVar[Tuple[str, ...]] = ()
     """The tokens that begin its parts, in their order, where each part can be written alone (`language.rewriting`)."""
 
+    symbol: ClassVar[str] = "Key"
+    """The kind of symbol that editors show for it, as the language server protocol calls it."""
+
     @classmethod
     def token(cls) -> str:
         """The token of the word that begins it."""

@@ -46,3 +46,9 @@ class Battery(StatementKind):
     note: ClassVar[str] = "recharges … is optional"
     forms: ClassVar[Tuple[Form, ...]] = (Form("a battery that is recharged at a place", template.to_fill_in),)
     second: ClassVar[str] = "capacity"
+
+    @property
+    def in_words(self) -> str:
+        """What it holds, what is used, and where it is recharged."""
+        text = f"battery of {self.capacity}, uses {self.uses} per unit"
+        return text if self.dock is None else f"{text}, recharges {self.recharges} per unit at {self.dock.shown}"

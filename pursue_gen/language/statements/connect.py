@@ -32,6 +32,7 @@ class Connection(StatementKind):
     only_if: Optional[Condition] = None
 
     listed_in: ClassVar[str] = "connections"
+    symbol: ClassVar[str] = "Interface"
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("connect", "A way between two places, in both directions unless it is one_way. Write it once."),
         Word(

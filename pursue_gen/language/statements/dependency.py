@@ -22,6 +22,7 @@ class Dependency(StatementKind):
     span: Span = NOWHERE
 
     listed_in: ClassVar[str] = "dependencies"
+    symbol: ClassVar[str] = "Operator"
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("stateDependency", "An event that is allowed only while a state has a value."),
     )

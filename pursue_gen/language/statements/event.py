@@ -36,6 +36,7 @@ class Event(Labelled):
     label: Optional[str] = None
 
     listed_in: ClassVar[str] = "events"
+    symbol: ClassVar[str] = "Event"
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("event", "Something that can happen: what an agent does, alone or with a partner."),
         Word("collaborative", "It takes two at one place: one who can do it, and one who reacts to it."),

@@ -39,6 +39,7 @@ class Poi(Labelled):
     label: Optional[str] = None
 
     listed_in: ClassVar[str] = "pois"
+    symbol: ClassVar[str] = "Constant"
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("poi", "A place where something can happen, or where ways meet."),
         Word("label", "What people read in place of the name: any text without double quotes.", True),

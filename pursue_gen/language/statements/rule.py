@@ -91,6 +91,7 @@ class Rule(StatementKind):
     each: str = ""
 
     listed_in: ClassVar[str] = "rules"
+    symbol: ClassVar[str] = "Struct"
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("rule", "An order of events, round after round: each may happen only when it is its turn."),
         Word("for", "A rule for each of several: each of them has its own turn."),

@@ -37,6 +37,7 @@ class State(StatementKind):
     span: Span = NOWHERE
 
     listed_in: ClassVar[str] = "states"
+    symbol: ClassVar[str] = "Boolean"
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("state", "Something that is true or false, and that events change."),
         Word("initially", "The value at the start, true or false."),

@@ -16,7 +16,7 @@ from pursue_gen.language.kinds import DECLARED, RESERVED, STATEMENTS
 from pursue_gen.language.names import KINDS
 from pursue_gen.language.navigation import rename
 from pursue_gen.language.poses import read_poses
-from pursue_gen.language.rewriting import parts_of
+from pursue_gen.language.rewriting import parts_in, parts_of
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.usable import reserved
@@ -277,8 +277,7 @@ def _restate(document: Draft, values: Values) -> Done:
     """{statement, words}: other words for a statement."""
     number = fields.index_of(values, "statement", len(document.statements))
     words = fields.text_of(values, "words")
-    known = STATEMENTS.get(document.statements[number].kind)
-    if known is not None and known.parts:
+    if parts_in(document.statements[number].kind):
         raise refused("this statement has a form of its own", "load the page again")
     alone = Draft.of(words, document.file).statements
     if len(alone) != 1 or not words:

@@ -32,7 +32,6 @@ from pursue_gen.language.scenario import (
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.tokens import start_of
 from pursue_gen.language.tree_reader import MOST
-from pursue_gen.language.wording import battery_words, size_words
 
 _MOST_LINES = 12
 
@@ -212,10 +211,10 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
         known = {(way.a, way.b) for way in scenario.connections} | own  # the other direction takes as long
         movements = scenario.movements(agent).items()
         lines += _listed([f"- {a} to {b}: {lasts(window)}" for (a, b), window in movements if (a, b) in known])
-    lines += [f"- {words} on a map" for words in [size_words(agent)] if words]
+    lines += [f"- {words} on a map" for words in [agent.size_words] if words]
     lines += _if_any("can do", [ref.name for ref in agent.can_do])
     lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])
-    lines += [f"- {in_markdown(scenario, battery_words(b))}" for b in scenario.batteries if b.agent.name == agent.name]
+    lines += [f"- {in_markdown(scenario, b.in_words)}" for b in scenario.batteries if b.agent.name == agent.name]
     assumed = (each.clause for each in scenario.assumptions if each.is_about(agent.name))
     lines += [f"- assumed: {in_markdown(scenario, words)}" for words in assumed]
     for safety in scenario.safety:
