@@ -7,6 +7,7 @@ from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Option
 
 from pursue_gen.diagnostics import Diagnostic, error, warning
 from pursue_gen.language.names import events_used
+from pursue_gen.language.refs import twice
 from pursue_gen.language.scenario import (
     Agent,
     Both,
@@ -281,13 +282,10 @@ def check_rules(scenario: Scenario) -> Iterator[Diagnostic]:
             why = f"has {number} positions, because its parts come in any order"
             hint = "join fewer events with and, or put some of them in order with before"
             yield error("PML203", f"the rule {rule.name} {why}: expected at most {MOST_LOCATIONS}", rule.span, hint)
-        seen: Set[str] = set()
-        for ref in rule.events:
-            if ref.name in seen:
-                sound = False
-                message = f"the rule {rule.name} names {ref.name} twice: it could not tell whose turn it is"
-                yield error("PML160", message, ref.span, "name each event once; use two events or two rules")
-            seen.add(ref.name)
+        for ref in twice(rule.events):
+            sound = False
+            message = f"the rule {rule.name} names {ref.name} twice: it could not tell whose turn it is"
+            yield error("PML160", message, ref.span, "name each event once; use two events or two rules")
     if not sound:
         return
     yield from _each(scenario)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Iterator, Optional, Sequence, Set, Tuple
+from typing import Callable, ClassVar, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
 from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.objectives.base import StatedObjective, Whole, Words
-from pursue_gen.language.refs import Ref
+from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.language.template import Filling, Template
@@ -65,11 +65,8 @@ class Reach(StatedObjective):
         return f"{self.words.due} not done within {self.within} of the start"
 
     def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
-        seen: Set[str] = set()
-        for ref in self.events:
-            if ref.name in seen:
-                yield error("PML222", f"{ref.name} stands twice behind do", ref.span, "delete one: it happens once")
-            seen.add(ref.name)
+        for ref in twice(self.events):
+            yield error("PML222", f"{ref.name} stands twice behind do", ref.span, "delete one: it happens once")
         if len(self.events) > MOST_EVENTS:
             message = f"more than {MOST_EVENTS} events behind one do"
             yield error("PML224", message, self.span, "write several lines: all reach_objectives have to be reached")

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Optional, Tuple
+from typing import ClassVar, Iterator, Optional, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Span
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, warning
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.refs import Ref
+from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.statements.base import Labelled
 from pursue_gen.language.template import Template
 from pursue_gen.language.word import Form, Word
 
 SIZE = ("radius", "tolerance", "inflation")
 """The words of a robot's size, in the order in which they stand, which is that of the fields of `RobotSize`."""
+
+MOST_METRES = 100
+"""The largest number of a robot's size."""
 
 
 @dataclass(frozen=True)
@@ -93,3 +96,27 @@ class Agent(Labelled):
         """What is said of its size; "": nothing."""
         size = {"radius": self.radius, "goal tolerance": self.tolerance, "inflation radius": self.inflation}
         return ", ".join(f"{what} {metres} m" for what, metres in size.items() if metres is not None)
+
+    def check(self) -> Iterator[Diagnostic]:
+        yield from self._check_size()
+        if self.mobile is not None and self.mobile <= 0:
+            hint = "mobile is the time per unit of distance: write a number above 0, or delete it where nothing moves"
+            yield error("PML142", f"{self.name} would take no time for any way", self.span, hint)
+        if self.human and not self.controllable:
+            message = f"{self.name} is human but not controllable: human changes nothing here"
+            hint = "write human controllable for an ally who follows instructions, or delete human"
+            yield warning("PML180", message, self.span, hint)
+        for word, refs in (("can_do", self.can_do), ("reacts_to", self.reacts_to)):
+            for ref in twice(refs):
+                yield error("PML156", f"{self.name} has {ref.name} twice behind {word}", ref.span, "delete one")
+
+    def _check_size(self) -> Iterator[Diagnostic]:
+        """A size of what is no robot, or of none that there is."""
+        said = {word: number for word, number in ((word, getattr(self, word)) for word in SIZE) if number is not None}
+        if said and not self.is_robot:
+            hint = f"write controllable behind {self.name} (and no human), or delete {' and '.join(said)}"
+            yield error("PML148", f"{self.name} is no robot: nothing is sent to places that need room", self.span, hint)
+        for word, number in said.items():
+            if number > MOST_METRES:
+                message = f"{self.name} has {word} {number}: expected {MOST_METRES} metres at most"
+                yield error("PML148", message, self.span, f"write {word} in metres, such as 0.3")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Dict, Iterator, Mapping, Optional, Tuple, Type
 
-from pursue_gen.diagnostics import Span
+from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language.conditions import Condition
+from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.template import Template
 from pursue_gen.language.tree_reader import TreeReader
@@ -98,6 +99,10 @@ class StatementKind(Written):
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Any:
         return super().read(reader, *children, span=reader.at(children[0]) if cls.declares else at["span"])
 
+    def check(self) -> Iterator[Diagnostic]:
+        """What is wrong with it, whatever else stands in the scenario."""
+        return iter(())
+
 
 class Labelled(StatementKind):
     """A kind of statement that declares something with a name and, if it has one, a label, which people read; it is the
@@ -140,6 +145,14 @@ class Headed(StatementKind):
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Any:
         (tree,) = children
         return cls.kinds[tree.data].read(reader, *tree.children, **at)
+
+
+def check_window(name: str, low: Number, high: Number, word: str, span: Span) -> Iterator[Diagnostic]:
+    """An error where nothing lies between the two numbers behind a word."""
+    if high <= low:
+        message = f"{name} ends later than {low} and at {high} at the latest: there is no such time"
+        hint = f"write the smaller number first: {word} {high} to {max(low, exact(high + 1))}"
+        yield error("PML200", message, span, hint)
 
 
 def forms_behind(word: str, kinds: Mapping[str, Type[Any]]) -> Tuple[Form, ...]:

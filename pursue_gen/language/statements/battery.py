@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Optional, Tuple
+from typing import ClassVar, Iterator, Optional, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Span
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.template import Template
 from pursue_gen.language.word import Form, Word
+
+MOST_CAPACITY = 10_000
+"""The largest capacity: levels are values of a variable."""
 
 
 @dataclass(frozen=True)
@@ -52,3 +55,13 @@ class Battery(StatementKind):
         """What it holds, what is used, and where it is recharged."""
         text = f"battery of {self.capacity}, uses {self.uses} per unit"
         return text if self.dock is None else f"{text}, recharges {self.recharges} per unit at {self.dock.shown}"
+
+    def check(self) -> Iterator[Diagnostic]:
+        numbers = [("capacity", self.capacity), ("uses", self.uses)]
+        for word, number in numbers if self.dock is None else [*numbers, ("recharges", self.recharges)]:
+            if number <= 0:
+                hint = f"leave out {word} … at" if word == "recharges" else "delete this line if it does not matter"
+                yield error("PML312", f"{word} 0: expected more than 0", self.span, hint)
+        if self.capacity > MOST_CAPACITY:
+            message = f"capacity {self.capacity}: expected {MOST_CAPACITY} or less"
+            yield error("PML312", message, self.span, "choose a larger unit, for example per cent")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Iterator, Optional, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Span
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.conditions import Condition
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
@@ -68,3 +68,10 @@ class Connection(StatementKind):
     def directions(self) -> Tuple[Tuple[str, str], ...]:
         """From and to, for each direction in which it can be taken; the declared one first."""
         return ((self.a, self.b),) if self.one_way else ((self.a, self.b), (self.b, self.a))
+
+    def check(self) -> Iterator[Diagnostic]:
+        if self.distance <= 0:
+            message = f"the way from {self.a} to {self.b} has no length"
+            yield error("PML140", message, self.span, "write distance and a number above 0")
+        if self.a == self.b:
+            yield error("PML145", f"this connects {self.a} with itself", self.span, "name two different places")

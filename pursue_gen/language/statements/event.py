@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Optional, Tuple
+from typing import ClassVar, Iterator, Optional, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Span
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.conditions import Condition
 from pursue_gen.language.numbers import Number, Window, window_of
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.base import Labelled
+from pursue_gen.language.statements.base import Labelled, check_window
 from pursue_gen.language.template import Template
 from pursue_gen.language.word import Form, Word
+
+MOST_TIMES = 100
+"""How often an event can happen at most that is counted: each count is a location of an automaton."""
 
 
 @dataclass(frozen=True)
@@ -85,3 +88,15 @@ class Event(Labelled):
     def window(self) -> Optional[Window]:
         """Between which times it ends; None for an event that is instantaneous."""
         return None if self.duration is None else window_of(self.duration, self.latest)
+
+    def check(self) -> Iterator[Diagnostic]:
+        name, duration, most = self.name, self.duration, self.at_most
+        if duration is not None and duration <= 0 and self.latest is None:
+            hint = "write duration and a number above 0, or delete duration: then it takes no time"
+            yield error("PML141", f"{name} has a duration of 0", self.span, hint)
+        if most is not None and not 1 <= most <= MOST_TIMES:
+            message = f"{name} can happen at_most {most} times: expected 1 to {MOST_TIMES}"
+            never = f"; what must never happen is an objective: avoid {name}" if most < 1 else ""
+            yield error("PML204", message, self.span, f"write a number in these limits, or delete it{never}")
+        if duration is not None and self.latest is not None:
+            yield from check_window(name, duration, self.latest, "duration", self.span)

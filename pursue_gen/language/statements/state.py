@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Tuple
+from typing import Any, ClassVar, Iterator, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Span
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.template import Filling, Template, names_text
@@ -55,3 +55,10 @@ class State(StatementKind):
     )
     declares: ClassVar[str] = "state"
     shortest: ClassVar[str] = 'state "{name}": initially false'
+
+    def check(self) -> Iterator[Diagnostic]:
+        true_if = {event.name for event in self.true_if}
+        for event in self.false_if:
+            if event.name in true_if:
+                message = f"{event.name} would make {self.name} both true and false"
+                yield error("PML320", message, event.span, "take it out of true_if or of false_if")

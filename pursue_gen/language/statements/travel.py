@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Optional, Tuple
+from typing import ClassVar, Iterator, Optional, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Span
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.numbers import Number, Window, window_of
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.base import StatementKind
+from pursue_gen.language.statements.base import StatementKind, check_window
 from pursue_gen.language.template import Template
 from pursue_gen.language.word import Form, Word
 
@@ -55,3 +55,15 @@ class Travel(StatementKind):
     def window(self) -> Window:
         """Between which times the agent arrives."""
         return window_of(self.earliest, self.latest)
+
+    @property
+    def movement(self) -> str:
+        """Who goes where, in words."""
+        return f"the way of {self.agent.name} from {self.a.name} to {self.b.name}"
+
+    def check(self) -> Iterator[Diagnostic]:
+        if self.latest is not None:
+            yield from check_window(self.movement, self.earliest, self.latest, "takes", self.span)
+        elif self.earliest <= 0:
+            hint = "write a number above 0, or takes 0 to 1"
+            yield error("PML200", f"{self.movement} takes no time", self.span, hint)

@@ -7,7 +7,7 @@ from typing import Callable, Dict, Iterator, List, Optional, Tuple
 
 from pursue_gen.diagnostics import units
 from pursue_gen.language.assumptions import NUMBERED
-from pursue_gen.language.batteries import MOST_CAPACITY, levels
+from pursue_gen.language.batteries import levels
 from pursue_gen.language.behaviour import predecessors
 from pursue_gen.language.conditions import condition_words, names_in
 from pursue_gen.language.draft import Draft
@@ -29,6 +29,7 @@ from pursue_gen.language.scenario import (
     State,
     Window,
 )
+from pursue_gen.language.statements.battery import MOST_CAPACITY
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.tokens import start_of
 from pursue_gen.language.tree_reader import MOST
