@@ -3,26 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Optional, Set, Tuple
+from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Set, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, error, warning
 from pursue_gen.language.names import events_used
 from pursue_gen.language.refs import twice
-from pursue_gen.language.scenario import (
-    Agent,
-    Both,
-    Choice,
-    Dependency,
-    Event,
-    Ref,
-    Rule,
-    RuleBody,
-    Scenario,
-    Sequence,
-)
+from pursue_gen.language.scenario import Agent, Dependency, Event, Ref, Rule, Scenario
+from pursue_gen.language.statements.rule import Earlier, can_turn, has_both, locations_of, predecessors
 
 _SOME = 5  # events that a message lists
-_MOST_EARLIER = 1000  # sets of events
 
 MOST_LOCATIONS = 600
 """Of the automaton of a rule: `and` of nine events has 511, and the guard of each event tests half of them."""
@@ -265,7 +254,7 @@ def _each(scenario: Scenario) -> Iterator[Diagnostic]:
             yield error("PML205", message, rule.span, f"let one do its events, or delete for each {who}")
         for agent in bound:
             own = frozenset(ref.name for ref in agent.can_do)
-            if not _can_turn(rule.body, own):
+            if not can_turn(rule.body, own):
                 missing = ", ".join(ref.name for ref in rule.events if ref.name not in own)
                 message = f"{agent.name} cannot end a round of the rule {rule.name}: it cannot do {missing}"
                 yield warning("PML206", message, agent.span, f"add {missing} behind its can_do, if it is to go on")
@@ -277,7 +266,7 @@ def check_rules(scenario: Scenario) -> Iterator[Diagnostic]:
     lasting = {event.name for event in scenario.events if event.duration is not None}
     for rule in scenario.rules:
         count = locations_of(rule.body, lasting) + 1
-        if count > MOST_LOCATIONS and _has_both(rule.body):
+        if count > MOST_LOCATIONS and has_both(rule.body):
             number = f"{count:,}" if count < 10**9 else "more than a billion"
             why = f"has {number} positions, because its parts come in any order"
             hint = "join fewer events with and, or put some of them in order with before"
@@ -292,7 +281,7 @@ def check_rules(scenario: Scenario) -> Iterator[Diagnostic]:
     course = _Course(scenario)
     possible = course.possible()
     for rule in scenario.rules:
-        if not _can_turn(rule.body, possible):
+        if not can_turn(rule.body, possible):
             stuck = next(ref for ref in rule.events if ref.name not in possible)
             message = f"the rule {rule.name} can never turn: {course.why_not(stuck.name, possible)}"
             yield error("PML161", message, stuck.span, "change the order, or take the event out of the rule")
@@ -303,59 +292,3 @@ def check_rules(scenario: Scenario) -> Iterator[Diagnostic]:
             message = f"{dependency.event.name} can never happen: {dependency.state.name} never becomes {value}"
             hint = f"name an event that can happen behind {value}_if of {dependency.state.name}, or start it as {value}"
             yield error("PML162", message, dependency.span, hint)
-
-
-Earlier = Tuple[FrozenSet[str], ...]
-"""What has to have happened: of each of these sets one event. Empty: nothing."""
-
-
-def predecessors(rule: Rule) -> Dict[str, Earlier]:
-    """For each event of a rule what it waits for in a round; nothing: it is its turn at the start."""
-    before: Dict[str, Earlier] = {ref.name: () for ref in rule.events}
-
-    def visit(body: RuleBody) -> Tuple[Set[str], Earlier]:
-        """Notes who follows whom in the body; its first events, and what has happened when it is over."""
-        if isinstance(body, Ref):
-            return {body.name}, (frozenset({body.name}),)
-        first, over = visit(body.first)
-        first_then, over_then = visit(body.second)
-        if isinstance(body, Choice):
-            return first | first_then, _either(over, over_then)
-        if isinstance(body, Both):
-            return first | first_then, over + over_then
-        for name in first_then:
-            before[name] = over
-        return first, over_then
-
-    starts, _ = visit(rule.body)
-    return {name: () if name in starts else earlier for name, earlier in before.items()}
-
-
-def _either(a: Earlier, b: Earlier) -> Earlier:
-    """What has happened if one of these has; where that would be long, something that is less."""
-    if len(a) * len(b) > _MOST_EARLIER:
-        return (frozenset().union(*a, *b),)
-    return tuple(dict.fromkeys(one | other for one in a for other in b))
-
-
-def locations_of(body: RuleBody, lasting: AbstractSet[str]) -> int:
-    """How many locations the automaton of a rule has between the first and the last one of that part of it."""
-    if isinstance(body, Ref):
-        return int(body.name in lasting)
-    first, second = locations_of(body.first, lasting), locations_of(body.second, lasting)
-    if isinstance(body, Both):
-        return (first + 2) * (second + 2) - 2
-    return first + second + isinstance(body, Sequence)
-
-
-def _has_both(body: RuleBody) -> bool:
-    if isinstance(body, Ref):
-        return False
-    return isinstance(body, Both) or _has_both(body.first) or _has_both(body.second)
-
-
-def _can_turn(body: RuleBody, possible: FrozenSet[str]) -> bool:
-    if isinstance(body, Ref):
-        return body.name in possible
-    first, second = _can_turn(body.first, possible), _can_turn(body.second, possible)
-    return first or second if isinstance(body, Choice) else first and second

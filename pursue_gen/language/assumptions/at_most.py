@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Mapping, Optional, Sequence, Tuple
+from typing import Callable, ClassVar, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, counted, error
 from pursue_gen.language.assumptions.base import AboutOne, Setting
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
@@ -28,13 +28,12 @@ class AtMost(AboutOne):
     template: ClassVar[Template] = Template("{agent=guest} does {event=call} at_most {times:count=2} times")
     own_words: ClassVar[Tuple[Word, ...]] = (Word("does", "The event that the assumption is about.", True),)
     forms: ClassVar[Tuple[Form, ...]] = (Form("how often somebody does something", template.to_fill_in),)
+    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
+        "at_most": lambda _, times: f"It begins that {counted(times, 'time')} at most in the whole mission.",
+    }
     number: ClassVar[str] = "times"
     nearest: ClassVar[int] = MOST_TIMES
     counts: ClassVar[bool] = True
-
-    @classmethod
-    def number_words(cls, number: Number) -> str:
-        return f"It begins that {number} time{'' if number == 1 else 's'} at most in the whole mission."
 
     @property
     def clause(self) -> str:

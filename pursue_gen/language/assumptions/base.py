@@ -41,11 +41,6 @@ class Assumption(Written):
     counts: ClassVar[bool] = False
     """A variable counts for it how often something has happened."""
 
-    @classmethod
-    def number_words(cls, number: Number) -> str:
-        """What that number means in it."""
-        raise NotImplementedError
-
     @property
     def text(self) -> str:
         """The statement, as in `assume: visitor never at lab`."""
@@ -65,6 +60,10 @@ class Assumption(Written):
         """True if it names the agent, be it in a condition."""
         named = [*self.names(), *(pair for condition in self.conditions for pair in names_in(condition))]
         return any(kind == "agent" and ref.name == agent for kind, ref in named)
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        if kind == "agent" and self.is_about(name):
+            yield f"assumed: {shown(self.clause)}"
 
     def binds(self, agent: Agent) -> bool:
         """True if it says of this agent that it does not do all that it could."""

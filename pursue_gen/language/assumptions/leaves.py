@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Optional, Sequence, Tuple
+from typing import Callable, ClassVar, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.assumptions.base import AboutOne, Setting
@@ -28,12 +28,11 @@ class Leaves(AboutOne):
     template: ClassVar[Template] = Template("{agent=visitor} leaves {place:POI=hall} within {time:number=30}")
     own_words: ClassVar[Tuple[Word, ...]] = (Word("leaves", "The place that it leaves in time.", True),)
     forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody stays", template.to_fill_in),)
+    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
+        "within": "It has set off {} of time after it came, or after the start.".format,
+    }
     number: ClassVar[str] = "time"
     nearest: ClassVar[int] = SHORTEST_STAY
-
-    @classmethod
-    def number_words(cls, number: Number) -> str:
-        return f"It has set off {units(number)} of time after it came, or after the start."
 
     @property
     def clause(self) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Optional, Sequence, Tuple
+from typing import Callable, ClassVar, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.assumptions.base import AboutOne, Setting
@@ -24,12 +24,11 @@ class NotBefore(AboutOne):
     span: Span = NOWHERE
     template: ClassVar[Template] = Template("{agent=guest} does {event=call} after {time:number=60}")
     forms: ClassVar[Tuple[Form, ...]] = (Form("from when on somebody does something", template.to_fill_in),)
+    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
+        "after": "It begins that later than {} of time after the start.".format,
+    }
     number: ClassVar[str] = "time"
     nearest: ClassVar[int] = 1
-
-    @classmethod
-    def number_words(cls, number: Number) -> str:
-        return f"It begins that later than {units(number)} of time after the start."
 
     @property
     def clause(self) -> str:

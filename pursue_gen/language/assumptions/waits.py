@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, Optional, Sequence, Tuple
+from typing import Callable, ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.assumptions.at_most import AtMost
@@ -29,13 +29,12 @@ class Waits(AboutOne):
         Word("between", "The event: from the end of one to the beginning of the next.", True),
     )
     forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody waits in between", template.to_fill_in),)
+    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
+        "waits": "The next one begins {} of time after the end of the last, or later.".format,
+    }
     number: ClassVar[str] = "time"
     nearest: ClassVar[int] = 1
     counts: ClassVar[bool] = True  # whether it has happened: the first time is free
-
-    @classmethod
-    def number_words(cls, number: Number) -> str:
-        return f"The next one begins {units(number)} of time after the end of the last, or later."
 
     @property
     def clause(self) -> str:

@@ -47,7 +47,7 @@ class Avoid(Safety):
     def breaks(self) -> Breaks:
         return Breaks(event=self.event)
 
-    def about(self, kind: str, name: str) -> Iterator[str]:
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if (kind, name) == ("event", self.event.name):
             yield "must never happen"
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any, Callable, ClassVar, Iterator, Mapping, NamedTuple, Optional, Sequence, Tuple, TypeVar, cast
 
 from pursue_gen.diagnostics import Diagnostic, Span, listed
-from pursue_gen.language.conditions import At, Condition, EventOrCondition
+from pursue_gen.language.conditions import At, Condition, EventOrCondition, condition_words
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
@@ -126,10 +126,6 @@ class StatedObjective(Written):
         said = f"{listed(ref.shown for ref in done)} done" if done else self.words.statuses.get(role)
         return said or STATUSES.get(role, location)
 
-    def about(self, kind: str, name: str) -> Iterator[str]:
-        """What it means for an event or an agent, as in `must never happen`."""
-        return iter(())
-
 
 class Breaks(NamedTuple):
     """How a safety objective is broken: by an event; by a condition; by a pair of agents at one place; or since what is
@@ -152,6 +148,11 @@ class Safety(StatedObjective):
     def breaks(self) -> Breaks:
         """How it is broken."""
         raise NotImplementedError
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        broken = self.breaks.condition
+        if broken is not None and kind in ("state", "agent") and self.speaks_of(kind, name):
+            yield f"must never be: {shown(condition_words(broken))}"
 
     def kept_by(self, robot: Ref) -> Safety:
         """The objective kept by this robot; the same where any robot is not what keeps it."""

@@ -58,7 +58,7 @@ class NeverWith(Safety):
         stands = (At(Who(self.first), self.place), At(Who(self.second), self.place))
         return Breaks(pair=pair, place=self.place.name, stands=stands)
 
-    def about(self, kind: str, name: str) -> Iterator[str]:
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if kind == "agent" and name in (self.first.name, self.second.name):
             other = self.second.name if self.first.name == name else self.first.name
             where = "be where" if self.place is None else f"be at {self.place.name} while"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Callable, ClassVar, Iterator, Optional, Sequence, Tuple
+from typing import Any, Callable, ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
 
 from lark import Token
 
@@ -65,6 +65,9 @@ class Patrol(Safety):
         ),
         Word("by", "Who has to be there: an agent, or any robot.", True),
     )
+    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
+        "every": "Somebody is there again {} of time after the last one left, or after the start.".format,
+    }
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("somebody who comes again and again", "patrol {POI} every {=60} by {agent}"),
         Form("somebody who comes as often as can be promised", "patrol {POI} by {agent}"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Iterator, Optional, Sequence, Tuple
+from typing import Callable, ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
 from pursue_gen.language.numbers import Number, exact
@@ -49,6 +49,12 @@ class Reach(StatedObjective):
         Word("do", "The event that is wanted."),
         Word("after", "Later than so many units of time after the start."),
     )
+    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
+        "after": lambda time, number: (
+            f"It counts when it happens {f'later than {time} of time after the start' if number else 'at any time'}."
+        ),
+        "within": "It must have happened {} of time after the start at most.".format,
+    }
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("achieve something once", "do {event}"),
         Form("achieve several things in time", "do {event} and {event} within {=60}"),
@@ -89,7 +95,7 @@ class Reach(StatedObjective):
         done = Symbol.of(location)
         return tuple(self.events[int(k) - 1] for k in done.parts) if done.role is Role.DID else ()
 
-    def about(self, kind: str, name: str) -> Iterator[str]:
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if kind == "event" and any(ref.name == name for ref in self.events):
             after = f", later than {units(self.after)} of time after the start" if self.after else ""
             within = "" if self.within is None else f", {units(self.within)} of time after the start at most"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Callable, ClassVar, Iterator, Sequence, Tuple
+from typing import Callable, ClassVar, Iterator, Mapping, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.conditions import EventOrCondition, condition_text, condition_words, held_by
@@ -45,6 +45,9 @@ class Respond(Safety):
         Word("then", "The event that has to follow, or the condition that has to hold at some moment."),
         Word("within", "How many units of time later the answer must have come."),
     )
+    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
+        "within": "The answer must have come {} of time later at most.".format,
+    }
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("an answer in time", "if {event} then {event} within {=20}"),
         Form("an answer to what comes to hold", "if {agent} at {POI} then {agent} at {POI} within {=20}"),
@@ -89,7 +92,7 @@ class Respond(Safety):
     def kept_by(self, robot: Ref) -> Respond:
         return self if isinstance(self.response, Ref) else replace(self, response=held_by(self.response, robot))
 
-    def about(self, kind: str, name: str) -> Iterator[str]:
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if kind == "event" and name == event_or_condition_text(self.trigger):
             yield f"must be answered by {event_or_condition_text(self.response)} within {units(self.deadline)} of time"
         if kind == "event" and name == event_or_condition_text(self.response):

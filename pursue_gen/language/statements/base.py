@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Dict, Iterator, Mapping, Optional, Tuple, Type
+from typing import Any, Callable, ClassVar, Dict, Iterator, Mapping, Optional, Tuple, Type
 
-from pursue_gen.diagnostics import Diagnostic, Span, error
-from pursue_gen.language.conditions import Condition
+from pursue_gen.diagnostics import Diagnostic, Span, error, units
+from pursue_gen.language.conditions import Condition, names_in
 from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.template import Template
@@ -25,6 +25,8 @@ class Written:
     """Its words that no kind before it has; of a statement first the one that begins it."""
     forms: ClassVar[Tuple[Form, ...]] = ()
     """Ways to write it, to fill in."""
+    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {}
+    """What a number means, by the word before it: a sentence from the number in units, and the number itself."""
 
     @classmethod
     def form(cls) -> str:
@@ -35,6 +37,11 @@ class Written:
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Any:
         """What is declared, one part or several, from its tree. `at`: `span`, its place in the text."""
         return cls(**cls.template.read(reader, children), **at)
+
+    @classmethod
+    def number_words(cls, word: str, number: Number) -> str:
+        """What a number means behind a word; "": nothing is said of that."""
+        return cls.numbers[word](units(number), number) if word in cls.numbers else ""
 
     @property
     def text(self) -> str:
@@ -49,6 +56,14 @@ class Written:
     def conditions(self) -> Tuple[Condition, ...]:
         """The conditions that it names."""
         return self.template.conditions(self)
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        """What it says of a thing of a kind with this name, as in `must never happen`. `shown`: how to show words."""
+        return iter(())
+
+    def speaks_of(self, kind: str, name: str) -> bool:
+        """True where a condition of it names a thing of a kind."""
+        return any((kind, name) == (k, ref.name) for one in self.conditions for k, ref in names_in(one))
 
 
 class StatementKind(Written):
@@ -140,6 +155,10 @@ class Headed(StatementKind):
     @classmethod
     def conditions_behind(cls) -> Tuple[str, ...]:
         return tuple(word for kind in cls.kinds.values() for word in kind.template.conditions_behind)
+
+    @classmethod
+    def number_words(cls, word: str, number: Number) -> str:
+        return next(filter(None, (kind.number_words(word, number) for kind in cls.kinds.values())), "")
 
     @classmethod
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Any:

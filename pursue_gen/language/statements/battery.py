@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, Optional, Tuple
+from typing import Callable, ClassVar, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.numbers import Number
@@ -55,6 +55,10 @@ class Battery(StatementKind):
         """What it holds, what is used, and where it is recharged."""
         text = f"battery of {self.capacity}, uses {self.uses} per unit"
         return text if self.dock is None else f"{text}, recharges {self.recharges} per unit at {self.dock.shown}"
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        if (kind, name) == ("agent", self.agent.name):
+            yield shown(self.in_words)
 
     def check(self) -> Iterator[Diagnostic]:
         numbers = [("capacity", self.capacity), ("uses", self.uses)]

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Iterator, Optional, Tuple
+from typing import Any, Callable, ClassVar, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
-from pursue_gen.language.conditions import Condition
+from pursue_gen.language.conditions import Condition, condition_words
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import StatementKind
@@ -68,6 +68,10 @@ class Connection(StatementKind):
     def directions(self) -> Tuple[Tuple[str, str], ...]:
         """From and to, for each direction in which it can be taken; the declared one first."""
         return ((self.a, self.b),) if self.one_way else ((self.a, self.b), (self.b, self.a))
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        if kind == "state" and self.only_if is not None and self.speaks_of(kind, name):
+            yield f"between {self.a} and {self.b} only while {shown(condition_words(self.only_if))}"
 
     def check(self) -> Iterator[Diagnostic]:
         if self.distance <= 0:

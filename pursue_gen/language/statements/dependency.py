@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Tuple
+from typing import Callable, ClassVar, Iterator, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.refs import Ref
@@ -32,3 +32,10 @@ class Dependency(StatementKind):
         Form("an event that waits for a state", template.to_fill_in),
     )
     among: ClassVar[str] = "STATE"
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        value = str(self.value).lower()
+        if (kind, name) == ("event", self.event.name):
+            yield f"only while {self.state.name} is {value}"
+        if (kind, name) == ("state", self.state.name):
+            yield f"{self.event.name} can happen only while it is {value}"

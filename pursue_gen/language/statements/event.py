@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, Optional, Tuple
+from typing import Callable, ClassVar, Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
-from pursue_gen.language.conditions import Condition
+from pursue_gen.language.conditions import Condition, condition_words
 from pursue_gen.language.numbers import Number, Window, window_of
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import Labelled, check_window
@@ -77,6 +77,9 @@ class Event(Labelled):
     )
     declares: ClassVar[str] = "event"
     shortest: ClassVar[str] = 'event "{name}"'
+    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
+        "at_most": lambda _, times: f"It can happen {'once' if times == 1 else f'{times} times'} in all.",
+    }
     parts: ClassVar[Tuple[str, ...]] = template.begins
 
     @property
@@ -88,6 +91,11 @@ class Event(Labelled):
     def window(self) -> Optional[Window]:
         """Between which times it ends; None for an event that is instantaneous."""
         return None if self.duration is None else window_of(self.duration, self.latest)
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        own = (kind, name) == ("event", self.name)
+        if self.only_if is not None and (own or (kind == "state" and self.speaks_of(kind, name))):
+            yield f"{'' if own else f'{self.name} '}only while {shown(condition_words(self.only_if))}"
 
     def check(self) -> Iterator[Diagnostic]:
         name, duration, most = self.name, self.duration, self.at_most

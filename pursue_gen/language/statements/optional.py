@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, ClassVar, Tuple
+from typing import Any, Callable, ClassVar, Mapping, Tuple
 
 from pursue_gen.diagnostics import error
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives import StatedObjective
 from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.statements.objective import Objective
@@ -42,6 +43,11 @@ class Optional(StatementKind):
         Form("achieve something if it can be promised", "optional {=1} reach_objective: do {event}"),
         Form("what always holds if it can be promised", "optional {=1} objective: avoid {event}"),
     )
+    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
+        "optional": lambda *_: (
+            "The first one to be given up is the one with the greatest number; those with one number go together."
+        ),
+    }
     among: ClassVar[str] = "OBJECTIVE"
 
     @classmethod

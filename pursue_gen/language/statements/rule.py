@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Iterator, Mapping, Tuple, Type, Union
+from typing import AbstractSet, Any, Callable, ClassVar, Dict, FrozenSet, Iterator, Mapping, Set, Tuple, Type, Union
 
 from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.refs import Ref
@@ -46,6 +46,8 @@ _BODIES: Mapping[str, Tuple[Type[Union[Sequence, Choice, Both]], str]] = {
     "sequence": (Sequence, "before"), "choice": (Choice, "or"), "both": (Both, "and"),
 }
 """By its rule in the grammar each body of two sides, and the word between them."""
+
+_MOST_EARLIER = 1000  # sets of events
 
 
 _RULES = """_body: sequence | choice | both
@@ -123,3 +125,67 @@ class Rule(StatementKind):
 
     def names(self) -> Iterator[Tuple[str, Ref]]:
         return (("event", ref) for ref in self.events)
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        turns = predecessors(self) if kind == "event" else {}
+        if name in turns:
+            after = " and ".join(" or ".join(sorted(some)) for some in turns[name])
+            yield f"rule {self.name}: its turn comes {f'after {after}' if after else 'first in each round'}"
+
+
+Earlier = Tuple[FrozenSet[str], ...]
+"""What has to have happened: of each of these sets one event. Empty: nothing."""
+
+
+def predecessors(rule: Rule) -> Dict[str, Earlier]:
+    """For each event of a rule what it waits for in a round; nothing: it is its turn at the start."""
+    before: Dict[str, Earlier] = {ref.name: () for ref in rule.events}
+
+    def visit(body: RuleBody) -> Tuple[Set[str], Earlier]:
+        """Notes who follows whom in the body; its first events, and what has happened when it is over."""
+        if isinstance(body, Ref):
+            return {body.name}, (frozenset({body.name}),)
+        first, over = visit(body.first)
+        first_then, over_then = visit(body.second)
+        if isinstance(body, Choice):
+            return first | first_then, _either(over, over_then)
+        if isinstance(body, Both):
+            return first | first_then, over + over_then
+        for name in first_then:
+            before[name] = over
+        return first, over_then
+
+    starts, _ = visit(rule.body)
+    return {name: () if name in starts else earlier for name, earlier in before.items()}
+
+
+def _either(a: Earlier, b: Earlier) -> Earlier:
+    """What has happened if one of these has; where that would be long, something that is less."""
+    if len(a) * len(b) > _MOST_EARLIER:
+        return (frozenset().union(*a, *b),)
+    return tuple(dict.fromkeys(one | other for one in a for other in b))
+
+
+def locations_of(body: RuleBody, lasting: AbstractSet[str]) -> int:
+    """How many locations the automaton of a rule has between the first and the last one of that part of it."""
+    if isinstance(body, Ref):
+        return int(body.name in lasting)
+    first, second = locations_of(body.first, lasting), locations_of(body.second, lasting)
+    if isinstance(body, Both):
+        return (first + 2) * (second + 2) - 2
+    return first + second + isinstance(body, Sequence)
+
+
+def has_both(body: RuleBody) -> bool:
+    """True where some of its parts come in any order."""
+    if isinstance(body, Ref):
+        return False
+    return isinstance(body, Both) or has_both(body.first) or has_both(body.second)
+
+
+def can_turn(body: RuleBody, possible: FrozenSet[str]) -> bool:
+    """True where a round can end with these events alone."""
+    if isinstance(body, Ref):
+        return body.name in possible
+    first, second = can_turn(body.first, possible), can_turn(body.second, possible)
+    return first or second if isinstance(body, Choice) else first and second

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Iterator, Tuple
+from typing import Any, Callable, ClassVar, Iterator, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.refs import Ref
@@ -55,6 +55,12 @@ class State(StatementKind):
     )
     declares: ClassVar[str] = "state"
     shortest: ClassVar[str] = 'state "{name}": initially false'
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        if kind == "event":
+            for value, refs in (("true", self.true_if), ("false", self.false_if)):
+                if any(ref.name == name for ref in refs):
+                    yield f"makes {self.name} {value}"
 
     def check(self) -> Iterator[Diagnostic]:
         true_if = {event.name for event in self.true_if}

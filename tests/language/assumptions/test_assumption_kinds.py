@@ -115,7 +115,8 @@ def test_its_words_are_known_everywhere(kind: Type[Assumption]) -> None:
         assert KEYWORDS[word.token] == MAY_BE_NAMES[word.token] == word.text and MEANINGS[word.token] == word.meaning
     assert set(re.findall('"([a-z_]+)"', kind.template.grammar("kind"))) <= set(KEYWORDS.values())
     assert (kind in NUMBERED.values()) == bool(kind.number)
-    assert not kind.number or kind.number_words(3).endswith(".")
+    assert not kind.number or all(kind.number_words(word, 3).endswith(".") for word in kind.numbers)
+    assert bool(kind.number) == bool(kind.numbers)
 
 
 @each_kind
