@@ -8,8 +8,7 @@ from typing import Any, List, Mapping, Optional, Tuple
 from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, Span
-from pursue_gen.language.condition_trees import condition_of
-from pursue_gen.language.conditions import Condition, EventOrCondition
+from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, EventOrCondition, Holds, Not, OnWay, Who
 from pursue_gen.language.number_messages import no_count, no_number
 from pursue_gen.language.numbers import Number, is_fine, read_number
 from pursue_gen.language.refs import Ref
@@ -80,7 +79,20 @@ class TreeReader:
 
     def condition(self, tree: Any) -> Condition:
         """A condition."""
-        return condition_of(tree, self.ref)
+        kind, children = tree.data, tree.children
+        if kind == "negation":
+            return Not(self.condition(children[0]))
+        if kind in ("all_of", "any_of"):
+            return (AllOf if kind == "all_of" else AnyOf)(tuple(map(self.condition, children)))
+        if kind == "holds":
+            return Holds(self.ref(children[0]), children[1].type == "IS_TRUE")
+        first = children[0].children[0]
+        named = not isinstance(first, Token)
+        who = Who(self.ref(first)) if named else Who(None, robots=len(children[0].children) > 1)
+        condition: Condition = OnWay(who)
+        if kind != "on_way":
+            condition = (At if kind == "at" else Doing)(who, self.ref(children[1]))
+        return condition if named or first.type != "NO" else Not(condition)
 
     def event_or_condition(self, tree: Any) -> EventOrCondition:
         """The event that is named, or the condition."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, ClassVar, Dict, Iterator, Mapping, Optional, Tuple, Type
+from typing import Any, Callable, ClassVar, Dict, Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, units
 from pursue_gen.language.conditions import Condition, names_in
@@ -132,48 +132,9 @@ class Labelled(StatementKind):
         return self.label or self.name
 
 
-class Headed(StatementKind):
-    """A statement that is a word, a colon, and one of several kinds of what stands behind them."""
-
-    kinds: ClassVar[Mapping[str, Type[Any]]]
-    """These, classes of `Written`, by their rules in the grammar."""
-
-    @classmethod
-    def form(cls) -> str:
-        return " · ".join(f"{cls.own_words[0].text}: {kind.form()}" for kind in cls.kinds.values())
-
-    @classmethod
-    def grammar(cls) -> str:
-        rules = (kind.template.grammar(rule) for rule, kind in cls.kinds.items())
-        return "\n".join((f'{cls.rule()}: "{cls.own_words[0].text}" ":" ({" | ".join(cls.kinds)})', *rules))
-
-    @classmethod
-    def used(cls) -> Dict[str, str]:
-        found = (kind.template.used(cls.own_words[0].text) for kind in cls.kinds.values())
-        return {word: thing for words in found for word, thing in words.items()}
-
-    @classmethod
-    def conditions_behind(cls) -> Tuple[str, ...]:
-        return tuple(word for kind in cls.kinds.values() for word in kind.template.conditions_behind)
-
-    @classmethod
-    def number_words(cls, word: str, number: Number) -> str:
-        return next(filter(None, (kind.number_words(word, number) for kind in cls.kinds.values())), "")
-
-    @classmethod
-    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Any:
-        (tree,) = children
-        return cls.kinds[tree.data].read(reader, *tree.children, **at)
-
-
 def check_window(name: str, low: Number, high: Number, word: str, span: Span) -> Iterator[Diagnostic]:
     """An error where nothing lies between the two numbers behind a word."""
     if high <= low:
         message = f"{name} ends later than {low} and at {high} at the latest: there is no such time"
         hint = f"write the smaller number first: {word} {high} to {max(low, exact(high + 1))}"
         yield error("PML200", message, span, hint)
-
-
-def forms_behind(word: str, kinds: Mapping[str, Type[Any]]) -> Tuple[Form, ...]:
-    """The forms of these kinds behind a word and a colon."""
-    return tuple(Form(form.title, f"{word}: {form.words}") for kind in kinds.values() for form in kind.forms)

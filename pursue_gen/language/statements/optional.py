@@ -9,8 +9,7 @@ from pursue_gen.diagnostics import error
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives import StatedObjective
 from pursue_gen.language.statements.base import StatementKind
-from pursue_gen.language.statements.objective import Objective
-from pursue_gen.language.statements.reach_objective import ReachObjective
+from pursue_gen.language.statements.headed import Objective, ReachObjective
 from pursue_gen.language.template import Filling, Template
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word

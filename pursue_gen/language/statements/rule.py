@@ -14,41 +14,39 @@ from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
-class Sequence:
+class _Two:
+    """Two sides in a rule, with the word between them."""
+
+    first: RuleBody
+    second: RuleBody
+    span: Span = NOWHERE
+    word: ClassVar[str]
+
+
+class Sequence(_Two):
     """`first before second` in a rule."""
 
-    first: RuleBody
-    second: RuleBody
-    span: Span = NOWHERE
+    word = "before"
 
 
-@dataclass(frozen=True)
-class Choice:
+class Choice(_Two):
     """`first or second` in a rule."""
 
-    first: RuleBody
-    second: RuleBody
-    span: Span = NOWHERE
+    word = "or"
 
 
-@dataclass(frozen=True)
-class Both:
+class Both(_Two):
     """`first and second` in a rule: in any order, and while the other one goes on."""
 
-    first: RuleBody
-    second: RuleBody
-    span: Span = NOWHERE
+    word = "and"
 
 
 RuleBody = Union[Ref, Sequence, Choice, Both]
 
-_BODIES: Mapping[str, Tuple[Type[Union[Sequence, Choice, Both]], str]] = {
-    "sequence": (Sequence, "before"), "choice": (Choice, "or"), "both": (Both, "and"),
-}
-"""By its rule in the grammar each body of two sides, and the word between them."""
+_BODIES: Mapping[str, Type[Union[Sequence, Choice, Both]]] = {"sequence": Sequence, "choice": Choice, "both": Both}
+"""The bodies of two sides, by their rules in the grammar."""
 
 _MOST_EARLIER = 1000  # sets of events
-
 
 _RULES = """_body: sequence | choice | both
 sequence: _side "before" _side
@@ -61,7 +59,7 @@ def _body(reader: TreeReader, tree: Any) -> RuleBody:
     if tree.data == "ref":
         return reader.ref(tree)
     first, second = (_body(reader, child) for child in tree.children)
-    return _BODIES[tree.data][0](first, second, reader.span(tree))
+    return _BODIES[tree.data](first, second, reader.span(tree))
 
 
 def _events(body: RuleBody) -> Iterator[Ref]:
@@ -74,9 +72,8 @@ def _events(body: RuleBody) -> Iterator[Ref]:
 def _body_text(body: RuleBody) -> str:
     if isinstance(body, Ref):
         return body.name
-    word = next(word for kind, word in _BODIES.values() if isinstance(body, kind))
     sides = (side.name if isinstance(side, Ref) else f"({_body_text(side)})" for side in (body.first, body.second))
-    return f" {word} ".join(sides)
+    return f" {body.word} ".join(sides)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,8 @@ from pursue_gen.language.kinds import BY_RULE, DECLARED, KEYWORDS, MAY_BE_NAMES,
 from pursue_gen.language.occurrences import are_names, occurrences
 from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.statements.base import Headed, Labelled, StatementKind
+from pursue_gen.language.statements.base import Labelled, StatementKind
+from pursue_gen.language.statements.headed import Headed
 from pursue_gen.language.word import HOLE
 
 STORY = """\
