@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Set, Tuple
+from typing import Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Set, Tuple, TypeVar
 
 from pursue_gen.diagnostics import Diagnostic, error, warning
 from pursue_gen.language.names import events_used
@@ -11,10 +11,23 @@ from pursue_gen.language.refs import twice
 from pursue_gen.language.scenario import Agent, Dependency, Event, Ref, Rule, Scenario
 from pursue_gen.language.statements.rule import Earlier, can_turn, has_both, locations_of, predecessors
 
+Node = TypeVar("Node")
+
 _SOME = 5  # events that a message lists
 
 MOST_LOCATIONS = 600
 """Of the automaton of a rule: `and` of nine events has 511, and the guard of each event tests half of them."""
+
+
+def _from(start: Node, following: Mapping[Node, Iterable[Node]]) -> FrozenSet[Node]:
+    """All that is reached from a start, itself included."""
+    found, open_ = {start}, [start]
+    while open_:
+        for other in following.get(open_.pop(), ()):
+            if other not in found:
+                found.add(other)
+                open_.append(other)
+    return frozenset(found)
 
 
 def components(scenario: Scenario) -> Dict[str, FrozenSet[str]]:
@@ -27,13 +40,7 @@ def components(scenario: Scenario) -> Dict[str, FrozenSet[str]]:
     for start in near:
         if start in connected:
             continue
-        found, open_ = {start}, [start]
-        while open_:
-            for other in near[open_.pop()]:
-                if other not in found:
-                    found.add(other)
-                    open_.append(other)
-        shared = frozenset(found)
+        shared = _from(start, near)
         connected.update((name, shared) for name in shared)
     return connected
 
@@ -52,13 +59,7 @@ def destinations(scenario: Scenario) -> Dict[str, FrozenSet[str]]:
         onward.setdefault(parts[way.a], []).append(parts[way.b])
     reached: Dict[FrozenSet[str], FrozenSet[str]] = {}
     for start in set(parts.values()):
-        found, open_ = {start}, [start]
-        while open_:
-            for other in onward.get(open_.pop(), ()):
-                if other not in found:
-                    found.add(other)
-                    open_.append(other)
-        reached[start] = frozenset().union(*found)
+        reached[start] = frozenset().union(*_from(start, onward))
     return {name: reached[part] for name, part in parts.items()}
 
 

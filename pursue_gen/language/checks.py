@@ -63,7 +63,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     findings += check_references(scenario, reading.lost)
     findings += check_labels(scenario)
     findings += _beside(scenario)
-    for part in (_alone, _too_long, _too_fine, _connections, _travels, _agents, _objectives, _order):
+    for part in (_alone, _too_long, _too_fine, _connections, _travels, _missing, _order):
         findings += part(scenario)
     codes = {f.code for f in findings}
     if reading.scenario is None:
@@ -176,7 +176,8 @@ def _connections(scenario: Scenario) -> Iterator[Diagnostic]:
             seen.setdefault(direction, way.span)
 
 
-def _agents(scenario: Scenario) -> Iterator[Diagnostic]:
+def _missing(scenario: Scenario) -> Iterator[Diagnostic]:
+    """What a scenario needs and has not."""
     if not scenario.pois:
         yield error("PML132", "the scenario has no POI", _end(scenario), 'add a place: poi "room"')
     if not scenario.agents:
@@ -185,6 +186,9 @@ def _agents(scenario: Scenario) -> Iterator[Diagnostic]:
     elif not any(agent.controllable for agent in scenario.agents):
         message = "nobody in this scenario can be controlled: there is nothing to plan"
         yield error("PML131", message, scenario.agents[0].span, "write controllable behind the name of each robot")
+    if not scenario.objectives:
+        hint = "add one: reach_objective: do e after 0, or objective: if e1 then e2 within 20"
+        yield error("PML171", "the scenario has no objective", _end(scenario), hint)
 
 
 def _beside(scenario: Scenario) -> Iterator[Diagnostic]:
@@ -201,7 +205,14 @@ def _beside(scenario: Scenario) -> Iterator[Diagnostic]:
             yield error("PML220", message, objective.span, "delete one of the two")
         lines.setdefault(text, objective.span.line)
     for objective in statements:
-        yield from objective.check(scenario.agents)
+        yield from objective.check()
+    start = {agent.name: agent.location.name for agent in scenario.agents}
+    for safety in scenario.safety:
+        first, second = safety.breaks.pair or ("", "")
+        at = start.get(first)
+        if at is not None and first != second and at == start.get(second) and safety.breaks.place in (None, at):
+            message = f"{first} and {second} both start in {at}: the objective is lost before anything moves"
+            yield error("PML174", message, safety.span, "let one of them start somewhere else")
     avoided = {each.breaks.event.name: each for each in scenario.safety if each.breaks.event is not None}
     for reach in scenario.reach:
         for ref in reach.events:
@@ -225,22 +236,17 @@ def _optional(scenario: Scenario) -> Iterator[Diagnostic]:
         yield error("PML302", message, first.span, hint)
 
 
-def _objectives(scenario: Scenario) -> Iterator[Diagnostic]:
-    if not scenario.objectives:
-        hint = "add one: reach_objective: do e after 0, or objective: if e1 then e2 within 20"
-        yield error("PML171", "the scenario has no objective", _end(scenario), hint)
-
-
 def _order(scenario: Scenario) -> Iterator[Diagnostic]:
     """The original's tools read a scenario in one order only."""
-    order = ("poi", "connect", "event", "rule", "state", "stateDependency", "agent", "objective")
-    parts: Tuple[Tuple[Any, ...], ...] = (
-        scenario.pois, scenario.connections, scenario.events, scenario.rules, scenario.states, scenario.dependencies,
-        scenario.agents, scenario.objectives,
-    )  # fmt: skip
-    places = [(part.span.line, part.span.column, rank, part.span) for rank, kind in enumerate(parts) for part in kind]
+    parts: Dict[str, Tuple[Any, ...]] = {
+        "poi": scenario.pois, "connect": scenario.connections, "event": scenario.events, "rule": scenario.rules,
+        "state": scenario.states, "stateDependency": scenario.dependencies, "agent": scenario.agents,
+        "objective": scenario.objectives,
+    }  # fmt: skip
+    order = list(parts)
+    ranked = [(rank, part.span) for rank, kind in enumerate(parts.values()) for part in kind]
     latest = 0
-    for _, _, rank, span in sorted(places, key=lambda place: place[:3]):
+    for rank, span in sorted(ranked, key=lambda one: (one[1].line, one[1].column, one[0])):
         if rank < latest:
             message = f"the original PuRSUE reads {order[rank]} statements only before {order[latest]} statements"
             yield warning("PML190", message, span, "if that matters to you, move it up; here the order is free")

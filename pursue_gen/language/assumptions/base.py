@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import AbstractSet, Any, Callable, ClassVar, Iterator, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
-from pursue_gen.language.conditions import Condition, names_in
+from pursue_gen.language.conditions import Condition
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives import Safety
 from pursue_gen.language.refs import Ref
@@ -58,8 +58,7 @@ class Assumption(Written):
 
     def is_about(self, agent: str) -> bool:
         """True if it names the agent, be it in a condition."""
-        named = [*self.names(), *(pair for condition in self.conditions for pair in names_in(condition))]
-        return any(kind == "agent" and ref.name == agent for kind, ref in named)
+        return self.speaks_of("agent", agent) or any((kind, ref.name) == ("agent", agent) for kind, ref in self.names())
 
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if kind == "agent" and self.is_about(name):
@@ -73,8 +72,8 @@ class Assumption(Written):
         """The finding that a line assumes the same already."""
         return error("PML253", f"line {line} assumes this already", self.span, "delete one of the two")
 
-    def check(self, setting: Setting) -> Iterator[Diagnostic]:
-        """What is wrong with it; its names are declared."""
+    def check_in(self, setting: Setting) -> Iterator[Diagnostic]:
+        """What is wrong with it in its scenario; its names are declared."""
         raise NotImplementedError
 
     @property
@@ -124,7 +123,7 @@ class AboutOne(Assumption):
         message = f"line {line} assumes this of {self.agent.name} already"
         return error("PML253", message, self.span, "keep the one that is meant")
 
-    def check(self, setting: Setting) -> Iterator[Diagnostic]:
+    def check_in(self, setting: Setting) -> Iterator[Diagnostic]:
         for agent in [each for each in setting.agents if each.name == self.agent.name][:1]:
             if agent.controllable:
                 message = f"{agent.name} is controlled: what it does is decided, not assumed"

@@ -36,7 +36,7 @@ class NeverHolds(Assumption):
     def binds(self, agent: Agent) -> bool:
         return not agent.controllable
 
-    def check(self, setting: Setting) -> Iterator[Diagnostic]:
+    def check_in(self, setting: Setting) -> Iterator[Diagnostic]:
         found = [finding for atom in atoms(self.condition) for finding in self._of_others(atom, setting)]
         if not found and setting.at_start(self.condition):
             message = f"this holds at the start: {condition_words(self.condition)}"

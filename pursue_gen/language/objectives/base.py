@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, Callable, ClassVar, Iterator, Mapping, NamedTuple, Optional, Sequence, Tuple, TypeVar, cast
 
-from pursue_gen.diagnostics import Diagnostic, Span, listed
+from pursue_gen.diagnostics import Span, listed
 from pursue_gen.language.conditions import At, Condition, EventOrCondition, condition_words
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.statements.base import Written
 from pursue_gen.language.symbols import Role, role_of
 
@@ -82,10 +81,6 @@ class StatedObjective(Written):
     def broken(self, beside: Callable[[str], str]) -> str:
         """What has happened where it is broken. `beside`: a clause about where an agent is, by its name."""
         raise NotImplementedError
-
-    def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
-        """What is wrong with it, whatever else stands in the scenario of these agents."""
-        return iter(())
 
     @property
     def order(self) -> Tuple[str, ...]:

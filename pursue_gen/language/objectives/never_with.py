@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Iterator, Optional, Sequence, Tuple
+from typing import Callable, ClassVar, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.conditions import At, Who
 from pursue_gen.language.objectives.base import Breaks, Safety
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
 from pursue_gen.language.word import Form, Word
 
@@ -41,14 +40,9 @@ class NeverWith(Safety):
     def broken(self, beside: Callable[[str], str]) -> str:
         return f"{self.first.shown} and {self.second.shown} are together{beside(self.first.name)}"
 
-    def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
-        start = {agent.name: agent.location.name for agent in agents}
-        first, second = self.first.name, self.second.name
-        if first == second:
-            yield error("PML173", f"{first} is always with itself", self.span, "name two different agents")
-        elif first in start and start[first] == start.get(second) and self.breaks.place in (None, start[first]):
-            message = f"{first} and {second} both start in {start[first]}: the objective is lost before anything moves"
-            yield error("PML174", message, self.span, "let one of them start somewhere else")
+    def check(self) -> Iterator[Diagnostic]:
+        if self.first.name == self.second.name:
+            yield error("PML173", f"{self.first.name} is always with itself", self.span, "name two different agents")
 
     @property
     def breaks(self) -> Breaks:

@@ -12,7 +12,6 @@ from pursue_gen.language.conditions import At, Not, Who, by_robot, who_text
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective, Whole, Words
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.symbols import Role
 from pursue_gen.language.template import Filling, Template
 from pursue_gen.language.tree_reader import TreeReader
@@ -128,7 +127,7 @@ class Patrol(Safety):
     def broken(self, beside: Callable[[str], str]) -> str:
         return f"not {self.words.due_by} for {self.every}"
 
-    def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
+    def check(self) -> Iterator[Diagnostic]:
         again = next((name for k, name in enumerate(self.order) if name in self.order[:k]), "")
         if again:
             message = f"{again} stands twice in this patrol in order: expected each place once in a round"

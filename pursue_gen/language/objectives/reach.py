@@ -9,7 +9,6 @@ from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, uni
 from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.objectives.base import StatedObjective, Whole, Words
 from pursue_gen.language.refs import Ref, twice
-from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.language.template import Filling, Template
 from pursue_gen.language.tree_reader import TreeReader
@@ -70,7 +69,7 @@ class Reach(StatedObjective):
     def broken(self, beside: Callable[[str], str]) -> str:
         return f"{self.words.due} not done within {self.within} of the start"
 
-    def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
+    def check(self) -> Iterator[Diagnostic]:
         for ref in twice(self.events):
             yield error("PML222", f"{ref.name} stands twice behind do", ref.span, "delete one: it happens once")
         if len(self.events) > MOST_EVENTS:

@@ -10,7 +10,6 @@ from pursue_gen.language.conditions import EventOrCondition, condition_text, con
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective, Whole, Words
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.symbols import Role
 from pursue_gen.language.template import Template, event_or_condition_text
 from pursue_gen.language.word import Form, Word
@@ -66,7 +65,7 @@ class Respond(Safety):
         no = "no" if isinstance(self.response, Ref) else "not once"
         return f"{no} {_shown(self.response)} within {self.deadline} of {_shown(self.trigger)}"
 
-    def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
+    def check(self) -> Iterator[Diagnostic]:
         if self.deadline <= 0:
             message = "within 0 leaves no time to answer: expected more than 0"
             yield error("PML143", message, self.span, "write the time units that the answer may take")

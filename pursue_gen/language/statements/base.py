@@ -57,6 +57,10 @@ class Written:
         """The conditions that it names."""
         return self.template.conditions(self)
 
+    def check(self) -> Iterator[Diagnostic]:
+        """What is wrong with it, whatever else stands in the scenario."""
+        return iter(())
+
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         """What it says of a thing of a kind with this name, as in `must never happen`. `shown`: how to show words."""
         return iter(())
@@ -113,10 +117,6 @@ class StatementKind(Written):
     @classmethod
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Any:
         return super().read(reader, *children, span=reader.at(children[0]) if cls.declares else at["span"])
-
-    def check(self) -> Iterator[Diagnostic]:
-        """What is wrong with it, whatever else stands in the scenario."""
-        return iter(())
 
 
 class Labelled(StatementKind):

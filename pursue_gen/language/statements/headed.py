@@ -1,4 +1,4 @@
-"""Statements that are a word, a colon, and one of several kinds behind them, which say themselves how they are written."""
+"""Statements that are a word, a colon, and one of several kinds behind them: objectives and assumptions."""
 
 from __future__ import annotations
 

@@ -129,7 +129,7 @@ def test_numbers_that_are_proposed_say_more_and_can_be_assumed(kind: Type[Assump
     for number in (*one.stronger(30), kind.nearest):
         other = one.with_number(number)
         assert other.subject == one.subject
-        assert "PML251" not in [finding.code for finding in other.check(setting_of(whole))]
+        assert "PML251" not in [finding.code for finding in other.check_in(setting_of(whole))]
 
 
 @each_kind
