@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Mapping, Tuple
+from typing import ClassVar, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Span, units
 from pursue_gen.language.assumptions.base import NotSooner
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import Form
+from pursue_gen.language.word import Form, Numbers
 
 
 @dataclass(frozen=True)
@@ -23,9 +23,7 @@ class NotBefore(NotSooner):
     span: Span = NOWHERE
     template: ClassVar[Template] = Template("{agent=guest} does {event=call} after {time:number=60}")
     forms: ClassVar[Tuple[Form, ...]] = (Form("from when on somebody does something", template.to_fill_in),)
-    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
-        "after": "It begins that later than {} of time after the start.".format,
-    }
+    numbers: ClassVar[Numbers] = {"after": "It begins that later than {} of time after the start.".format}
 
     @property
     def clause(self) -> str:

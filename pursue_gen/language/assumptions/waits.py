@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Iterator, Mapping, Sequence, Tuple
+from typing import ClassVar, Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Span, units
 from pursue_gen.language.assumptions.at_most import AtMost
@@ -11,7 +11,7 @@ from pursue_gen.language.assumptions.base import Assumption, NotSooner, Setting
 from pursue_gen.language.numbers import Number, whole_above
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import Form, Word
+from pursue_gen.language.word import Form, Numbers, Word
 
 
 @dataclass(frozen=True)
@@ -28,9 +28,7 @@ class Waits(NotSooner):
         Word("between", "The event: from the end of one to the beginning of the next.", True),
     )
     forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody waits in between", template.to_fill_in),)
-    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
-        "waits": "The next one begins {} of time after the end of the last, or later.".format,
-    }
+    numbers: ClassVar[Numbers] = {"waits": "The next one begins {} of time after the end of the last, or later.".format}
     counts: ClassVar[bool] = True  # whether it has happened: the first time is free
 
     @property
