@@ -48,7 +48,7 @@ FIXED = {
     "explanation/play_lines.py": ["_MOST_OTHERS"],
     "explanation/repairs.py": ["_FINEST"],
     "partition/yaml_text.py": ["_WIDTH"],
-    "tools/authoring/requirements.py": ["MOST_PLACES", "MOST_DISTANCE", "_BETWEEN"],
+    "tools/authoring/requirements.py": ["MOST_PLACES", "MOST_DISTANCE", "BETWEEN"],
     "tools/calibration/advice.py": ["TOLERANCE", "_EXACT"],
     "tools/calibration/picture.py": ["_WIDTH", "_TOP", "_BOLD", "_TICK", "_MOST_LABEL", "_DRAWN", "_LEVELS"],
     "tools/calibration/proposal.py": ["TOLERANCE", "_SHORTEST"],

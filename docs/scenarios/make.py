@@ -30,7 +30,7 @@ from pursue_gen.drawing.layout import poses
 from pursue_gen.files import write_texts
 from pursue_gen.language import load, parse
 from pursue_gen.language.scenario import Scenario, StatedObjective
-from pursue_gen.language.wording import periods_found, promise_words
+from pursue_gen.language.sentences import periods_found, promise_words
 from pursue_gen.outcomes import Lost
 from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.least_time import Guarantee

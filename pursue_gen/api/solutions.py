@@ -104,7 +104,7 @@ class Solved(SolvedGame):
 
     def in_words(self) -> List[str]:
         """The verdict, answers, promises, what is assumed of others and who is not needed, in lines for people."""
-        from pursue_gen.language.wording import condition_of_promise
+        from pursue_gen.language.sentences import condition_of_promise
         from pursue_gen.partition import unneeded_words
 
         assumed = condition_of_promise(self.scenario) if self.request.plan is None else ""
@@ -127,7 +127,7 @@ def promises_of(scenario: Scenario, won: bool = True) -> List[str]:
 
     Of a scenario that is not won, what is known of periods.
     """
-    from pursue_gen.language.wording import periods_found, promise_words
+    from pursue_gen.language.sentences import periods_found, promise_words
 
     promised = promise_words(scenario) if won else []
     return [*periods_found(scenario, won), *(f"{sentence}." for sentence in promised)]

@@ -9,7 +9,7 @@ from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.look import QUIET, AgentLook, agent_looks, mark, svg, tag, text
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.scenario import Agent, Connection, Event, Pose, Scenario
-from pursue_gen.language.wording import kind_words, speed_words, window_words
+from pursue_gen.language.sentences import speed_words, window_words
 
 _WIDTH, _WIDEST = 640.0, 1600.0
 _MARGIN, _RIM = 80.0, 12.0
@@ -212,7 +212,7 @@ def _legend(look: AgentLook, lines: List[str], top: float) -> List[str]:
 
 def _description(agent: Agent, scenario: Scenario) -> str:
     """What an agent is and can do, in a sentence."""
-    parts = [f"{agent.shown}: {kind_words(agent)}, {speed_words(agent, scenario)}"]
+    parts = [f"{agent.shown}: {agent.kind_words}, {speed_words(agent, scenario)}"]
     if agent.can_do:
         parts.append("can do " + ", ".join(ref.shown for ref in agent.can_do))
     if agent.reacts_to:

@@ -22,7 +22,6 @@ from pursue_gen.explanation.play_lines import Attempt, TimedLine, attempt, descr
 from pursue_gen.explanation.together import Conflict, conflict
 from pursue_gen.language.numbers import time_text
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import statement_text
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.lost_promises import lost_to_one_walk, quoted
 from pursue_gen.solving.one_robot import lost_game
@@ -244,7 +243,7 @@ def as_json(explanation: Explanation) -> Dict[str, Any]:
         "preventing": list(explanation.preventing),
         "about": list(explanation.about),
         "others": [as_json(other) for other in explanation.others],
-        "conflict": [statement_text(one) for one in explanation.conflict.objectives] if explanation.conflict else [],
+        "conflict": [one.full_text for one in explanation.conflict.objectives] if explanation.conflict else [],
     }
 
 

@@ -7,9 +7,9 @@ from math import ceil, floor
 from typing import Any, Callable, Iterator, Optional, Sequence, Union
 
 from pursue_gen.diagnostics import Span
-from pursue_gen.language.checks import MOST_TIMES
 from pursue_gen.language.numbers import Number, whole_above, whole_below
 from pursue_gen.language.scenario import Battery, Event, Scenario, Travel
+from pursue_gen.language.statements.event import MOST_TIMES
 from pursue_gen.solving.rules import Rules
 
 SLOWER = 32

@@ -8,7 +8,6 @@ from typing import List, Optional, Tuple
 from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.part import with_objectives
 from pursue_gen.language.scenario import Scenario, StatedObjective
-from pursue_gen.language.wording import statement_text
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of
@@ -29,7 +28,7 @@ class Conflict:
 
     def in_words(self) -> str:
         """A sentence or two."""
-        texts = [f"'{statement_text(objective)}'" for objective in self.objectives]
+        texts = [f"'{objective.full_text}'" for objective in self.objectives]
         if len(texts) == 1:
             return f"{texts[0]} cannot be promised, even as the only objective."
         if self.least and len(texts) == self.of == 2:

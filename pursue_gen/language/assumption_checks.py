@@ -35,4 +35,4 @@ def check_assumptions(scenario: Scenario) -> Iterator[Diagnostic]:
         if assumption.subject in seen:
             yield assumption.again(seen[assumption.subject].line)
         seen.setdefault(assumption.subject, assumption.span)
-        yield from assumption.check(setting)
+        yield from assumption.check_in(setting)

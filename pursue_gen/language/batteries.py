@@ -10,11 +10,7 @@ from math import ceil, floor
 from typing import Dict, Iterator, List, Mapping, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
-from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Agent, Battery, Event, Scenario
-
-MOST_CAPACITY = 10_000
-"""The largest capacity: levels are values of a variable."""
 
 MOST_LEVELS = 60
 """The most levels at which a battery can be: each multiplies the states of the game."""
@@ -75,7 +71,7 @@ def check_batteries(scenario: Scenario) -> Iterator[Diagnostic]:
             message = f"line {seen[agent.name].line} gives {agent.name} a battery already"
             yield error("PML311", message, battery.span, "delete one of the two")
         seen.setdefault(agent.name, battery.span)
-        problems = [*_of(agent, battery, scenario), *_numbers(battery)]
+        problems = [*_of(agent, battery, scenario), *battery.check()]
         yield from problems
         if not problems:
             yield from _levels(scenario, battery)
@@ -93,18 +89,6 @@ def _of(agent: Agent, battery: Battery, scenario: Scenario) -> Iterator[Diagnost
             message = f"{name} takes part in {ref.name} until it ends, and others decide when: it could run empty"
             hint = f"let {name} be the one that can_do {ref.name}, or delete together"
             yield error("PML314", message, ref.span, hint)
-
-
-def _numbers(battery: Battery) -> Iterator[Diagnostic]:
-    numbers: List[Tuple[str, Number]] = [("capacity", battery.capacity), ("uses", battery.uses)]
-    numbers += [] if battery.dock is None else [("recharges", battery.recharges)]
-    for word, number in numbers:
-        if number <= 0:
-            hint = f"leave out {word} … at" if word == "recharges" else "delete this line if it does not matter"
-            yield error("PML312", f"{word} 0: expected more than 0", battery.span, hint)
-    if battery.capacity > MOST_CAPACITY:
-        message = f"capacity {battery.capacity}: expected {MOST_CAPACITY} or less"
-        yield error("PML312", message, battery.span, "choose a larger unit, for example per cent")
 
 
 def _levels(scenario: Scenario, battery: Battery) -> Iterator[Diagnostic]:

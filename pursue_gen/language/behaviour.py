@@ -3,28 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Optional, Set, Tuple
+from typing import Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Set, Tuple, TypeVar
 
 from pursue_gen.diagnostics import Diagnostic, error, warning
 from pursue_gen.language.names import events_used
-from pursue_gen.language.scenario import (
-    Agent,
-    Both,
-    Choice,
-    Dependency,
-    Event,
-    Ref,
-    Rule,
-    RuleBody,
-    Scenario,
-    Sequence,
-)
+from pursue_gen.language.refs import twice
+from pursue_gen.language.scenario import Agent, Dependency, Event, Ref, Rule, Scenario
+from pursue_gen.language.statements.rule import Earlier, can_turn, has_both, locations_of, predecessors
+
+Node = TypeVar("Node")
 
 _SOME = 5  # events that a message lists
-_MOST_EARLIER = 1000  # sets of events
 
 MOST_LOCATIONS = 600
 """Of the automaton of a rule: `and` of nine events has 511, and the guard of each event tests half of them."""
+
+
+def _from(start: Node, following: Mapping[Node, Iterable[Node]]) -> FrozenSet[Node]:
+    """All that is reached from a start, itself included."""
+    found, open_ = {start}, [start]
+    while open_:
+        for other in following.get(open_.pop(), ()):
+            if other not in found:
+                found.add(other)
+                open_.append(other)
+    return frozenset(found)
 
 
 def components(scenario: Scenario) -> Dict[str, FrozenSet[str]]:
@@ -37,13 +40,7 @@ def components(scenario: Scenario) -> Dict[str, FrozenSet[str]]:
     for start in near:
         if start in connected:
             continue
-        found, open_ = {start}, [start]
-        while open_:
-            for other in near[open_.pop()]:
-                if other not in found:
-                    found.add(other)
-                    open_.append(other)
-        shared = frozenset(found)
+        shared = _from(start, near)
         connected.update((name, shared) for name in shared)
     return connected
 
@@ -62,13 +59,7 @@ def destinations(scenario: Scenario) -> Dict[str, FrozenSet[str]]:
         onward.setdefault(parts[way.a], []).append(parts[way.b])
     reached: Dict[FrozenSet[str], FrozenSet[str]] = {}
     for start in set(parts.values()):
-        found, open_ = {start}, [start]
-        while open_:
-            for other in onward.get(open_.pop(), ()):
-                if other not in found:
-                    found.add(other)
-                    open_.append(other)
-        reached[start] = frozenset().union(*found)
+        reached[start] = frozenset().union(*_from(start, onward))
     return {name: reached[part] for name, part in parts.items()}
 
 
@@ -264,7 +255,7 @@ def _each(scenario: Scenario) -> Iterator[Diagnostic]:
             yield error("PML205", message, rule.span, f"let one do its events, or delete for each {who}")
         for agent in bound:
             own = frozenset(ref.name for ref in agent.can_do)
-            if not _can_turn(rule.body, own):
+            if not can_turn(rule.body, own):
                 missing = ", ".join(ref.name for ref in rule.events if ref.name not in own)
                 message = f"{agent.name} cannot end a round of the rule {rule.name}: it cannot do {missing}"
                 yield warning("PML206", message, agent.span, f"add {missing} behind its can_do, if it is to go on")
@@ -276,25 +267,22 @@ def check_rules(scenario: Scenario) -> Iterator[Diagnostic]:
     lasting = {event.name for event in scenario.events if event.duration is not None}
     for rule in scenario.rules:
         count = locations_of(rule.body, lasting) + 1
-        if count > MOST_LOCATIONS and _has_both(rule.body):
+        if count > MOST_LOCATIONS and has_both(rule.body):
             number = f"{count:,}" if count < 10**9 else "more than a billion"
             why = f"has {number} positions, because its parts come in any order"
             hint = "join fewer events with and, or put some of them in order with before"
             yield error("PML203", f"the rule {rule.name} {why}: expected at most {MOST_LOCATIONS}", rule.span, hint)
-        seen: Set[str] = set()
-        for ref in rule.events:
-            if ref.name in seen:
-                sound = False
-                message = f"the rule {rule.name} names {ref.name} twice: it could not tell whose turn it is"
-                yield error("PML160", message, ref.span, "name each event once; use two events or two rules")
-            seen.add(ref.name)
+        for ref in twice(rule.events):
+            sound = False
+            message = f"the rule {rule.name} names {ref.name} twice: it could not tell whose turn it is"
+            yield error("PML160", message, ref.span, "name each event once; use two events or two rules")
     if not sound:
         return
     yield from _each(scenario)
     course = _Course(scenario)
     possible = course.possible()
     for rule in scenario.rules:
-        if not _can_turn(rule.body, possible):
+        if not can_turn(rule.body, possible):
             stuck = next(ref for ref in rule.events if ref.name not in possible)
             message = f"the rule {rule.name} can never turn: {course.why_not(stuck.name, possible)}"
             yield error("PML161", message, stuck.span, "change the order, or take the event out of the rule")
@@ -305,59 +293,3 @@ def check_rules(scenario: Scenario) -> Iterator[Diagnostic]:
             message = f"{dependency.event.name} can never happen: {dependency.state.name} never becomes {value}"
             hint = f"name an event that can happen behind {value}_if of {dependency.state.name}, or start it as {value}"
             yield error("PML162", message, dependency.span, hint)
-
-
-Earlier = Tuple[FrozenSet[str], ...]
-"""What has to have happened: of each of these sets one event. Empty: nothing."""
-
-
-def predecessors(rule: Rule) -> Dict[str, Earlier]:
-    """For each event of a rule what it waits for in a round; nothing: it is its turn at the start."""
-    before: Dict[str, Earlier] = {ref.name: () for ref in rule.events}
-
-    def visit(body: RuleBody) -> Tuple[Set[str], Earlier]:
-        """Notes who follows whom in the body; its first events, and what has happened when it is over."""
-        if isinstance(body, Ref):
-            return {body.name}, (frozenset({body.name}),)
-        first, over = visit(body.first)
-        first_then, over_then = visit(body.second)
-        if isinstance(body, Choice):
-            return first | first_then, _either(over, over_then)
-        if isinstance(body, Both):
-            return first | first_then, over + over_then
-        for name in first_then:
-            before[name] = over
-        return first, over_then
-
-    starts, _ = visit(rule.body)
-    return {name: () if name in starts else earlier for name, earlier in before.items()}
-
-
-def _either(a: Earlier, b: Earlier) -> Earlier:
-    """What has happened if one of these has; where that would be long, something that is less."""
-    if len(a) * len(b) > _MOST_EARLIER:
-        return (frozenset().union(*a, *b),)
-    return tuple(dict.fromkeys(one | other for one in a for other in b))
-
-
-def locations_of(body: RuleBody, lasting: AbstractSet[str]) -> int:
-    """How many locations the automaton of a rule has between the first and the last one of that part of it."""
-    if isinstance(body, Ref):
-        return int(body.name in lasting)
-    first, second = locations_of(body.first, lasting), locations_of(body.second, lasting)
-    if isinstance(body, Both):
-        return (first + 2) * (second + 2) - 2
-    return first + second + isinstance(body, Sequence)
-
-
-def _has_both(body: RuleBody) -> bool:
-    if isinstance(body, Ref):
-        return False
-    return isinstance(body, Both) or _has_both(body.first) or _has_both(body.second)
-
-
-def _can_turn(body: RuleBody, possible: FrozenSet[str]) -> bool:
-    if isinstance(body, Ref):
-        return body.name in possible
-    first, second = _can_turn(body.first, possible), _can_turn(body.second, possible)
-    return first or second if isinstance(body, Choice) else first and second

@@ -14,21 +14,15 @@ from pursue_gen.language.behaviour import check_events, check_rules, components
 from pursue_gen.language.condition_checks import check_conditions
 from pursue_gen.language.labels import check_labels
 from pursue_gen.language.names import check_names, check_references, events_used
-from pursue_gen.language.numbers import MOST_DIGITS, Number, exact, is_fine
+from pursue_gen.language.numbers import MOST_DIGITS, exact, is_fine
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
-from pursue_gen.language.scenario import Agent, Scenario
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
 from pursue_gen.language.tokens import shown
 
 _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
 """Codes of findings that need a scenario that was read as a whole."""
-
-MOST_TIMES = 100
-"""How often an event can happen at most that is counted: each count is a location of an automaton."""
-
-MOST_METRES = 100
-"""The largest number of a robot's size."""
 
 MOST_OPTIONAL = 6
 """So many different numbers stand behind `optional` at most: each takes a game of its own."""
@@ -69,7 +63,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     findings += check_references(scenario, reading.lost)
     findings += check_labels(scenario)
     findings += _beside(scenario)
-    for part in (_numbers, _too_fine, _connections, _travels, _states, _agents, _objectives, _order):
+    for part in (_alone, _too_long, _too_fine, _connections, _travels, _missing, _order):
         findings += part(scenario)
     codes = {f.code for f in findings}
     if reading.scenario is None:
@@ -120,45 +114,18 @@ def _doubtful(scenario: Scenario) -> FrozenSet[str]:
     return frozenset(codes)
 
 
-def _numbers(scenario: Scenario) -> Iterator[Diagnostic]:
-    for way in scenario.connections:
-        if way.distance <= 0:
-            message = f"the way from {way.a} to {way.b} has no length"
-            yield error("PML140", message, way.span, "write distance and a number above 0")
-    for event in scenario.events:
-        if event.duration is not None and event.duration <= 0 and event.latest is None:
-            hint = "write duration and a number above 0, or delete duration: then it takes no time"
-            yield error("PML141", f"{event.name} has a duration of 0", event.span, hint)
-        if event.at_most is not None and not 1 <= event.at_most <= MOST_TIMES:
-            message = f"{event.name} can happen at_most {event.at_most} times: expected 1 to {MOST_TIMES}"
-            never = f"; what must never happen is an objective: avoid {event.name}" if event.at_most < 1 else ""
-            yield error("PML204", message, event.span, f"write a number in these limits, or delete it{never}")
-        if event.latest is not None and event.duration is not None:
-            yield from _window(event.name, event.duration, event.latest, "duration", event.span)
+def _alone(scenario: Scenario) -> Iterator[Diagnostic]:
+    """What is wrong with single statements."""
+    for part in (*scenario.connections, *scenario.events, *scenario.states, *scenario.agents, *scenario.travels):
+        yield from part.check()
+
+
+def _too_long(scenario: Scenario) -> Iterator[Diagnostic]:
     longest = max((way.distance for way in scenario.connections), default=0)
     for agent in scenario.agents:
-        yield from _size(agent)
-        if agent.mobile is None:
-            continue
-        if agent.mobile <= 0:
-            hint = "mobile is the time per unit of distance: write a number above 0, or delete it where nothing moves"
-            yield error("PML142", f"{agent.name} would take no time for any way", agent.span, hint)
-        elif longest * agent.mobile > _LONGEST:
+        if agent.mobile is not None and longest * agent.mobile > _LONGEST:
             message = f"{agent.name} takes more than {_LONGEST} time units for the longest way"
             yield error("PML144", message, agent.span, "choose a larger unit of time or of distance")
-
-
-def _size(agent: Agent) -> Iterator[Diagnostic]:
-    """A size of what is no robot, or of none that there is."""
-    size = {"radius": agent.radius, "tolerance": agent.tolerance, "inflation": agent.inflation}
-    said = {word: number for word, number in size.items() if number is not None}
-    if said and not agent.is_robot:
-        hint = f"write controllable behind {agent.name} (and no human), or delete {' and '.join(said)}"
-        yield error("PML148", f"{agent.name} is no robot: nothing is sent to places that need room", agent.span, hint)
-    for word, number in said.items():
-        if number > MOST_METRES:
-            message = f"{agent.name} has {word} {number}: expected {MOST_METRES} metres at most"
-            yield error("PML148", message, agent.span, f"write {word} in metres, such as 0.3")
 
 
 def _too_fine(scenario: Scenario) -> Iterator[Diagnostic]:
@@ -176,13 +143,6 @@ def _too_fine(scenario: Scenario) -> Iterator[Diagnostic]:
                 break
 
 
-def _window(name: str, low: Number, high: Number, word: str, span: Span) -> Iterator[Diagnostic]:
-    if high <= low:
-        message = f"{name} ends later than {low} and at {high} at the latest: there is no such time"
-        hint = f"write the smaller number first: {word} {high} to {max(low, exact(high + 1))}"
-        yield error("PML200", message, span, hint)
-
-
 def _travels(scenario: Scenario) -> Iterator[Diagnostic]:
     agents = {agent.name: agent for agent in scenario.agents}
     pois = {poi.name for poi in scenario.pois}
@@ -190,11 +150,6 @@ def _travels(scenario: Scenario) -> Iterator[Diagnostic]:
     seen: Dict[Tuple[str, Tuple[str, str]], Span] = {}
     for travel in scenario.travels:
         agent, (a, b) = agents.get(travel.agent.name), travel.way
-        moves = f"the way of {travel.agent.name} from {a} to {b}"
-        if travel.latest is not None:
-            yield from _window(moves, travel.earliest, travel.latest, "takes", travel.span)
-        elif travel.earliest <= 0:
-            yield error("PML200", f"{moves} takes no time", travel.span, "write a number above 0, or takes 0 to 1")
         if agent is not None and agent.mobile is None:
             message = f"{agent.name} does not move, so it does not go from {a} to {b}"
             yield error("PML201", message, travel.span, f"write mobile 1 behind {agent.name}, or delete this line")
@@ -204,7 +159,7 @@ def _travels(scenario: Scenario) -> Iterator[Diagnostic]:
             hint = f"connect them: connect {a} and {b} distance …, or delete this line"
             yield error("PML201", message, travel.span, hint)
         elif (travel.agent.name, travel.way) in seen:
-            message = f"line {seen[travel.agent.name, travel.way].line} says already how long {moves} takes"
+            message = f"line {seen[travel.agent.name, travel.way].line} says already how long {travel.movement} takes"
             yield error("PML202", message, travel.span, "delete one of the two lines")
         seen.setdefault((travel.agent.name, travel.way), travel.span)
 
@@ -213,9 +168,7 @@ def _connections(scenario: Scenario) -> Iterator[Diagnostic]:
     seen: Dict[Tuple[str, str], Span] = {}
     for way in scenario.connections:
         known = [seen[direction] for direction in way.directions if direction in seen]
-        if way.a == way.b:
-            yield error("PML145", f"this connects {way.a} with itself", way.span, "name two different places")
-        elif known:
+        if known and way.a != way.b:
             message = f"{way.a} and {way.b} are connected twice; line {known[0].line} does it already"
             hint = "delete one: a connection goes both ways; or write one_way behind both"
             yield error("PML146", message, way.span, hint)
@@ -223,16 +176,8 @@ def _connections(scenario: Scenario) -> Iterator[Diagnostic]:
             seen.setdefault(direction, way.span)
 
 
-def _states(scenario: Scenario) -> Iterator[Diagnostic]:
-    for state in scenario.states:
-        true_if = {event.name for event in state.true_if}
-        for event in state.false_if:
-            if event.name in true_if:
-                message = f"{event.name} would make {state.name} both true and false"
-                yield error("PML320", message, event.span, "take it out of true_if or of false_if")
-
-
-def _agents(scenario: Scenario) -> Iterator[Diagnostic]:
+def _missing(scenario: Scenario) -> Iterator[Diagnostic]:
+    """What a scenario needs and has not."""
     if not scenario.pois:
         yield error("PML132", "the scenario has no POI", _end(scenario), 'add a place: poi "room"')
     if not scenario.agents:
@@ -241,21 +186,9 @@ def _agents(scenario: Scenario) -> Iterator[Diagnostic]:
     elif not any(agent.controllable for agent in scenario.agents):
         message = "nobody in this scenario can be controlled: there is nothing to plan"
         yield error("PML131", message, scenario.agents[0].span, "write controllable behind the name of each robot")
-    for agent in scenario.agents:
-        if agent.human and not agent.controllable:
-            message = f"{agent.name} is human but not controllable: human changes nothing here"
-            hint = "write human controllable for an ally who follows instructions, or delete human"
-            yield warning("PML180", message, agent.span, hint)
-        yield from _twice(agent)
-
-
-def _twice(agent: Agent) -> Iterator[Diagnostic]:
-    for words, refs in (("can_do", agent.can_do), ("reacts_to", agent.reacts_to)):
-        seen: Set[str] = set()
-        for ref in refs:
-            if ref.name in seen:
-                yield error("PML156", f"{agent.name} has {ref.name} twice behind {words}", ref.span, "delete one")
-            seen.add(ref.name)
+    if not scenario.objectives:
+        hint = "add one: reach_objective: do e after 0, or objective: if e1 then e2 within 20"
+        yield error("PML171", "the scenario has no objective", _end(scenario), hint)
 
 
 def _beside(scenario: Scenario) -> Iterator[Diagnostic]:
@@ -272,7 +205,14 @@ def _beside(scenario: Scenario) -> Iterator[Diagnostic]:
             yield error("PML220", message, objective.span, "delete one of the two")
         lines.setdefault(text, objective.span.line)
     for objective in statements:
-        yield from objective.check(scenario.agents)
+        yield from objective.check()
+    start = {agent.name: agent.location.name for agent in scenario.agents}
+    for safety in scenario.safety:
+        first, second = safety.breaks.pair or ("", "")
+        at = start.get(first)
+        if at is not None and first != second and at == start.get(second) and safety.breaks.place in (None, at):
+            message = f"{first} and {second} both start in {at}: the objective is lost before anything moves"
+            yield error("PML174", message, safety.span, "let one of them start somewhere else")
     avoided = {each.breaks.event.name: each for each in scenario.safety if each.breaks.event is not None}
     for reach in scenario.reach:
         for ref in reach.events:
@@ -296,22 +236,17 @@ def _optional(scenario: Scenario) -> Iterator[Diagnostic]:
         yield error("PML302", message, first.span, hint)
 
 
-def _objectives(scenario: Scenario) -> Iterator[Diagnostic]:
-    if not scenario.objectives:
-        hint = "add one: reach_objective: do e after 0, or objective: if e1 then e2 within 20"
-        yield error("PML171", "the scenario has no objective", _end(scenario), hint)
-
-
 def _order(scenario: Scenario) -> Iterator[Diagnostic]:
     """The original's tools read a scenario in one order only."""
-    order = ("poi", "connect", "event", "rule", "state", "stateDependency", "agent", "objective")
-    parts: Tuple[Tuple[Any, ...], ...] = (
-        scenario.pois, scenario.connections, scenario.events, scenario.rules, scenario.states, scenario.dependencies,
-        scenario.agents, scenario.objectives,
-    )  # fmt: skip
-    places = [(part.span.line, part.span.column, rank, part.span) for rank, kind in enumerate(parts) for part in kind]
+    parts: Dict[str, Tuple[Any, ...]] = {
+        "poi": scenario.pois, "connect": scenario.connections, "event": scenario.events, "rule": scenario.rules,
+        "state": scenario.states, "stateDependency": scenario.dependencies, "agent": scenario.agents,
+        "objective": scenario.objectives,
+    }  # fmt: skip
+    order = list(parts)
+    ranked = [(rank, part.span) for rank, kind in enumerate(parts.values()) for part in kind]
     latest = 0
-    for _, _, rank, span in sorted(places, key=lambda place: place[:3]):
+    for rank, span in sorted(ranked, key=lambda one: (one[1].line, one[1].column, one[0])):
         if rank < latest:
             message = f"the original PuRSUE reads {order[rank]} statements only before {order[latest]} statements"
             yield warning("PML190", message, span, "if that matters to you, move it up; here the order is free")

@@ -138,7 +138,7 @@ def condition_text(condition: Condition) -> str:
         return _joined(condition, condition_text)
     if isinstance(condition, Holds):
         return f"{condition.state.name} is_{'true' if condition.value else 'false'}"
-    who = _who(condition.who)
+    who = who_text(condition.who)
     if isinstance(condition, At):
         return f"{who} at {condition.place.name}"
     return f"{who} on_way" if isinstance(condition, OnWay) else f"{who} doing {condition.event.name}"
@@ -152,7 +152,7 @@ def condition_words(condition: Condition, holds: bool = True) -> str:
         return _joined(condition, condition_words) if holds else f"not ({_joined(condition, condition_words)})"
     if isinstance(condition, Holds):
         return f"{condition.state.name} is {'true' if condition.value is holds else 'false'}"
-    who, verb = _who(condition.who, shown=True), "is" if holds else "is not"
+    who, verb = who_text(condition.who, shown=True), "is" if holds else "is not"
     if condition.who.agent is None and not holds:
         who, verb = "no" + who[len("any") :], "is"
     if isinstance(condition, At):
@@ -169,7 +169,8 @@ def _bracketed(part: Condition, say: Callable[[Condition], str]) -> str:
     return f"({say(part)})" if isinstance(part, (AllOf, AnyOf)) else say(part)
 
 
-def _who(who: Who, shown: bool = False) -> str:
+def who_text(who: Who, shown: bool = False) -> str:
+    """Of whom a condition speaks; with `shown` what people read for an agent."""
     if who.agent is None:
         return f"any {'robot' if who.robots else 'agent'}"
     return who.agent.shown if shown else who.agent.name

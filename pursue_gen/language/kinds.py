@@ -6,16 +6,14 @@ from typing import Dict, FrozenSet, Mapping, Type
 
 from pursue_gen.language.conditions import WORDS
 from pursue_gen.language.statements.agent import Agent
-from pursue_gen.language.statements.assume import Assume
 from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.statements.battery import Battery
 from pursue_gen.language.statements.connect import Connection
 from pursue_gen.language.statements.dependency import Dependency
 from pursue_gen.language.statements.event import Event
-from pursue_gen.language.statements.objective import Objective
+from pursue_gen.language.statements.headed import Assume, Objective, ReachObjective
 from pursue_gen.language.statements.optional import Optional
 from pursue_gen.language.statements.poi import Poi
-from pursue_gen.language.statements.reach_objective import ReachObjective
 from pursue_gen.language.statements.rule import Rule
 from pursue_gen.language.statements.state import State
 from pursue_gen.language.statements.travel import Travel
@@ -49,7 +47,7 @@ DECLARED: Mapping[str, str] = {token: kind.declares for token, kind in STATEMENT
 TAIL = "TAIL"
 """The token of the query that the original's tools leave behind the objective, which is no statement."""
 
-_ALL = (*(word for kind in STATEMENTS.values() for word in kind.words), *WORDS)
+_ALL = (*(word for kind in STATEMENTS.values() for word in kind.own_words), *WORDS)
 
 KEYWORDS: Dict[str, str] = {word.token: word.text for word in _ALL}
 """The words of the language, by token."""

@@ -35,14 +35,9 @@ def exact(number: Number) -> Number:
 
 def decimal_text(number: Number) -> str:
     """The number as an integer, as a decimal where that is exact, else as a fraction `n/d`."""
-    rest, twos, fives = number.denominator, 0, 0
-    while rest % 2 == 0:
-        rest, twos = rest // 2, twos + 1
-    while rest % 5 == 0:
-        rest, fives = rest // 5, fives + 1
-    if rest != 1:
+    places = next((k for k in range(number.denominator.bit_length()) if 10**k % number.denominator == 0), None)
+    if places is None:
         return f"{number.numerator}/{number.denominator}"
-    places = max(twos, fives)
     if places == 0:
         return str(number.numerator)
     digits = str(abs(number.numerator) * 10**places // number.denominator).rjust(places + 1, "0")

@@ -14,7 +14,7 @@ from pursue_gen.language.syntax import Statement
 from pursue_gen.language.tokens import bare, start_of
 
 _USED: Dict[Tuple[str, str], str] = {
-    (token, word.upper()): thing for token, kind in STATEMENTS.items() for word, thing in kind.used.items()
+    (token, word.upper()): thing for token, kind in STATEMENTS.items() for word, thing in kind.used().items()
 }
 """The kind of thing that a name stands for, by the statement and the last word of the language before the name."""
 
@@ -23,7 +23,7 @@ _BEFORE_NAMES = frozenset({"COLON", "COMMA", "LPAR"})
 SUBJECTS = ("agent", "state")
 """The kinds of things with which a part of a condition may begin."""
 
-_OPENS = {(token, word.upper()) for token, kind in STATEMENTS.items() for word in kind.conditions_behind}
+_OPENS = {(token, word.upper()) for token, kind in STATEMENTS.items() for word in kind.conditions_behind()}
 """The statements with a condition in them, and the word behind which it begins."""
 
 _OBJECT = {"AT": "POI", "DOING": "event"}

@@ -13,6 +13,7 @@ from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, error, in_
 from pursue_gen.language import scenario as pml
 from pursue_gen.language.document import Document
 from pursue_gen.language.kinds import BY_RULE
+from pursue_gen.language.statements.base import Labelled
 from pursue_gen.language.syntax import MOST_LETTERS, too_large
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.tree_reader import TreeReader
@@ -129,7 +130,7 @@ def _parts(tree: Any, reader: TreeReader) -> Tuple[Any, ...]:
 def _labels(trees: Iterable[Tree[Token]]) -> Iterator[Tuple[str, str]]:
     """Names with their labels, where they have one; the first declaration counts."""
     for tree in reversed(list(trees)):
-        if isinstance(tree, Tree) and BY_RULE[tree.data].has_label():
-            name, _, label, *_ = tree.children
+        if isinstance(tree, Tree) and issubclass(BY_RULE[tree.data], Labelled):
+            name, label, *_ = tree.children
             if isinstance(name, Token) and isinstance(label, Token):
                 yield bare(name), bare(label)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Iterable, Iterator, Set
 
 from pursue_gen.diagnostics import NOWHERE, Span
 
@@ -19,3 +20,12 @@ class Ref:
     def shown(self) -> str:
         """What people read."""
         return self.label or self.name
+
+
+def twice(refs: Iterable[Ref]) -> Iterator[Ref]:
+    """Those whose name stands before already."""
+    seen: Set[str] = set()
+    for ref in refs:
+        if ref.name in seen:
+            yield ref
+        seen.add(ref.name)

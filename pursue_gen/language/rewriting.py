@@ -132,9 +132,14 @@ class Rewriting:
             yield behind(last, f" {words}")
 
 
+def parts_in(kind: str) -> Tuple[str, ...]:
+    """The tokens that begin the parts of statements of a kind; (): they have none that are written alone."""
+    return STATEMENTS[kind].parts if kind in STATEMENTS else ()
+
+
 def parts_of(statement: Statement) -> Dict[str, Part]:
     """The parts of a statement with parts that are there: the word that begins each → its tokens, that word first."""
-    begins = STATEMENTS[statement.kind].parts
+    begins = parts_in(statement.kind)
     found: Dict[str, List[Token]] = {}
     current = ""
     for token, named in zip(statement.tokens, are_names(statement.tokens)):
@@ -150,7 +155,7 @@ def part_edits(statement: Statement, kind: str, words: Optional[str]) -> List[Ed
 
     `words` are those behind the word that begins the part; of a POSE they are the comment itself.
     """
-    found, begins = parts_of(statement), STATEMENTS[statement.kind].parts
+    found, begins = parts_of(statement), parts_in(statement.kind)
     old = found.get(kind, ())
     if words is None:
         return [written(token, "") for token in old]

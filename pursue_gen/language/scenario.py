@@ -8,23 +8,14 @@ from typing import Any, Callable, Collection, Dict, Iterator, Optional, Tuple, U
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language import assumptions as kinds_of_assumptions
+from pursue_gen.language import objectives as kinds_of_objectives
 from pursue_gen.language.assumptions import *
 from pursue_gen.language.assumptions.base import Assumption
 from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, Holds, Not, OnWay, Who
 from pursue_gen.language.numbers import Window, exact, window_of
-from pursue_gen.language.objectives import (
-    Always,
-    Avoid,
-    GivenUp,
-    NeverWith,
-    Patrol,
-    Reach,
-    Respond,
-    Safety,
-    StatedObjective,
-    WhyGivenUp,
-    patrols_in,
-)
+from pursue_gen.language.objectives import *
+from pursue_gen.language.objectives import GivenUp, Patrol, Reach, Safety, StatedObjective, WhyGivenUp
+from pursue_gen.language.objectives.patrol import patrols_in
 from pursue_gen.language.poses import Pose, Spot
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
@@ -38,12 +29,12 @@ from pursue_gen.language.statements.state import State
 from pursue_gen.language.statements.travel import Travel
 
 __all__ = [
-    "Agent", "AllOf", "Always", "AnyOf", "At", "Avoid", "Battery", "Both", "Choice", "Condition", "Connection",
-    "Dependency", "Doing", "Event", "GivenUp", "Holds", "NeverWith", "Not", "OnWay", "Patrol", "Poi", "Pose", "Reach",
-    "Ref", "Respond", "Rule", "RuleBody", "Safety", "Scenario", "Sequence", "Spot", "State", "StatedObjective",
+    "Agent", "AllOf", "AnyOf", "At", "Battery", "Both", "Choice", "Condition", "Connection", "Dependency", "Doing",
+    "Event", "Holds", "Not", "OnWay", "Poi", "Pose", "Ref", "Rule", "RuleBody", "Scenario", "Sequence", "Spot", "State",
     "Travel", "Who", "Window",
 ]
 __all__ += kinds_of_assumptions.__all__
+__all__ += kinds_of_objectives.__all__
 """All parts of a scenario: whoever works with scenarios imports them from here."""
 
 
@@ -140,14 +131,8 @@ class Scenario:
 
     def conditions(self) -> Iterator[Tuple[Condition, Span]]:
         """Every condition, with the place of the statement that it stands in."""
-        limited: Tuple[Union[Connection, Event], ...] = (*self.connections, *self.events)
-        for part in limited:
-            if part.only_if is not None:
-                yield part.only_if, part.span
-        for safety in self.safety:
-            yield from ((condition, safety.span) for condition in safety.conditions)
-        for assumption in self.assumptions:
-            yield from ((condition, assumption.span) for condition in assumption.conditions)
+        for part in (*self.connections, *self.events, *self.safety, *self.assumptions):
+            yield from ((condition, part.span) for condition in part.conditions)
 
     def on_patrol(self, patrol: Patrol) -> Tuple[Agent, ...]:
         """The agents of whom one has to be at the place."""

@@ -119,7 +119,7 @@ def grammar_text() -> str:
     rules = [
         (Path(__file__).parent / "grammar.lark").read_text(encoding="utf-8"),
         f"?statement: {' | '.join((*BY_RULE, TAIL))}",
-        *(kind.grammar for kind in STATEMENTS.values()),
+        *(kind.grammar() for kind in STATEMENTS.values()),
         f"ref: WORD | {' | '.join(MAY_BE_NAMES)}",
         *(f'{token}: "{word}"' for token, word in KEYWORDS.items()),
     ]

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Any, List, Mapping, Optional, Tuple
 
 from lark import Token
 
-from pursue_gen.diagnostics import Diagnostic, Span
-from pursue_gen.language.condition_trees import condition_of
-from pursue_gen.language.conditions import Condition, EventOrCondition
-from pursue_gen.language.number_messages import no_count, no_number
-from pursue_gen.language.numbers import Number, is_fine, read_number
+from pursue_gen.diagnostics import Diagnostic, Span, error
+from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, EventOrCondition, Holds, Not, OnWay, Who
+from pursue_gen.language.numbers import MOST_DIGITS, Number, is_fine, read_number
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.tokens import bare, span_of
+from pursue_gen.language.tokens import bare, shown, span_of
 
 MOST = 1_000_000
 """The largest distance, duration, inverse speed or deadline: what comes of it must fit a machine's integers."""
+
+_LARGEST_POWER = 6
+"""The largest number has so many zeros."""
 
 
 class TreeReader:
@@ -42,10 +44,6 @@ class TreeReader:
         token = tree.children[0]
         return self._use(str(token), token)
 
-    def ref_or_none(self, tree: Any) -> Optional[Ref]:
-        """A name, where there is one."""
-        return None if tree is None else self.ref(tree)
-
     def refs(self, tree: Any) -> Tuple[Ref, ...]:
         """A list of names; none where there is no list."""
         return tuple(self.ref(child) for child in tree.children) if tree is not None else ()
@@ -66,38 +64,68 @@ class TreeReader:
         value = read_number(token)
         if value is not None and value <= MOST and is_fine(value):
             return value
-        self.findings.append(no_number(token, value, MOST, self.at(token)))
+        if value is not None and value > MOST:
+            return self._too_large(token)
+        finding = error("PML014", f"expected a number, found {shown(token)}", self.at(token), _instead(token))
+        if value is not None:
+            message = f"{shown(token, 20)} has more than {MOST_DIGITS} digits after the point"
+            finding = error("PML280", message, self.at(token), "round it, or choose a smaller unit")
+        self.findings.append(finding)
         return 1
-
-    def number_or_none(self, token: Optional[Token]) -> Optional[Number]:
-        """The token's value, where there is one."""
-        return None if token is None else self.number(token)
 
     def count(self, token: Token) -> int:
         """The token's value, which says how often, or a rank; 1 after a complaint."""
         value = read_number(token)
         if isinstance(value, int) and value <= MOST:
             return value
-        self.findings.append(no_count(token, value, MOST, self.at(token)))
+        if value is not None and value > MOST:
+            return self._too_large(token)
+        hint = "write digits only" if value is None else "write it without decimals"
+        self.findings.append(error("PML014", f"expected a whole number, found {shown(token)}", self.at(token), hint))
+        return 1
+
+    def _too_large(self, token: Token) -> int:
+        message = f"{shown(token, 20)} is too large: {MOST} is the largest number"
+        self.findings.append(error("PML014", message, self.at(token), "choose a larger unit"))
         return 1
 
     def window(self, tree: Any) -> Tuple[Number, Optional[Number]]:
         """The numbers of `5 to 8`; one alone has no second one."""
         low, _, high = tree.children
-        return self.number(low), self.number_or_none(high)
+        return self.number(low), None if high is None else self.number(high)
 
     def condition(self, tree: Any) -> Condition:
         """A condition."""
-        return condition_of(tree, self.ref)
-
-    def condition_or_none(self, tree: Any) -> Optional[Condition]:
-        """A condition, where there is one."""
-        return None if tree is None else self.condition(tree)
+        kind, children = tree.data, tree.children
+        if kind == "negation":
+            return Not(self.condition(children[0]))
+        if kind in ("all_of", "any_of"):
+            return (AllOf if kind == "all_of" else AnyOf)(tuple(map(self.condition, children)))
+        if kind == "holds":
+            return Holds(self.ref(children[0]), children[1].type == "IS_TRUE")
+        first = children[0].children[0]
+        named = not isinstance(first, Token)
+        who = Who(self.ref(first)) if named else Who(None, robots=len(children[0].children) > 1)
+        condition: Condition = OnWay(who)
+        if kind != "on_way":
+            condition = (At if kind == "at" else Doing)(who, self.ref(children[1]))
+        return condition if named or first.type != "NO" else Not(condition)
 
     def event_or_condition(self, tree: Any) -> EventOrCondition:
         """The event that is named, or the condition."""
         return self.ref(tree) if tree.data == "ref" else self.condition(tree)
 
-    def label(self, token: Optional[Token]) -> Optional[str]:
-        """What people read, where it is given."""
-        return None if token is None else bare(token)
+
+def _instead(text: str) -> str:
+    """What to write in place of what is no number."""
+    if re.fullmatch(r"[0-9]{1,9}\.", text):
+        return f"write {text[:-1]}: a point stands between digits"
+    if re.fullmatch(r"\.[0-9]{1,9}", text):
+        return f"write 0{text}: a point stands between digits"
+    power = re.fullmatch(r"([1-9])[eE]([0-9])", text)
+    if power and int(power.group(2)) <= _LARGEST_POWER:
+        return f"write {power.group(1)}{'0' * int(power.group(2))}: all digits of it"
+    unit = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,9})?)[^\W\d]+", text)
+    if unit:
+        return f"write {unit.group(1)}: a number stands alone, in the unit of your choice"
+    return "write digits only, with a point before decimals: 3 or 2.5"

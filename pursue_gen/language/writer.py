@@ -14,7 +14,6 @@ from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import Patrol, Ref, Scenario
-from pursue_gen.language.wording import statement_text
 
 
 def written(scenario: Scenario) -> Scenario:
@@ -88,6 +87,6 @@ def _objectives(objectives: Iterable[pml.StatedObjective]) -> Iterator[str]:
     turns: List[pml.StatedObjective] = []
     for objective in objectives:
         turns.append(objective)
-        if not isinstance(objective, Patrol) or len(turns) >= len(objective.order):
-            yield statement_text(objective)
+        if len(turns) >= len(objective.order):
+            yield objective.full_text
             turns = []

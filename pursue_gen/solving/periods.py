@@ -17,8 +17,8 @@ from pursue_gen.diagnostics import Span
 from pursue_gen.language.document import Document, Edit, edited
 from pursue_gen.language.lines import Lines
 from pursue_gen.language.scenario import Patrol, Scenario
+from pursue_gen.language.sentences import periods_found
 from pursue_gen.language.tokens import end_of
-from pursue_gen.language.wording import periods_found
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import Rules, played

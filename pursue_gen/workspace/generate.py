@@ -17,7 +17,7 @@ from pursue_gen.drawing import map_svg
 from pursue_gen.language.document import statement_text
 from pursue_gen.language.labels import in_markdown
 from pursue_gen.language.scenario import Reach, Safety, Scenario
-from pursue_gen.language.wording import condition_of_promise
+from pursue_gen.language.sentences import condition_of_promise
 from pursue_gen.outcomes import Invalid
 from pursue_gen.partition import SubStrategy, partition, strategy_file, unneeded
 from pursue_gen.partition.yaml_text import inline, yaml_text

@@ -11,9 +11,9 @@ from typing import Any, Dict, Iterable, Iterator, List, Mapping, Optional, Seque
 
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.files import read_text
-from pursue_gen.language.checks import MOST_METRES
 from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.language.similar import closest
+from pursue_gen.language.statements.agent import MOST_METRES
 from pursue_runtime.bounded import SETTINGS, BadText, read_yaml
 
 _PADDING = 0.01

@@ -9,7 +9,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.language.scenario import Connection, Scenario
-from pursue_gen.language.wording import objective_sentence, objective_words
+from pursue_gen.language.sentences import objective_sentence, objective_words
 from pursue_gen.partition import SubStrategy
 from pursue_gen.partition.strategy_data import number, strategy_data
 from pursue_gen.partition.yaml_text import inline, yaml_text

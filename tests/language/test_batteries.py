@@ -12,7 +12,7 @@ from pursue_gen.language import parse
 from pursue_gen.language.batteries import MOST_LEVELS, actions_use, levels, movements_use, recharges
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read
-from pursue_gen.language.wording import speed_words
+from pursue_gen.language.sentences import speed_words
 
 HOUSE = """\
 poi "dock"

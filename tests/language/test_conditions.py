@@ -27,7 +27,7 @@ from pursue_gen.language.conditions import (
 )
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.scenario import Always, Avoid, NeverWith
-from pursue_gen.language.wording import objective_words
+from pursue_gen.language.sentences import objective_words
 from tests.conditions import CONDITIONS, SCENARIO, ref, with_only_if, without_places
 
 from .texts import findings, text

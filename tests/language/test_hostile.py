@@ -226,7 +226,7 @@ WORDS = [*KEYWORDS.values(), *"a b bot man work hand tired order human 3 0 99999
 WORDS += ['"a"', '"b"', '"e"', '"', "“a”", ":", ",", "(", ")", ";", ".", "//", "/*", "*/", "\n"]
 WORDS += ["//[0,0,0,0,0,0,1]", "//[x]", "//[1,2", '"\x1b[31m"', '"' + "n" * 90 + '"']
 WORDS += ["control: A<> x", "\0", "\u202e", "\ufeff", "\r"]
-FORM_WORDS = [kind.form.split("(")[0].replace("·", "\n").split() for kind in kinds.STATEMENTS.values()]
+FORM_WORDS = [kind.form().split("(")[0].replace("·", "\n").split() for kind in kinds.STATEMENTS.values()]
 
 lists_of_words = st.lists(st.sampled_from(WORDS), max_size=40)
 

@@ -16,7 +16,7 @@ from pursue_gen.language.draft import Draft
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.labels import LONGEST_LABEL, markdown, why_no_label
 from pursue_gen.language.navigation import rename
-from pursue_gen.language.wording import objective_words
+from pursue_gen.language.sentences import objective_words
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import write_network
 from pursue_gen.tools.lsp.fixes import fixes

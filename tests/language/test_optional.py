@@ -11,7 +11,7 @@ from pursue_gen.language.checks import check_reading
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.objectives import WhyGivenUp
 from pursue_gen.language.parser import read
-from pursue_gen.language.wording import objective_words, promise_words, statement_text
+from pursue_gen.language.sentences import objective_words, promise_words
 
 HOUSE = """\
 poi "desk"
@@ -42,7 +42,7 @@ def test_the_number_behind_optional_is_that_of_its_objectives() -> None:
 
 def test_what_is_given_up_is_no_objective_any_more_and_is_remembered() -> None:
     scenario = parse(HOUSE + WANTED, "x.pur", "x").giving_up((1,)).giving_up((2,), WhyGivenUp.TOO_MUCH_WORK)
-    assert scenario.optional == () and [statement_text(one) for one in scenario.objectives] == [
+    assert scenario.optional == () and [one.full_text for one in scenario.objectives] == [
         "reach_objective: do mail"
     ]
     assert promise_words(scenario) == [
@@ -56,7 +56,7 @@ def test_what_is_promised_is_said() -> None:
     scenario = parse(HOUSE + WANTED, "x.pur", "x").giving_up((1,))
     assert promise_words(scenario)[1] == "optional 2 is promised: do water within 9"
     assert objective_words(scenario)[1] == "Optional 2: water happens within 9 units after the start."
-    assert statement_text(scenario.reach[1]) == "optional 2 reach_objective: do water within 9"
+    assert scenario.reach[1].full_text == "optional 2 reach_objective: do water within 9"
 
 
 def test_where_nothing_is_optional_nothing_is_said() -> None:
@@ -82,7 +82,7 @@ def test_optional_is_a_name_as_well() -> None:
         "optional 2 reach_objective: do mail"
     )
     scenario = parse(text, "x.pur", "x")
-    assert [statement_text(objective) for objective in scenario.objectives] == [
+    assert [objective.full_text for objective in scenario.objectives] == [
         "objective: avoid optional",
         "reach_objective: do optional within 9",
         "optional 1 reach_objective: do optional",

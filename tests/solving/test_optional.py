@@ -15,7 +15,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.language.objectives import WhyGivenUp
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import promise_words
+from pursue_gen.language.sentences import promise_words
 from pursue_gen.proof.checker import ProofReport
 from pursue_gen.solving import optional, proving
 from pursue_gen.solving.inputs import game_of

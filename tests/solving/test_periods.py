@@ -12,7 +12,7 @@ from pursue_gen.diagnostics import usage_error
 from pursue_gen.language import parse
 from pursue_gen.language.checks import check
 from pursue_gen.language.scenario import Patrol, Scenario
-from pursue_gen.language.wording import objective_words, periods_found
+from pursue_gen.language.sentences import objective_words, periods_found
 from pursue_gen.solving.inputs import settled
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.periods import least_period, longest, with_period, without_period

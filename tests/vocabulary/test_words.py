@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.language import parse
+from pursue_gen.language.sentences import objective_words
 from pursue_gen.language.symbols import Role
-from pursue_gen.language.wording import objective_words
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga import translate
 from pursue_gen.vocabulary.words import words_of

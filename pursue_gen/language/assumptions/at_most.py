@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, counted, error
 from pursue_gen.language.assumptions.base import AboutOne, Setting
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.template import Template
+from pursue_gen.language.word import Form, Numbers, Word
 
 MOST_TIMES = 100
 """The most times that an assumption may allow: each is a value of a variable of its own."""
@@ -23,17 +25,15 @@ class AtMost(AboutOne):
     event: Ref
     times: int
     span: Span = NOWHERE
-    title: ClassVar[str] = "how often somebody does something"
-    written: ClassVar[str] = "{agent} does {event} at_most {times} times"
-    example: ClassVar[Mapping[str, str]] = {"agent": "guest", "event": "call", "times": "2"}
-    meanings: ClassVar[Mapping[str, str]] = {"does": "The event that the assumption is about."}
+    template: ClassVar[Template] = Template("{agent=guest} does {event=call} at_most {times:count=2} times")
+    own_words: ClassVar[Tuple[Word, ...]] = (Word("does", "The event that the assumption is about.", True),)
+    forms: ClassVar[Tuple[Form, ...]] = (Form("how often somebody does something", template.to_fill_in),)
+    numbers: ClassVar[Numbers] = {
+        "at_most": lambda _, times: f"It begins that {counted(times, 'time')} at most in the whole mission.",
+    }
     number: ClassVar[str] = "times"
     nearest: ClassVar[int] = MOST_TIMES
     counts: ClassVar[bool] = True
-
-    @classmethod
-    def number_words(cls, number: Number) -> str:
-        return f"It begins that {number} time{'' if number == 1 else 's'} at most in the whole mission."
 
     @property
     def clause(self) -> str:

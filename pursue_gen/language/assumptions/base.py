@@ -6,20 +6,14 @@ from dataclasses import replace
 from typing import AbstractSet, Any, Callable, ClassVar, Iterator, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
-from pursue_gen.language.conditions import Condition, condition_text, names_in
-from pursue_gen.language.numbers import Number
+from pursue_gen.language.conditions import Condition
+from pursue_gen.language.numbers import Number, whole_above
 from pursue_gen.language.objectives import Safety
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.statements.base import Written
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.statements.state import State
-
-NAMES: Mapping[str, str] = {"agent": "agent", "event": "event", "place": "POI"}
-"""The fields that are names, and the kinds of things that these stand for. `condition` is one, others are numbers."""
-
-_RULES = {**dict.fromkeys(NAMES, "ref"), "condition": "_plain"}
-_HOLES = {field: f"{{{kind}}}" for field, kind in NAMES.items()}
-_HOLES["condition"] = "({agent} at {POI} and {agent} at {POI})"
 
 
 class Setting(NamedTuple):
@@ -34,20 +28,12 @@ class Setting(NamedTuple):
     at_start: Callable[[Condition], bool]  # whether a condition holds at the start
 
 
-class Assumption:
+class Assumption(Written):
     """What agents that are not controlled are assumed to do, or not to do: a frozen dataclass."""
 
     span: Span
     listed_in: ClassVar[str] = "assumptions"
     """The field of a scenario that has it."""
-    title: ClassVar[str]
-    """What it is about, for those who look for a statement."""
-    written: ClassVar[str]
-    """How it is written behind `assume:`, with its fields in braces."""
-    example: ClassVar[Mapping[str, str]]
-    """A text for each of these fields."""
-    meanings: ClassVar[Mapping[str, str]] = {}
-    """What each word means that no other statement has. Such words may be names, too."""
     number: ClassVar[str] = ""
     """Its field with a number; "": it has none."""
     nearest: ClassVar[int] = 0
@@ -55,71 +41,28 @@ class Assumption:
     counts: ClassVar[bool] = False
     """A variable counts for it how often something has happened."""
 
-    @classmethod
-    def fields(cls) -> Iterator[Tuple[str, str]]:
-        """Each field that is written, behind the last word before it."""
-        word = "assume"
-        for part in cls.written.split():
-            if part.startswith("{"):
-                yield word, part[1:-1]
-            else:
-                word = part
-
-    @classmethod
-    def filled(cls, texts: Callable[[str], str]) -> str:
-        """The statement with a text for each of its fields."""
-        return f"assume: {cls.written}".format_map({field: texts(field) for _, field in cls.fields()})
-
-    @classmethod
-    def rule(cls) -> str:
-        """How it is written, in terms of the grammar: a tree has its fields as children."""
-        words = (word if word.startswith("{") else f'"{word}"' for word in cls.written.split())
-        return " ".join(words).format_map({field: _RULES.get(field, "NUMBER") for _, field in cls.fields()})
-
-    @classmethod
-    def form(cls) -> str:
-        """The statement with holes to fill in, as `language.forms` has them."""
-        return cls.filled(lambda field: _HOLES.get(field) or f"{{={cls.example[field]}}}")
-
-    @classmethod
-    def number_words(cls, number: Number) -> str:
-        """What that number means in it."""
-        raise NotImplementedError
-
     @property
     def text(self) -> str:
         """The statement, as in `assume: visitor never at lab`."""
-        return self.filled(self._text)
+        return f"assume: {super().text}"
 
     @property
     def subject(self) -> str:
         """The statement without its number: two of one subject say the same, or contradict."""
-        return self.filled(lambda field: "…" if field == self.number else self._text(field))
-
-    def _text(self, field: str) -> str:
-        value = getattr(self, field)
-        if field == "condition":
-            return f"({condition_text(value)})"
-        return str(value.name if field in NAMES else value)
+        return f"assume: {self.template.written(self, **{self.number: '…'})}"
 
     @property
     def clause(self) -> str:
         """What is assumed, in words, as in `visitor is never at lab`."""
         raise NotImplementedError
 
-    def names(self) -> Iterator[Tuple[str, Ref]]:
-        """Each name outside its conditions, behind the kind of thing that it stands for."""
-        return ((NAMES[field], getattr(self, field)) for _, field in self.fields() if field in NAMES)
-
-    @property
-    def conditions(self) -> Tuple[Condition, ...]:
-        """The conditions with each of which it is broken."""
-        return ()
-
     def is_about(self, agent: str) -> bool:
         """True if it names the agent, be it in a condition."""
-        named = [*self.names(), *(pair for condition in self.conditions for pair in names_in(condition))]
-        return any(kind == "agent" and ref.name == agent for kind, ref in named)
+        return self.speaks_of("agent", agent) or any((kind, ref.name) == ("agent", agent) for kind, ref in self.names())
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        if kind == "agent" and self.is_about(name):
+            yield f"assumed: {shown(self.clause)}"
 
     def binds(self, agent: Agent) -> bool:
         """True if it says of this agent that it does not do all that it could."""
@@ -129,8 +72,8 @@ class Assumption:
         """The finding that a line assumes the same already."""
         return error("PML253", f"line {line} assumes this already", self.span, "delete one of the two")
 
-    def check(self, setting: Setting) -> Iterator[Diagnostic]:
-        """What is wrong with it; its names are declared."""
+    def check_in(self, setting: Setting) -> Iterator[Diagnostic]:
+        """What is wrong with it in its scenario; its names are declared."""
         raise NotImplementedError
 
     @property
@@ -180,7 +123,7 @@ class AboutOne(Assumption):
         message = f"line {line} assumes this of {self.agent.name} already"
         return error("PML253", message, self.span, "keep the one that is meant")
 
-    def check(self, setting: Setting) -> Iterator[Diagnostic]:
+    def check_in(self, setting: Setting) -> Iterator[Diagnostic]:
         for agent in [each for each in setting.agents if each.name == self.agent.name][:1]:
             if agent.controllable:
                 message = f"{agent.name} is controlled: what it does is decided, not assumed"
@@ -212,3 +155,21 @@ class AboutOne(Assumption):
         else:
             return None
         return warning("PML254", message, self.span, "delete the assumption")
+
+
+class NotSooner(AboutOne):
+    """An assumption that an agent begins an event only so many time units after something, or later."""
+
+    event: Ref
+    time: Number
+    number: ClassVar[str] = "time"
+    nearest: ClassVar[int] = 1
+
+    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+        if self.time <= 0:
+            message = f"{''.join(self.numbers)} 0 assumes nothing: expected more than 0"
+            return error("PML251", message, self.span, "write the time, or delete the assumption")
+        return self.never_does(agent, self.event)
+
+    def stronger(self, longest: Number) -> Sequence[int]:
+        return whole_above(self.time, longest)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Mapping, Optional, Sequence
+from typing import ClassVar, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.assumptions.base import AboutOne, Setting
 from pursue_gen.language.numbers import Number, whole_below
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.template import Template
+from pursue_gen.language.word import Form, Numbers, Word
 
 SHORTEST_STAY = 2
 """Time units: an agent rests for one before it may set off."""
@@ -23,16 +25,12 @@ class Leaves(AboutOne):
     place: Ref
     time: Number
     span: Span = NOWHERE
-    title: ClassVar[str] = "how long somebody stays"
-    written: ClassVar[str] = "{agent} leaves {place} within {time}"
-    example: ClassVar[Mapping[str, str]] = {"agent": "visitor", "place": "hall", "time": "30"}
-    meanings: ClassVar[Mapping[str, str]] = {"leaves": "The place that it leaves in time."}
+    template: ClassVar[Template] = Template("{agent=visitor} leaves {place:POI=hall} within {time:number=30}")
+    own_words: ClassVar[Tuple[Word, ...]] = (Word("leaves", "The place that it leaves in time.", True),)
+    forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody stays", template.to_fill_in),)
+    numbers: ClassVar[Numbers] = {"within": "It has set off {} of time after it came, or after the start.".format}
     number: ClassVar[str] = "time"
     nearest: ClassVar[int] = SHORTEST_STAY
-
-    @classmethod
-    def number_words(cls, number: Number) -> str:
-        return f"It has set off {units(number)} of time after it came, or after the start."
 
     @property
     def clause(self) -> str:

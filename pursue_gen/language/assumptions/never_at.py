@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
+from typing import ClassVar, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import AboutOne, Assumption, Setting
@@ -11,6 +11,8 @@ from pursue_gen.language.conditions import At, atoms
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.template import Template
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -20,10 +22,9 @@ class NeverAt(AboutOne):
     agent: Ref
     place: Ref
     span: Span = NOWHERE
-    title: ClassVar[str] = "where somebody never goes"
-    written: ClassVar[str] = "{agent} never at {place}"
-    example: ClassVar[Mapping[str, str]] = {"agent": "visitor", "place": "store"}
-    meanings: ClassVar[Mapping[str, str]] = {"never": "It never sets off to that place."}
+    template: ClassVar[Template] = Template("{agent=visitor} never at {place:POI=store}")
+    own_words: ClassVar[Tuple[Word, ...]] = (Word("never", "It never sets off to that place.", True),)
+    forms: ClassVar[Tuple[Form, ...]] = (Form("where somebody never goes", template.to_fill_in),)
 
     @property
     def clause(self) -> str:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, List, Mapping, Tuple
+from typing import ClassVar, Iterator, List, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import Assumption, Setting
 from pursue_gen.language.assumptions.leaves import Leaves
 from pursue_gen.language.conditions import Atom, Condition, Doing, Holds, atoms, condition_words
 from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.template import Template
+from pursue_gen.language.word import Form
 
 _DECIDED = "what robots and allies do is decided, not assumed"
 _OBJECTIVE = "write an objective instead, as in objective: avoid …"
@@ -24,22 +26,17 @@ class NeverHolds(Assumption):
 
     condition: Condition
     span: Span = NOWHERE
-    title: ClassVar[str] = "what never holds"
-    written: ClassVar[str] = "not {condition}"
-    example: ClassVar[Mapping[str, str]] = {"condition": "(visitor at a and guest at a)"}
+    template: ClassVar[Template] = Template("not {condition:bracketed=(visitor at a and guest at a)}")
+    forms: ClassVar[Tuple[Form, ...]] = (Form("what never holds", "not ({agent} at {POI} and {agent} at {POI})"),)
 
     @property
     def clause(self) -> str:
         return f"it never holds that {condition_words(self.condition)}"
 
-    @property
-    def conditions(self) -> Tuple[Condition, ...]:
-        return (self.condition,)
-
     def binds(self, agent: Agent) -> bool:
         return not agent.controllable
 
-    def check(self, setting: Setting) -> Iterator[Diagnostic]:
+    def check_in(self, setting: Setting) -> Iterator[Diagnostic]:
         found = [finding for atom in atoms(self.condition) for finding in self._of_others(atom, setting)]
         if not found and setting.at_start(self.condition):
             message = f"this holds at the start: {condition_words(self.condition)}"

@@ -9,15 +9,12 @@ from typing import Mapping, Type
 from pursue_gen.language.objectives.avoid import Always, Avoid
 from pursue_gen.language.objectives.base import Safety, StatedObjective
 from pursue_gen.language.objectives.never_with import NeverWith
-from pursue_gen.language.objectives.patrol import Patrol, patrols_in
+from pursue_gen.language.objectives.patrol import Patrol
 from pursue_gen.language.objectives.reach import Reach
 from pursue_gen.language.objectives.respond import Respond
 
-__all__ = [
-    "KINDS", "Always", "Avoid", "GivenUp", "NeverWith", "Patrol", "Reach", "Respond", "Safety", "StatedObjective",
-    "WhyGivenUp", "patrols_in",
-]  # fmt: skip
-
+__all__ = ["Always", "Avoid", "GivenUp", "NeverWith", "Patrol", "Reach", "Respond", "Safety", "StatedObjective"]
+"""Parts of scenarios: `language.scenario` hands them on."""
 
 KINDS: Mapping[str, Type[Safety]] = {
     "respond": Respond, "avoid": Avoid, "always": Always, "never_with": NeverWith, "patrol": Patrol,

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Callable, ClassVar, Iterator, Mapping, Tuple
+from typing import Any, Callable, ClassVar, Iterator, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.conditions import Condition, Not, condition_text, condition_words, held_by
 from pursue_gen.language.objectives.base import Breaks, Safety
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.template import Template
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word
 
@@ -21,26 +22,20 @@ class Avoid(Safety):
     span: Span = NOWHERE
     optional: int = 0
 
-    grammar: ClassVar[str] = '"avoid" (ref | condition)'
-    form: ClassVar[str] = "avoid e (or a condition: avoid open is_true)"
+    template: ClassVar[Template] = Template("avoid {event:event or condition=e}")
+    note: ClassVar[str] = "or a condition: avoid open is_true"
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("avoid", "This event must never happen, or this condition must never hold."),
     )
     forms: ClassVar[Tuple[Form, ...]] = (
-        Form("never", "objective: avoid {event}"),
-        Form("never while …", "objective: avoid {agent} at {POI} and {agent} on_way"),
+        Form("never", "avoid {event}"),
+        Form("never while …", "avoid {agent} at {POI} and {agent} on_way"),
     )
-    used: ClassVar[Mapping[str, str]] = {"avoid": "event"}
-    conditions_behind: ClassVar[Tuple[str, ...]] = ("avoid",)
 
     @classmethod
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Safety:
         what = reader.event_or_condition(children[0])
         return cls(what, **at) if isinstance(what, Ref) else Always(what, False, **at)
-
-    @property
-    def text(self) -> str:
-        return f"avoid {self.event.name}"
 
     def sentence(self, shown: Callable[[str], str]) -> str:
         return f"{self.event.shown} never happens."
@@ -48,14 +43,11 @@ class Avoid(Safety):
     def broken(self, beside: Callable[[str], str]) -> str:
         return f"{self.event.shown} has happened, which was to be avoided"
 
-    def names(self) -> Iterator[Tuple[str, Ref]]:
-        yield "event", self.event
-
     @property
     def breaks(self) -> Breaks:
         return Breaks(event=self.event)
 
-    def about(self, kind: str, name: str) -> Iterator[str]:
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if (kind, name) == ("event", self.event.name):
             yield "must never happen"
 
@@ -69,15 +61,9 @@ class Always(Safety):
     span: Span = NOWHERE
     optional: int = 0
 
-    grammar: ClassVar[str] = '"always" condition'
-    form: ClassVar[str] = "always open is_true"
+    template: ClassVar[Template] = Template("always {condition=open is_true}")
     own_words: ClassVar[Tuple[Word, ...]] = (Word("always", "This condition must hold at every moment.", True),)
-    forms: ClassVar[Tuple[Form, ...]] = (Form("what always holds", "objective: always any robot at {POI}"),)
-    conditions_behind: ClassVar[Tuple[str, ...]] = ("always",)
-
-    @classmethod
-    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Safety:
-        return cls(reader.condition(children[0]), **at)
+    forms: ClassVar[Tuple[Form, ...]] = (Form("what always holds", "always any robot at {POI}"),)
 
     @property
     def text(self) -> str:
@@ -88,10 +74,6 @@ class Always(Safety):
 
     def broken(self, beside: Callable[[str], str]) -> str:
         return f"{condition_words(self.broken_if)}, which must never be"
-
-    @property
-    def conditions(self) -> Tuple[Condition, ...]:
-        return (self.condition,)
 
     @property
     def breaks(self) -> Breaks:

@@ -3,29 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import (
-    Any,
-    Callable,
-    ClassVar,
-    Iterator,
-    Mapping,
-    NamedTuple,
-    Optional,
-    Sequence,
-    Tuple,
-    TypeVar,
-    Union,
-    cast,
-)
+from typing import Any, Callable, ClassVar, Iterator, Mapping, NamedTuple, Optional, Sequence, Tuple, TypeVar, cast
 
-from pursue_gen.diagnostics import Diagnostic, Span, listed
-from pursue_gen.language.conditions import At, Condition, EventOrCondition
+from pursue_gen.diagnostics import Span, listed
+from pursue_gen.language.conditions import At, Condition, EventOrCondition, condition_words
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.statements.base import Written
 from pursue_gen.language.symbols import Role, role_of
-from pursue_gen.language.tree_reader import TreeReader
-from pursue_gen.language.word import Form, Word
 
 Stated = TypeVar("Stated", bound="StatedObjective")
 
@@ -66,9 +51,11 @@ class Whole(NamedTuple):
     behind: str = ""
 
 
-class StatedObjective:
+class StatedObjective(Written):
     """An objective: a frozen dataclass. `optional`: 0 for one that has to be met; else the number behind `optional`, 1
-    for what is to be kept longest."""
+    for what is to be kept longest. `text` is without the word that begins the statement; of a patrol in order it has
+    all places.
+    """
 
     span: Span
     optional: int
@@ -82,9 +69,10 @@ class StatedObjective:
     """It is reached once, and its limit counts from the start; else each time that something becomes due."""
 
     @property
-    def text(self) -> str:
-        """As its author may write it, without the word that begins the statement; of a patrol in order all places."""
-        raise NotImplementedError
+    def full_text(self) -> str:
+        """The whole statement, as in `objective: avoid e`."""
+        optional = f"optional {self.optional} " if self.optional else ""
+        return f"{optional}{self.word}: {self.text}"
 
     def sentence(self, shown: Callable[[str], str]) -> str:
         """What it wants. `shown`: what people read for a name."""
@@ -93,19 +81,6 @@ class StatedObjective:
     def broken(self, beside: Callable[[str], str]) -> str:
         """What has happened where it is broken. `beside`: a clause about where an agent is, by its name."""
         raise NotImplementedError
-
-    def names(self) -> Iterator[Tuple[str, Ref]]:
-        """Each name outside its conditions, behind the kind of thing that it stands for."""
-        return iter(())
-
-    def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
-        """What is wrong with it, whatever else stands in the scenario of these agents."""
-        return iter(())
-
-    @property
-    def conditions(self) -> Tuple[Condition, ...]:
-        """The conditions that it names."""
-        return ()
 
     @property
     def order(self) -> Tuple[str, ...]:
@@ -146,10 +121,6 @@ class StatedObjective:
         said = f"{listed(ref.shown for ref in done)} done" if done else self.words.statuses.get(role)
         return said or STATUSES.get(role, location)
 
-    def about(self, kind: str, name: str) -> Iterator[str]:
-        """What it means for an event or an agent, as in `must never happen`."""
-        return iter(())
-
 
 class Breaks(NamedTuple):
     """How a safety objective is broken: by an event; by a condition; by a pair of agents at one place; or since what is
@@ -168,28 +139,15 @@ class Breaks(NamedTuple):
 class Safety(StatedObjective):
     """An objective that holds until all that is to be reached is reached; for ever where nothing is."""
 
-    grammar: ClassVar[str]
-    """How it is written behind `objective:`, in Lark's notation."""
-    form: ClassVar[str]
-    """What it looks like there, for messages."""
-    own_words: ClassVar[Tuple[Word, ...]] = ()
-    """Words that no kind of statement or objective before it has."""
-    forms: ClassVar[Tuple[Form, ...]] = ()
-    """Ways to write its statement, to fill in."""
-    used: ClassVar[Mapping[str, str]] = {}
-    """The kind of thing that names stand for, by the last word of the language before them."""
-    conditions_behind: ClassVar[Tuple[str, ...]] = ()
-    """The words behind which a condition begins."""
-
-    @classmethod
-    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Union[Safety, Tuple[Safety, ...]]:
-        """The objective, or those of a statement that lists several, from its tree. `at`: `span`, its place."""
-        raise NotImplementedError
-
     @property
     def breaks(self) -> Breaks:
         """How it is broken."""
         raise NotImplementedError
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        broken = self.breaks.condition
+        if broken is not None and kind in ("state", "agent") and self.speaks_of(kind, name):
+            yield f"must never be: {shown(condition_words(broken))}"
 
     def kept_by(self, robot: Ref) -> Safety:
         """The objective kept by this robot; the same where any robot is not what keeps it."""

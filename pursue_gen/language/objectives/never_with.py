@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
+from typing import Callable, ClassVar, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.conditions import At, Who
 from pursue_gen.language.objectives.base import Breaks, Safety
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.agent import Agent
-from pursue_gen.language.tree_reader import TreeReader
+from pursue_gen.language.template import Template
 from pursue_gen.language.word import Form, Word
 
 
@@ -24,26 +23,15 @@ class NeverWith(Safety):
     place: Optional[Ref] = None
     optional: int = 0
 
-    grammar: ClassVar[str] = 'ref "never_with" ref ["at" ref]'
-    form: ClassVar[str] = "bot1 never_with bot2 at a (at is optional)"
+    template: ClassVar[Template] = Template("{first:agent=bot1} never_with {second:agent=bot2} [at {place:POI=a}]")
+    note: ClassVar[str] = "at is optional"
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("never_with", "These two agents must never be at one place, nor meet on a way."),
     )
     forms: ClassVar[Tuple[Form, ...]] = (
-        Form("two who never meet", "objective: {agent} never_with {agent}"),
-        Form("two who are never at one place", "objective: {agent} never_with {agent} at {POI}"),
+        Form("two who never meet", "{agent} never_with {agent}"),
+        Form("two who are never at one place", "{agent} never_with {agent} at {POI}"),
     )
-    used: ClassVar[Mapping[str, str]] = {"objective": "agent", "never_with": "agent", "at": "POI"}
-
-    @classmethod
-    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Safety:
-        first, second, place = children
-        return cls(reader.ref(first), reader.ref(second), at["span"], reader.ref_or_none(place))
-
-    @property
-    def text(self) -> str:
-        place = "" if self.place is None else f" at {self.place.name}"
-        return f"{self.first.name} never_with {self.second.name}{place}"
 
     def sentence(self, shown: Callable[[str], str]) -> str:
         where = "at one place or on one connection" if self.place is None else f"both at {self.place.shown}"
@@ -52,19 +40,9 @@ class NeverWith(Safety):
     def broken(self, beside: Callable[[str], str]) -> str:
         return f"{self.first.shown} and {self.second.shown} are together{beside(self.first.name)}"
 
-    def names(self) -> Iterator[Tuple[str, Ref]]:
-        yield from (("agent", self.first), ("agent", self.second))
-        if self.place is not None:
-            yield "POI", self.place
-
-    def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
-        start = {agent.name: agent.location.name for agent in agents}
-        first, second = self.first.name, self.second.name
-        if first == second:
-            yield error("PML173", f"{first} is always with itself", self.span, "name two different agents")
-        elif first in start and start[first] == start.get(second) and self.breaks.place in (None, start[first]):
-            message = f"{first} and {second} both start in {start[first]}: the objective is lost before anything moves"
-            yield error("PML174", message, self.span, "let one of them start somewhere else")
+    def check(self) -> Iterator[Diagnostic]:
+        if self.first.name == self.second.name:
+            yield error("PML173", f"{self.first.name} is always with itself", self.span, "name two different agents")
 
     @property
     def breaks(self) -> Breaks:
@@ -74,7 +52,7 @@ class NeverWith(Safety):
         stands = (At(Who(self.first), self.place), At(Who(self.second), self.place))
         return Breaks(pair=pair, place=self.place.name, stands=stands)
 
-    def about(self, kind: str, name: str) -> Iterator[str]:
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if kind == "agent" and name in (self.first.name, self.second.name):
             other = self.second.name if self.first.name == name else self.first.name
             where = "be where" if self.place is None else f"be at {self.place.name} while"

@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Callable, ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, ClassVar, Iterator, Optional, Sequence, Tuple
 
 from lark import Token
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
-from pursue_gen.language.conditions import At, Not, Who, by_robot
+from pursue_gen.language.conditions import At, Not, Who, by_robot, who_text
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective, Whole, Words
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.symbols import Role
+from pursue_gen.language.template import Filling, Template
 from pursue_gen.language.tree_reader import TreeReader
-from pursue_gen.language.word import Form, Word
+from pursue_gen.language.word import Form, Numbers, Word
+
+
+def _read_who(reader: TreeReader, tree: Any) -> Who:
+    first = tree.children[0]
+    agent = None if isinstance(first, Token) else reader.ref(first)
+    return Who(agent, agent is None)
 
 
 @dataclass(frozen=True)
@@ -37,11 +43,11 @@ class Patrol(Safety):
     optional: int = 0
     limited_by: ClassVar[str] = "every"
 
-    grammar: ClassVar[str] = """"patrol" refs [IN ORDER] ["every" NUMBER] "by" patroller
-patroller: ref | ANY ROBOT"""
-    form: ClassVar[str] = (
-        "patrol a, b in order every 60 by bot1 (or: by any robot; in order and every are optional)"
+    template: ClassVar[Template] = Template(
+        "patrol {place:POIs=a, b} [in order] [every {every:number=60}] by {who:patroller=bot1}",
+        patroller=Filling("patroller", _read_who, who_text, "agent", rules="patroller: ref | ANY ROBOT"),
     )
+    note: ClassVar[str] = "or: by any robot; in order and every are optional"
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("patrol", "Places at which somebody has to be again and again.", True),
         Word("in", "In this order: a visit counts in its turn only."),
@@ -58,25 +64,21 @@ patroller: ref | ANY ROBOT"""
         ),
         Word("by", "Who has to be there: an agent, or any robot.", True),
     )
+    numbers: ClassVar[Numbers] = {
+        "every": "Somebody is there again {} of time after the last one left, or after the start.".format,
+    }
     forms: ClassVar[Tuple[Form, ...]] = (
-        Form("somebody who comes again and again", "objective: patrol {POI} every {=60} by {agent}"),
-        Form("somebody who comes as often as can be promised", "objective: patrol {POI} by {agent}"),
-        Form("somebody who makes rounds", "objective: patrol {POI}, {POI} in order every {=60} by {agent}"),
+        Form("somebody who comes again and again", "patrol {POI} every {=60} by {agent}"),
+        Form("somebody who comes as often as can be promised", "patrol {POI} by {agent}"),
+        Form("somebody who makes rounds", "patrol {POI}, {POI} in order every {=60} by {agent}"),
     )
-    used: ClassVar[Mapping[str, str]] = {"patrol": "POI", "by": "agent"}
 
     @classmethod
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Tuple[Safety, ...]:
-        refs, in_order, _, every, by = children
-        places, first, time = reader.refs(refs), by.children[0], reader.number_or_none(every)
-        agent = None if isinstance(first, Token) else reader.ref(first)
-        order = () if in_order is None else tuple(place.name for place in places)
-        return tuple(cls(place, time, Who(agent, agent is None), at["span"], order) for place in places)
-
-    @property
-    def _patroller(self) -> str:
-        """Who is to be at the place: an agent's name, or `any robot`."""
-        return "any robot" if self.who.agent is None else self.who.agent.shown
+        values = {"every": None, **cls.template.read(reader, children), **at}
+        places, in_order = values.pop("place"), values.pop("order", False)
+        order = tuple(place.name for place in places) if in_order else ()
+        return tuple(cls(place, order=order, **values) for place in places)
 
     @property
     def text(self) -> str:
@@ -84,9 +86,8 @@ patroller: ref | ANY ROBOT"""
 
     def statement(self, objectives: Sequence[StatedObjective]) -> Whole:
         listing = tuple(each for each in patrols_in(objectives) if each.span == self.span)
-        places = ", ".join(self.order or (each.place.name for each in listing)) + " in order" * bool(self.order)
-        every = "" if self.every is None else f" every {self.every}"
-        text = f"patrol {places}{every} by {'any robot' if self.who.agent is None else self.who.agent.name}"
+        places = ", ".join(self.order or (each.place.name for each in listing))
+        text = self.template.written(self, place=places)
         about, shown = (
             listed(names) + " in order" * bool(self.order)
             for names in zip(*((each.place.name, each.place.shown) for each in listing))
@@ -94,10 +95,11 @@ patroller: ref | ANY ROBOT"""
         return Whole(listing, text, "deadline", about, "a rarer patrol", f"a patrol of {shown} every")
 
     def sentence(self, shown: Callable[[str], str]) -> str:
+        who = who_text(self.who, shown=True)
         if self.order:
             places = listed(map(shown, self.order))
-            return f"{self._patroller} visits {places} in this order, each {self._every()}."
-        return f"{self._patroller} is at {self.place.shown} {self._every()}."
+            return f"{who} visits {places} in this order, each {self._every()}."
+        return f"{who} is at {self.place.shown} {self._every()}."
 
     def _every(self) -> str:
         """How often a place is visited."""
@@ -112,7 +114,7 @@ patroller: ref | ANY ROBOT"""
 
     def period_found(self, won: bool) -> Iterator[str]:
         """A sentence where its period was found by solving, as far as the verdict says something about it."""
-        who, every, least = f"the patrol by {self._patroller}", self.every, self.least
+        who, every, least = f"the patrol by {who_text(self.who, shown=True)}", self.every, self.least
         if every is None or least is None:
             return
         if won and least == every:
@@ -125,12 +127,7 @@ patroller: ref | ANY ROBOT"""
     def broken(self, beside: Callable[[str], str]) -> str:
         return f"not {self.words.due_by} for {self.every}"
 
-    def names(self) -> Iterator[Tuple[str, Ref]]:
-        yield "POI", self.place
-        if self.who.agent is not None:
-            yield "agent", self.who.agent
-
-    def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
+    def check(self) -> Iterator[Diagnostic]:
         again = next((name for k, name in enumerate(self.order) if name in self.order[:k]), "")
         if again:
             message = f"{again} stands twice in this patrol in order: expected each place once in a round"
@@ -145,14 +142,15 @@ patroller: ref | ANY ROBOT"""
     @property
     def words(self) -> Words:
         place, turn = self.place.shown, ", in its turn" if self.order else ""
-        who = "a robot" if self.who.agent is None else self._patroller
+        who = who_text(self.who, shown=True)
+        there = "a robot is there" if self.who.agent is None else f"{who} is there"
         return Words(
             due=f"a visit of {place}{turn}",
-            due_by=f"{self._patroller} at {place}{turn and turn + ','}",
+            due_by=f"{who} at {place}{turn and turn + ','}",
             lane=f"visits: {place}",
             since=f"the last visit of {place}{turn.replace(',', '')}, or the start",
-            statuses={Role.IDLE: f"{who} is there", Role.AT_RISK: "a visit is due"},
-            must=f"{self._patroller} has to be back",
+            statuses={Role.IDLE: there, Role.AT_RISK: "a visit is due"},
+            must=f"{who} has to be back",
             there="there",
             kept="visited again",
             which=turn and f": {place}",

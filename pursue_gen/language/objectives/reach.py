@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Iterator, Optional, Sequence, Set, Tuple
+from typing import Callable, ClassVar, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
 from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.objectives.base import StatedObjective, Whole, Words
-from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.symbols import Role, Symbol
+from pursue_gen.language.template import Filling, Template
+from pursue_gen.language.tree_reader import TreeReader
+from pursue_gen.language.word import Form, Numbers, Word
 
 MOST_EVENTS = 5
 """So many events stand behind one `do` at most: the order in which they happen is free, and each order counts."""
+
+
+def _things_text(events: Tuple[Ref, ...]) -> str:
+    return " and ".join(event.name for event in events)
 
 
 @dataclass(frozen=True)
@@ -31,11 +37,27 @@ class Reach(StatedObjective):
     limited_by: ClassVar[str] = "within"
     once: ClassVar[bool] = True
 
-    @property
-    def text(self) -> str:
-        after = f" after {self.after}" if self.after else ""
-        within = "" if self.within is None else f" within {self.within}"
-        return f"do {' and '.join(ref.name for ref in self.events)}{after}{within}"
+    template: ClassVar[Template] = Template(
+        "do {events:things=e1 and e2} [after {after:number=10}] [within {within:number=60}]",
+        things=Filling(
+            "things", TreeReader.refs, _things_text, "event", ("do", "and"), 'things: ref ("and" ref)*'
+        ),
+    )
+    note: ClassVar[str] = "or: do e1; after and within are optional"
+    own_words: ClassVar[Tuple[Word, ...]] = (
+        Word("do", "The event that is wanted."),
+        Word("after", "Later than so many units of time after the start."),
+    )
+    numbers: ClassVar[Numbers] = {
+        "after": lambda time, number: (
+            f"It counts when it happens {f'later than {time} of time after the start' if number else 'at any time'}."
+        ),
+        "within": "It must have happened {} of time after the start at most.".format,
+    }
+    forms: ClassVar[Tuple[Form, ...]] = (
+        Form("achieve something once", "do {event}"),
+        Form("achieve several things in time", "do {event} and {event} within {=60}"),
+    )
 
     def sentence(self, shown: Callable[[str], str]) -> str:
         after = f" later than {units(self.after)} after the start" if self.after else ""
@@ -47,15 +69,9 @@ class Reach(StatedObjective):
     def broken(self, beside: Callable[[str], str]) -> str:
         return f"{self.words.due} not done within {self.within} of the start"
 
-    def names(self) -> Iterator[Tuple[str, Ref]]:
-        return (("event", ref) for ref in self.events)
-
-    def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
-        seen: Set[str] = set()
-        for ref in self.events:
-            if ref.name in seen:
-                yield error("PML222", f"{ref.name} stands twice behind do", ref.span, "delete one: it happens once")
-            seen.add(ref.name)
+    def check(self) -> Iterator[Diagnostic]:
+        for ref in twice(self.events):
+            yield error("PML222", f"{ref.name} stands twice behind do", ref.span, "delete one: it happens once")
         if len(self.events) > MOST_EVENTS:
             message = f"more than {MOST_EVENTS} events behind one do"
             yield error("PML224", message, self.span, "write several lines: all reach_objectives have to be reached")
@@ -78,7 +94,7 @@ class Reach(StatedObjective):
         done = Symbol.of(location)
         return tuple(self.events[int(k) - 1] for k in done.parts) if done.role is Role.DID else ()
 
-    def about(self, kind: str, name: str) -> Iterator[str]:
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if kind == "event" and any(ref.name == name for ref in self.events):
             after = f", later than {units(self.after)} of time after the start" if self.after else ""
             within = "" if self.within is None else f", {units(self.within)} of time after the start at most"

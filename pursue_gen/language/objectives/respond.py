@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Callable, ClassVar, Iterator, Mapping, Sequence, Tuple
+from typing import Callable, ClassVar, Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
-from pursue_gen.language.conditions import Condition, EventOrCondition, condition_text, condition_words, held_by
+from pursue_gen.language.conditions import EventOrCondition, condition_text, condition_words, held_by
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective, Whole, Words
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.symbols import Role
-from pursue_gen.language.tree_reader import TreeReader
-from pursue_gen.language.word import Form, Word
-
-
-def _text(what: EventOrCondition) -> str:
-    """The name of an event, or a condition as it is written."""
-    return what.name if isinstance(what, Ref) else condition_text(what)
+from pursue_gen.language.template import Template, event_or_condition_text
+from pursue_gen.language.word import Form, Numbers, Word
 
 
 def _shown(what: EventOrCondition) -> str:
@@ -41,29 +35,20 @@ class Respond(Safety):
     optional: int = 0
     limited_by: ClassVar[str] = "deadline"
 
-    grammar: ClassVar[str] = '"if" (ref | condition) "then" (ref | condition) "within" NUMBER'
-    form: ClassVar[str] = "if e1 then e2 within 20 (or conditions: if bot1 at a then open is_true within 20)"
+    template: ClassVar[Template] = Template(
+        "if {trigger:event or condition=e1} then {response:event or condition=e2} within {deadline:number=20}"
+    )
+    note: ClassVar[str] = "or conditions: if bot1 at a then open is_true within 20"
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("if", "After this event, or when this condition comes to hold, there has to be an answer."),
         Word("then", "The event that has to follow, or the condition that has to hold at some moment."),
         Word("within", "How many units of time later the answer must have come."),
     )
+    numbers: ClassVar[Numbers] = {"within": "The answer must have come {} of time later at most.".format}
     forms: ClassVar[Tuple[Form, ...]] = (
-        Form("an answer in time", "objective: if {event} then {event} within {=20}"),
-        Form("an answer to what comes to hold", "objective: if {agent} at {POI} then {agent} at {POI} within {=20}"),
+        Form("an answer in time", "if {event} then {event} within {=20}"),
+        Form("an answer to what comes to hold", "if {agent} at {POI} then {agent} at {POI} within {=20}"),
     )
-    used: ClassVar[Mapping[str, str]] = {"if": "event", "then": "event"}
-    conditions_behind: ClassVar[Tuple[str, ...]] = ("if",)
-
-    @classmethod
-    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Safety:
-        trigger, response, deadline = children
-        answered = reader.event_or_condition(trigger), reader.event_or_condition(response)
-        return cls(*answered, reader.number(deadline), **at)
-
-    @property
-    def text(self) -> str:
-        return f"if {_text(self.trigger)} then {_text(self.response)} within {self.deadline}"
 
     def sentence(self, shown: Callable[[str], str]) -> str:
         trigger, response = self.trigger, self.response
@@ -78,24 +63,17 @@ class Respond(Safety):
         no = "no" if isinstance(self.response, Ref) else "not once"
         return f"{no} {_shown(self.response)} within {self.deadline} of {_shown(self.trigger)}"
 
-    def names(self) -> Iterator[Tuple[str, Ref]]:
-        return (("event", what) for what in (self.trigger, self.response) if isinstance(what, Ref))
-
-    def check(self, agents: Sequence[Agent]) -> Iterator[Diagnostic]:
+    def check(self) -> Iterator[Diagnostic]:
         if self.deadline <= 0:
             message = "within 0 leaves no time to answer: expected more than 0"
             yield error("PML143", message, self.span, "write the time units that the answer may take")
-        name = _text(self.response)
-        if name == _text(self.trigger):
+        name = event_or_condition_text(self.response)
+        if name == event_or_condition_text(self.trigger):
             kind, place = ("event", self.response.span) if isinstance(self.response, Ref) else ("condition", self.span)
             yield error("PML172", f"{name} cannot be its own answer", place, f"name the {kind} that has to follow")
 
-    @property
-    def conditions(self) -> Tuple[Condition, ...]:
-        return tuple(what for what in (self.trigger, self.response) if not isinstance(what, Ref))
-
     def statement(self, objectives: Sequence[StatedObjective]) -> Whole:
-        about, due = _text(self.response), _shown(self.response)
+        about, due = event_or_condition_text(self.response), _shown(self.response)
         return Whole((self,), self.text, "deadline", about, "a later deadline", "a deadline of", f" for {due}")
 
     @property
@@ -111,8 +89,8 @@ class Respond(Safety):
     def kept_by(self, robot: Ref) -> Respond:
         return self if isinstance(self.response, Ref) else replace(self, response=held_by(self.response, robot))
 
-    def about(self, kind: str, name: str) -> Iterator[str]:
-        if kind == "event" and name == _text(self.trigger):
-            yield f"must be answered by {_text(self.response)} within {units(self.deadline)} of time"
-        if kind == "event" and name == _text(self.response):
-            yield f"is the answer to {_text(self.trigger)}, within {units(self.deadline)} of time"
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        if kind == "event" and name == event_or_condition_text(self.trigger):
+            yield f"must be answered by {event_or_condition_text(self.response)} within {units(self.deadline)} of time"
+        if kind == "event" and name == event_or_condition_text(self.response):
+            yield f"is the answer to {event_or_condition_text(self.trigger)}, within {units(self.deadline)} of time"

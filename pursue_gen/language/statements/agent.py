@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Mapping, Optional, Tuple
+from typing import ClassVar, Iterator, Optional, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Span
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, warning
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.base import StatementKind, behind, joined, label_text, names_text
-from pursue_gen.language.tokens import bare
-from pursue_gen.language.tree_reader import TreeReader
+from pursue_gen.language.refs import Ref, twice
+from pursue_gen.language.statements.base import Labelled
+from pursue_gen.language.template import Template
 from pursue_gen.language.word import Form, Word
 
 SIZE = ("radius", "tolerance", "inflation")
 """The words of a robot's size, in the order in which they stand, which is that of the fields of `RobotSize`."""
 
+MOST_METRES = 100
+"""The largest number of a robot's size."""
+
 
 @dataclass(frozen=True)
-class Agent(StatementKind):
+class Agent(Labelled):
     """A robot (controllable), a human ally (controllable and human) or an uncontrollable agent.
 
     `mobile` is the time units per unit of distance (the inverse of its speed), None: it never moves. `label`: what
@@ -40,7 +42,8 @@ class Agent(StatementKind):
     inflation: Optional[Number] = None
 
     listed_in: ClassVar[str] = "agents"
-    words: ClassVar[Tuple[Word, ...]] = (
+    symbol: ClassVar[str] = "Class"
+    own_words: ClassVar[Tuple[Word, ...]] = (
         Word("agent", "Somebody who does something: a robot, a person, a thing with a will of its own."),
         Word(
             "human",
@@ -58,14 +61,14 @@ class Agent(StatementKind):
         Word("can_do", "The events that it does.", may_break=True),
         Word("reacts_to", "The collaborative events in which it is the partner.", may_break=True),
     )
-    grammar: ClassVar[str] = (
-        'agent: "agent" NAME [LABEL NAME] [HUMAN] [CONTROLLABLE] ["mobile" NUMBER] _size "location" ref'
-        ' ["can_do" refs] ["reacts_to" refs]\n'
-        '_size: ["radius" NUMBER] ["tolerance" NUMBER] ["inflation" NUMBER]'
+    template: ClassVar[Template] = Template(
+        'agent {name="bot"} [label {label:name}] [human] [controllable] [mobile {mobile:number=3}]'
+        " [radius {radius:number}] [tolerance {tolerance:number}] [inflation {inflation:number}]"
+        " location {location:POI=a} [can_do {can_do:events=e1, e2}] [reacts_to {reacts_to:events=e3}]"
     )
-    form: ClassVar[str] = (
-        'agent "bot" human controllable mobile 3 location a can_do e1, e2 reacts_to e3 (location is required; '
-        'behind the name: label "Porter 1"; before location, of a robot: radius 0.2 tolerance 0.1 inflation 0.5)'
+    note: ClassVar[str] = (
+        'location is required; behind the name: label "Porter 1"; before location, of a robot: radius 0.2 '
+        "tolerance 0.1 inflation 0.5"
     )
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("a robot", 'agent "{=bot}" controllable mobile {=1} location {POI} can_do {event}'),
@@ -74,36 +77,7 @@ class Agent(StatementKind):
     )
     declares: ClassVar[str] = "agent"
     shortest: ClassVar[str] = 'agent "{name}" location {place}'
-    refers_to: ClassVar[Mapping[str, str]] = {"location": "POI", "can_do": "event", "reacts_to": "event"}
-    used: ClassVar[Mapping[str, str]] = {"location": "POI", "can_do": "event", "reacts_to": "event"}
-    parts: ClassVar[Tuple[str, ...]] = (
-        "AGENT", "LABEL", "HUMAN", "CONTROLLABLE", "MOBILE", "RADIUS", "TOLERANCE", "INFLATION", "LOCATION", "CAN_DO",
-        "REACTS_TO",
-    )  # fmt: skip
-
-    @classmethod
-    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Agent:
-        name, _, label, human, controllable, *numbers, location, can, reacts = children
-        mobile, radius, tolerance, inflation = map(reader.number_or_none, numbers)
-        return cls(
-            name=bare(name),
-            human=human is not None,
-            controllable=controllable is not None,
-            mobile=mobile,
-            location=reader.ref(location),
-            can_do=reader.refs(can),
-            reacts_to=reader.refs(reacts),
-            span=reader.at(name),
-            label=reader.label(label),
-            radius=radius,
-            tolerance=tolerance,
-            inflation=inflation,
-        )
-
-    @property
-    def shown(self) -> str:
-        """What people read."""
-        return self.label or self.name
+    parts: ClassVar[Tuple[str, ...]] = template.begins
 
     @property
     def is_robot(self) -> bool:
@@ -111,14 +85,38 @@ class Agent(StatementKind):
         return self.controllable and not self.human
 
     @property
-    def text(self) -> str:
-        return joined(
-            f'agent "{self.name}"',
-            label_text(self.label),
-            self.human and "human",
-            self.controllable and "controllable",
-            *(behind(word, getattr(self, word)) for word in ("mobile", *SIZE)),
-            f"location {self.location.name}",
-            behind("can_do", names_text(self.can_do)),
-            behind("reacts_to", names_text(self.reacts_to)),
-        )
+    def kind_words(self) -> str:
+        """What it is, in words."""
+        if not self.controllable:
+            return "not controlled"
+        return "a person who is instructed" if self.human else "a robot"
+
+    @property
+    def size_words(self) -> str:
+        """What is said of its size; "": nothing."""
+        size = {"radius": self.radius, "goal tolerance": self.tolerance, "inflation radius": self.inflation}
+        return ", ".join(f"{what} {metres} m" for what, metres in size.items() if metres is not None)
+
+    def check(self) -> Iterator[Diagnostic]:
+        yield from self._check_size()
+        if self.mobile is not None and self.mobile <= 0:
+            hint = "mobile is the time per unit of distance: write a number above 0, or delete it where nothing moves"
+            yield error("PML142", f"{self.name} would take no time for any way", self.span, hint)
+        if self.human and not self.controllable:
+            message = f"{self.name} is human but not controllable: human changes nothing here"
+            hint = "write human controllable for an ally who follows instructions, or delete human"
+            yield warning("PML180", message, self.span, hint)
+        for word, refs in (("can_do", self.can_do), ("reacts_to", self.reacts_to)):
+            for ref in twice(refs):
+                yield error("PML156", f"{self.name} has {ref.name} twice behind {word}", ref.span, "delete one")
+
+    def _check_size(self) -> Iterator[Diagnostic]:
+        """A size of what is no robot, or of none that there is."""
+        said = {word: number for word, number in ((word, getattr(self, word)) for word in SIZE) if number is not None}
+        if said and not self.is_robot:
+            hint = f"write controllable behind {self.name} (and no human), or delete {' and '.join(said)}"
+            yield error("PML148", f"{self.name} is no robot: nothing is sent to places that need room", self.span, hint)
+        for word, number in said.items():
+            if number > MOST_METRES:
+                message = f"{self.name} has {word} {number}: expected {MOST_METRES} metres at most"
+                yield error("PML148", message, self.span, f"write {word} in metres, such as 0.3")

@@ -2,37 +2,83 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Iterable, Iterator, Mapping, Optional, Tuple
+from typing import Any, Callable, ClassVar, Dict, Iterator, Optional, Tuple
 
-from pursue_gen.language.conditions import Condition, condition_text
+from pursue_gen.diagnostics import Diagnostic, Span, error, units
+from pursue_gen.language.conditions import Condition, names_in
+from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.template import Template
 from pursue_gen.language.tree_reader import TreeReader
-from pursue_gen.language.word import Form, Word
+from pursue_gen.language.word import Form, Numbers, Word
 
 
-class StatementKind:
+class Written:
+    """What is written by a template: a statement, or what stands behind its word and a colon."""
+
+    span: Span
+    template: ClassVar[Template]
+    """How it is written."""
+    note: ClassVar[str] = ""
+    """What messages say behind an example of it."""
+    own_words: ClassVar[Tuple[Word, ...]] = ()
+    """Its words that no kind before it has; of a statement first the one that begins it."""
+    forms: ClassVar[Tuple[Form, ...]] = ()
+    """Ways to write it, to fill in."""
+    numbers: ClassVar[Numbers] = {}
+    """What its numbers mean."""
+
+    @classmethod
+    def form(cls) -> str:
+        """What it looks like, for messages."""
+        return cls.template.example + (f" ({cls.note})" if cls.note else "")
+
+    @classmethod
+    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Any:
+        """What is declared, one part or several, from its tree. `at`: `span`, its place in the text."""
+        return cls(**cls.template.read(reader, children), **at)
+
+    @classmethod
+    def number_words(cls, word: str, number: Number) -> str:
+        """What a number means behind a word; "": nothing is said of that."""
+        return cls.numbers[word](units(number), number) if word in cls.numbers else ""
+
+    @property
+    def text(self) -> str:
+        """It as its author may write it."""
+        return self.template.written(self)
+
+    def names(self) -> Iterator[Tuple[str, Ref]]:
+        """Each name that it uses outside its conditions, behind the kind of thing that it stands for."""
+        return self.template.names(self)
+
+    @property
+    def conditions(self) -> Tuple[Condition, ...]:
+        """The conditions that it names."""
+        return self.template.conditions(self)
+
+    def check(self) -> Iterator[Diagnostic]:
+        """What is wrong with it, whatever else stands in the scenario."""
+        return iter(())
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        """What it says of a thing of a kind with this name, as in `must never happen`. `shown`: how to show words."""
+        return iter(())
+
+    def speaks_of(self, kind: str, name: str) -> bool:
+        """True where a condition of it names a thing of a kind."""
+        return any((kind, name) == (k, ref.name) for one in self.conditions for k, ref in names_in(one))
+
+
+class StatementKind(Written):
     """A kind of statement. What it declares is a frozen dataclass of this class, where it declares one thing."""
 
     listed_in: ClassVar[str] = ""
     """The field of a scenario that has what it declares."""
-    words: ClassVar[Tuple[Word, ...]]
-    """The word that begins it, and others that no kind before it has."""
-    grammar: ClassVar[str]
-    """Its rules in Lark's notation; the first one is its own."""
-    form: ClassVar[str]
-    """What it looks like, for messages."""
-    forms: ClassVar[Tuple[Form, ...]] = ()
-    """Ways to write it, to fill in."""
     declares: ClassVar[str] = ""
     """The kind of thing that it declares, whose name in quotes is its second word; "": none."""
     shortest: ClassVar[str] = ""
     """How it declares a `{name}` in as few words as possible, an agent at a `{place}`; "": nothing is short enough."""
-    refers_to: ClassVar[Mapping[str, str]] = {}
-    """The kind of thing that the names in a field stand for, by field."""
-    used: ClassVar[Mapping[str, str]] = {}
-    """The kind of thing that names stand for, by the last word of the language before them."""
-    conditions_behind: ClassVar[Tuple[str, ...]] = ()
-    """The words behind which a condition begins."""
     second: ClassVar[str] = ""
     """The word behind the agent that it is about, where its first word may be a name; the agent's may have quotes."""
     among: ClassVar[str] = ""
@@ -40,66 +86,55 @@ class StatementKind:
     parts: ClassVar[Tuple[str, ...]] = ()
     """The tokens that begin its parts, in their order, where each part can be written alone (`language.rewriting`)."""
 
+    symbol: ClassVar[str] = "Key"
+    """The kind of symbol that editors show for it, as the language server protocol calls it."""
+
     @classmethod
     def token(cls) -> str:
         """The token of the word that begins it."""
-        return cls.words[0].token
+        return cls.own_words[0].token
 
     @classmethod
     def rule(cls) -> str:
         """The name of its rule in the grammar, which its trees have."""
-        return cls.grammar.split(":", 1)[0].strip()
+        return cls.__name__.lower()
 
     @classmethod
-    def has_label(cls) -> bool:
-        """True if what it declares may have a label."""
-        return "[LABEL NAME]" in cls.grammar
+    def grammar(cls) -> str:
+        """Its rules in Lark's notation."""
+        return cls.template.grammar(cls.rule())
+
+    @classmethod
+    def used(cls) -> Dict[str, str]:
+        """The kind of thing that names stand for, by the last word of the language before them."""
+        return cls.template.used()
+
+    @classmethod
+    def conditions_behind(cls) -> Tuple[str, ...]:
+        """The words behind which a condition begins."""
+        return cls.template.conditions_behind
 
     @classmethod
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Any:
-        """What it declares, one part or several, from its tree. `at`: `span`, its place in the text."""
-        raise NotImplementedError
+        return super().read(reader, *children, span=reader.at(children[0]) if cls.declares else at["span"])
 
-    def names(self) -> Iterator[Tuple[str, Ref]]:
-        """Each name that it uses outside its conditions, behind the kind of thing that it stands for."""
-        for field, kind in self.refers_to.items():
-            value = getattr(self, field)
-            yield from ((kind, ref) for ref in (value if isinstance(value, tuple) else (value,)) if ref is not None)
+
+class Labelled(StatementKind):
+    """A kind of statement that declares something with a name and, if it has one, a label, which people read; it is the
+    second child of its trees."""
+
+    name: str
+    label: Optional[str]
 
     @property
-    def text(self) -> str:
-        """The statement, as its author may write it."""
-        raise NotImplementedError
+    def shown(self) -> str:
+        """What people read."""
+        return self.label or self.name
 
 
-# Pieces of texts ------------------------------------------------------------------------------------------------------
-
-
-def joined(*parts: object) -> str:
-    """The parts with blanks between them, without those that are not there."""
-    return " ".join(str(part) for part in parts if part not in (None, False, ""))
-
-
-def behind(word: str, value: object) -> str:
-    """The value behind a word; "" where there is none."""
-    return "" if value in (None, "", ()) else f"{word} {value}"
-
-
-def names_text(refs: Iterable[Ref]) -> str:
-    """Names as they are listed."""
-    return ", ".join(ref.name for ref in refs)
-
-
-def label_text(label: Optional[str]) -> str:
-    """What people read, where it is given."""
-    return "" if label is None else f'label "{label}"'
-
-
-def only_if_text(condition: Optional[Condition]) -> str:
-    """The condition under which something may begin."""
-    return "" if condition is None else f"only_if {condition_text(condition)}"
-
-
-def window_text(low: object, high: object) -> str:
-    """One number or two, between which something ends."""
-    return f"{low}" if high is None else f"{low} to {high}"
+def check_window(name: str, low: Number, high: Number, word: str, span: Span) -> Iterator[Diagnostic]:
+    """An error where nothing lies between the two numbers behind a word."""
+    if high <= low:
+        message = f"{name} ends later than {low} and at {high} at the latest: there is no such time"
+        hint = f"write the smaller number first: {word} {high} to {max(low, exact(high + 1))}"
+        yield error("PML200", message, span, hint)

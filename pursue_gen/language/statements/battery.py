@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Mapping, Optional, Tuple
+from typing import Callable, ClassVar, Iterator, Optional, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Span
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import StatementKind
-from pursue_gen.language.tree_reader import TreeReader
+from pursue_gen.language.template import Template
 from pursue_gen.language.word import Form, Word
+
+MOST_CAPACITY = 10_000
+"""The largest capacity: levels are values of a variable."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +30,7 @@ class Battery(StatementKind):
     span: Span = NOWHERE
 
     listed_in: ClassVar[str] = "batteries"
-    words: ClassVar[Tuple[Word, ...]] = (
+    own_words: ClassVar[Tuple[Word, ...]] = (
         Word(
             "battery",
             "The battery of a robot: what it holds, what is used, and where it is recharged. It never runs empty.",
@@ -39,30 +42,30 @@ class Battery(StatementKind):
         Word("unit", "A unit of time.", True),
         Word("recharges", "What is added in a unit of time in which the robot does something at the dock.", True),
     )
-    grammar: ClassVar[str] = (
-        'battery: BATTERY (ref | NAME) "capacity" NUMBER "uses" NUMBER "per" "unit"'
-        ' ["recharges" NUMBER "per" "unit" "at" ref]'
+    template: ClassVar[Template] = Template(
+        'battery {agent:"agent"=bot} capacity {capacity:count=100} uses {uses:number=2} per unit'
+        " [recharges {recharges:number=5} per unit at {dock:POI=dock}]"
     )
-    form: ClassVar[str] = (
-        "battery bot capacity 100 uses 2 per unit recharges 5 per unit at dock (recharges … is optional)"
-    )
-    forms: ClassVar[Tuple[Form, ...]] = (
-        Form(
-            "a battery that is recharged at a place",
-            "battery {agent} capacity {=100} uses {=2} per unit recharges {=5} per unit at {POI}",
-        ),
-    )
-    refers_to: ClassVar[Mapping[str, str]] = {"agent": "agent", "dock": "POI"}
-    used: ClassVar[Mapping[str, str]] = {"battery": "agent", "at": "POI"}
+    note: ClassVar[str] = "recharges … is optional"
+    forms: ClassVar[Tuple[Form, ...]] = (Form("a battery that is recharged at a place", template.to_fill_in),)
     second: ClassVar[str] = "capacity"
 
-    @classmethod
-    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Battery:
-        _, agent, capacity, uses, recharges, dock = children
-        numbers = reader.count(capacity), reader.number(uses), reader.number_or_none(recharges) or 0
-        return cls(reader.agent_ref(agent), *numbers, reader.ref_or_none(dock), at["span"])
-
     @property
-    def text(self) -> str:
-        uses = f'battery "{self.agent.name}" capacity {self.capacity} uses {self.uses} per unit'
-        return uses if self.dock is None else f"{uses} recharges {self.recharges} per unit at {self.dock.name}"
+    def in_words(self) -> str:
+        """What it holds, what is used, and where it is recharged."""
+        text = f"battery of {self.capacity}, uses {self.uses} per unit"
+        return text if self.dock is None else f"{text}, recharges {self.recharges} per unit at {self.dock.shown}"
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        if (kind, name) == ("agent", self.agent.name):
+            yield shown(self.in_words)
+
+    def check(self) -> Iterator[Diagnostic]:
+        numbers = [("capacity", self.capacity), ("uses", self.uses)]
+        for word, number in numbers if self.dock is None else [*numbers, ("recharges", self.recharges)]:
+            if number <= 0:
+                hint = f"leave out {word} … at" if word == "recharges" else "delete this line if it does not matter"
+                yield error("PML312", f"{word} 0: expected more than 0", self.span, hint)
+        if self.capacity > MOST_CAPACITY:
+            message = f"capacity {self.capacity}: expected {MOST_CAPACITY} or less"
+            yield error("PML312", message, self.span, "choose a larger unit, for example per cent")

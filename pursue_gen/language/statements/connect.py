@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Iterator, Mapping, Optional, Tuple
+from typing import Any, Callable, ClassVar, Iterator, Optional, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Span
-from pursue_gen.language.conditions import Condition
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
+from pursue_gen.language.conditions import Condition, condition_words
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.base import StatementKind, joined, only_if_text
+from pursue_gen.language.statements.base import StatementKind
+from pursue_gen.language.template import Template
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word
 
@@ -31,7 +32,8 @@ class Connection(StatementKind):
     only_if: Optional[Condition] = None
 
     listed_in: ClassVar[str] = "connections"
-    words: ClassVar[Tuple[Word, ...]] = (
+    symbol: ClassVar[str] = "Interface"
+    own_words: ClassVar[Tuple[Word, ...]] = (
         Word("connect", "A way between two places, in both directions unless it is one_way. Write it once."),
         Word(
             "and",
@@ -41,25 +43,23 @@ class Connection(StatementKind):
         Word("distance", "How long the way is, in the unit of distance that you chose."),
         Word("one_way", "From the first place to the second only. Without it, the way goes in both directions.", True),
     )
-    grammar: ClassVar[str] = (
-        'connection: "connect" ref "and" ref "distance" NUMBER [ONE_WAY] ["only_if" condition]'
+    template: ClassVar[Template] = Template(
+        "connect {a:POI=a} and {b:POI=b} distance {distance:number=3} [one_way]"
+        " [only_if {only_if:condition=open is_true}]"
     )
-    form: ClassVar[str] = "connect a and b distance 3 one_way only_if open is_true (one_way and only_if are optional)"
+    note: ClassVar[str] = "one_way and only_if are optional"
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("a way between two places", "connect {POI} and {POI} distance {=1}"),
         Form("a way in one direction only", "connect {POI} and {POI} distance {=1} one_way"),
         Form("a way that is not always open", "connect {POI} and {POI} distance {=1} only_if {state} is_true"),
     )
-    used: ClassVar[Mapping[str, str]] = {"connect": "POI", "and": "POI"}
-    conditions_behind: ClassVar[Tuple[str, ...]] = ("only_if",)
-    parts: ClassVar[Tuple[str, ...]] = ("CONNECT", "AND", "DISTANCE", "ONE_WAY", "ONLY_IF")
+    parts: ClassVar[Tuple[str, ...]] = template.begins
 
     @classmethod
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Connection:
-        a, b, distance, one_way, only_if = children
-        first, second, condition = reader.ref(a), reader.ref(b), reader.condition_or_none(only_if)
-        ends, length = (first.span, second.span), reader.number(distance)
-        return cls(first.name, second.name, length, at["span"], ends, one_way is not None, condition)
+        values = cls.template.read(reader, children)
+        a, b = values.pop("a"), values.pop("b")
+        return cls(a.name, b.name, ends=(a.span, b.span), **values, **at)
 
     def names(self) -> Iterator[Tuple[str, Ref]]:
         return (("POI", Ref(name, span)) for name, span in zip((self.a, self.b), self.ends))
@@ -69,7 +69,13 @@ class Connection(StatementKind):
         """From and to, for each direction in which it can be taken; the declared one first."""
         return ((self.a, self.b),) if self.one_way else ((self.a, self.b), (self.b, self.a))
 
-    @property
-    def text(self) -> str:
-        way = f"connect {self.a} and {self.b} distance {self.distance}"
-        return joined(way, self.one_way and "one_way", only_if_text(self.only_if))
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        if kind == "state" and self.only_if is not None and self.speaks_of(kind, name):
+            yield f"between {self.a} and {self.b} only while {shown(condition_words(self.only_if))}"
+
+    def check(self) -> Iterator[Diagnostic]:
+        if self.distance <= 0:
+            message = f"the way from {self.a} to {self.b} has no length"
+            yield error("PML140", message, self.span, "write distance and a number above 0")
+        if self.a == self.b:
+            yield error("PML145", f"this connects {self.a} with itself", self.span, "name two different places")

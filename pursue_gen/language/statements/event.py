@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Mapping, Optional, Tuple
+from typing import Callable, ClassVar, Iterator, Optional, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Span
-from pursue_gen.language.conditions import Condition
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
+from pursue_gen.language.conditions import Condition, condition_words
 from pursue_gen.language.numbers import Number, Window, window_of
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.base import StatementKind, behind, joined, label_text, only_if_text, window_text
-from pursue_gen.language.tokens import bare
-from pursue_gen.language.tree_reader import TreeReader
-from pursue_gen.language.word import Form, Word
+from pursue_gen.language.statements.base import Labelled, check_window
+from pursue_gen.language.template import Template
+from pursue_gen.language.word import Form, Numbers, Word
+
+MOST_TIMES = 100
+"""How often an event can happen at most that is counted: each count is a location of an automaton."""
 
 
 @dataclass(frozen=True)
-class Event(StatementKind):
+class Event(Labelled):
     """Something that agents do. `duration` is in time units, None: instantaneous; `location` None: anywhere.
 
     It ends later than `duration`, and at `latest` at the latest; None: within one time unit more. `at_most`: so often
@@ -37,7 +39,8 @@ class Event(StatementKind):
     label: Optional[str] = None
 
     listed_in: ClassVar[str] = "events"
-    words: ClassVar[Tuple[Word, ...]] = (
+    symbol: ClassVar[str] = "Event"
+    own_words: ClassVar[Tuple[Word, ...]] = (
         Word("event", "Something that can happen: what an agent does, alone or with a partner."),
         Word("collaborative", "It takes two at one place: one who can do it, and one who reacts to it."),
         Word("together", "Whoever takes part is busy until it ends. Without it, only the one who does it is.", True),
@@ -50,13 +53,13 @@ class Event(StatementKind):
         Word("at_most", "How many times it happens in the whole mission, and no more.", True),
         Word("times", "In the whole mission.", True),
     )
-    grammar: ClassVar[str] = (
-        'event: "event" NAME [LABEL NAME] [COLLABORATIVE] [TOGETHER] ["location" ref] ["duration" window]'
-        ' [AT_MOST NUMBER TIMES] ["only_if" condition]'
+    template: ClassVar[Template] = Template(
+        'event {name="work"} [label {label:name}] [collaborative] [together] [location {location:POI=a}]'
+        " [duration {duration,latest:window=6}] [at_most {at_most:count=2} times]"
+        " [only_if {only_if:condition=open is_true}]"
     )
-    form: ClassVar[str] = (
-        'event "work" collaborative together location a duration 6 at_most 2 times only_if open is_true '
-        '(all but the name is optional; or: duration 6 to 9; behind the name: label "do the work")'
+    note: ClassVar[str] = (
+        'all but the name is optional; or: duration 6 to 9; behind the name: label "do the work"'
     )
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("something that can happen at a place", 'event "{=work}" location {POI} duration {=1}'),
@@ -74,34 +77,10 @@ class Event(StatementKind):
     )
     declares: ClassVar[str] = "event"
     shortest: ClassVar[str] = 'event "{name}"'
-    refers_to: ClassVar[Mapping[str, str]] = {"location": "POI"}
-    used: ClassVar[Mapping[str, str]] = {"location": "POI"}
-    conditions_behind: ClassVar[Tuple[str, ...]] = ("only_if",)
-    parts: ClassVar[Tuple[str, ...]] = (
-        "EVENT", "LABEL", "COLLABORATIVE", "TOGETHER", "LOCATION", "DURATION", "AT_MOST", "ONLY_IF",
-    )  # fmt: skip
-
-    @classmethod
-    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Event:
-        name, _, label, collaborative, together, location, duration, _at_most, most, _times, only_if = children
-        earliest, latest = (None, None) if duration is None else reader.window(duration)
-        return cls(
-            bare(name),
-            collaborative is not None,
-            reader.ref_or_none(location),
-            earliest,
-            reader.at(name),
-            together is not None,
-            latest,
-            None if most is None else reader.count(most),
-            reader.condition_or_none(only_if),
-            reader.label(label),
-        )
-
-    @property
-    def shown(self) -> str:
-        """What people read."""
-        return self.label or self.name
+    numbers: ClassVar[Numbers] = {
+        "at_most": lambda _, times: f"It can happen {'once' if times == 1 else f'{times} times'} in all.",
+    }
+    parts: ClassVar[Tuple[str, ...]] = template.begins
 
     @property
     def is_shared(self) -> bool:
@@ -113,15 +92,19 @@ class Event(StatementKind):
         """Between which times it ends; None for an event that is instantaneous."""
         return None if self.duration is None else window_of(self.duration, self.latest)
 
-    @property
-    def text(self) -> str:
-        return joined(
-            f'event "{self.name}"',
-            label_text(self.label),
-            self.collaborative and "collaborative",
-            self.together and "together",
-            behind("location", self.location and self.location.name),
-            "" if self.duration is None else f"duration {window_text(self.duration, self.latest)}",
-            "" if self.at_most is None else f"at_most {self.at_most} times",
-            only_if_text(self.only_if),
-        )
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        own = (kind, name) == ("event", self.name)
+        if self.only_if is not None and (own or (kind == "state" and self.speaks_of(kind, name))):
+            yield f"{'' if own else f'{self.name} '}only while {shown(condition_words(self.only_if))}"
+
+    def check(self) -> Iterator[Diagnostic]:
+        name, duration, most = self.name, self.duration, self.at_most
+        if duration is not None and duration <= 0 and self.latest is None:
+            hint = "write duration and a number above 0, or delete duration: then it takes no time"
+            yield error("PML141", f"{name} has a duration of 0", self.span, hint)
+        if most is not None and not 1 <= most <= MOST_TIMES:
+            message = f"{name} can happen at_most {most} times: expected 1 to {MOST_TIMES}"
+            never = f"; what must never happen is an objective: avoid {name}" if most < 1 else ""
+            yield error("PML204", message, self.span, f"write a number in these limits, or delete it{never}")
+        if duration is not None and self.latest is not None:
+            yield from check_window(name, duration, self.latest, "duration", self.span)

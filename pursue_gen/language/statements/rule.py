@@ -3,49 +3,77 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Iterator, Mapping, Tuple, Type, Union
+from typing import AbstractSet, Any, Callable, ClassVar, Dict, FrozenSet, Iterator, Mapping, Set, Tuple, Type, Union
 
 from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import StatementKind
-from pursue_gen.language.tokens import bare
+from pursue_gen.language.template import Filling, Template
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
-class Sequence:
+class _Two:
+    """Two sides in a rule, with the word between them."""
+
+    first: RuleBody
+    second: RuleBody
+    span: Span = NOWHERE
+    word: ClassVar[str]
+
+
+class Sequence(_Two):
     """`first before second` in a rule."""
 
-    first: RuleBody
-    second: RuleBody
-    span: Span = NOWHERE
+    word = "before"
 
 
-@dataclass(frozen=True)
-class Choice:
+class Choice(_Two):
     """`first or second` in a rule."""
 
-    first: RuleBody
-    second: RuleBody
-    span: Span = NOWHERE
+    word = "or"
 
 
-@dataclass(frozen=True)
-class Both:
+class Both(_Two):
     """`first and second` in a rule: in any order, and while the other one goes on."""
 
-    first: RuleBody
-    second: RuleBody
-    span: Span = NOWHERE
+    word = "and"
 
 
 RuleBody = Union[Ref, Sequence, Choice, Both]
 
-_BODIES: Mapping[str, Tuple[Type[Union[Sequence, Choice, Both]], str]] = {
-    "sequence": (Sequence, "before"), "choice": (Choice, "or"), "both": (Both, "and"),
-}
-"""By its rule in the grammar each body of two sides, and the word between them."""
+_BODIES: Mapping[str, Type[Union[Sequence, Choice, Both]]] = {"sequence": Sequence, "choice": Choice, "both": Both}
+"""The bodies of two sides, by their rules in the grammar."""
+
+_MOST_EARLIER = 1000  # sets of events
+
+_RULES = """_body: sequence | choice | both
+sequence: _side "before" _side
+choice: _side "or" _side
+both: _side "and" _side
+_side: ref | "(" _body ")\""""
+
+
+def _body(reader: TreeReader, tree: Any) -> RuleBody:
+    if tree.data == "ref":
+        return reader.ref(tree)
+    first, second = (_body(reader, child) for child in tree.children)
+    return _BODIES[tree.data](first, second, reader.span(tree))
+
+
+def _events(body: RuleBody) -> Iterator[Ref]:
+    if isinstance(body, Ref):
+        yield body
+    else:
+        yield from (*_events(body.first), *_events(body.second))
+
+
+def _body_text(body: RuleBody) -> str:
+    if isinstance(body, Ref):
+        return body.name
+    sides = (side.name if isinstance(side, Ref) else f"({_body_text(side)})" for side in (body.first, body.second))
+    return f" {body.word} ".join(sides)
 
 
 @dataclass(frozen=True)
@@ -62,25 +90,21 @@ class Rule(StatementKind):
     each: str = ""
 
     listed_in: ClassVar[str] = "rules"
-    words: ClassVar[Tuple[Word, ...]] = (
+    symbol: ClassVar[str] = "Struct"
+    own_words: ClassVar[Tuple[Word, ...]] = (
         Word("rule", "An order of events, round after round: each may happen only when it is its turn."),
         Word("for", "A rule for each of several: each of them has its own turn."),
         Word("each", "A rule for each of several: each of them has its own turn.", True),
         Word("before", "First this, then that, and then the first again.", may_break=True),
         Word("or", "Either of the two, round after round; in a condition: at least one holds.", may_break=True),
     )
-    grammar: ClassVar[str] = """rule: "rule" NAME [each] ":" _body
-?each: each_robot | each_agent
-each_robot: "for" EACH ROBOT
-each_agent: "for" EACH "agent"
-_body: sequence | choice | both
-sequence: _side "before" _side
-choice: _side "or" _side
-both: _side "and" _side
-_side: ref | "(" _body ")\""""
-    form: ClassVar[str] = (
-        'rule "order": first before second (or: first or second, first and second; use brackets to nest; '
-        'or: rule "order" for each robot: …)'
+    template: ClassVar[Template] = Template(
+        'rule {name="order"} [for each {each:who}]: {body:body=first before second}',
+        who=Filling("(ROBOT | AGENT)", lambda _, token: str(token)),
+        body=Filling("_body", _body, _body_text, "event", ("rule", "robot", "agent", "before", "or", "and"), _RULES),
+    )
+    note: ClassVar[str] = (
+        'or: first or second, first and second; use brackets to nest; or: rule "order" for each robot: …'
     )
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("events in turn", 'rule "{=order}": {event} before {event}'),
@@ -90,13 +114,6 @@ _side: ref | "(" _body ")\""""
         Form("two events in any order, then a third", 'rule "{=all}": ({event} and {event}) before {event}'),
     )
     declares: ClassVar[str] = "rule"
-    used: ClassVar[Mapping[str, str]] = dict.fromkeys(("rule", "robot", "agent", "before", "or", "and"), "event")
-
-    @classmethod
-    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Rule:
-        name, each, body = children
-        who = "" if each is None else str(each.data)[len("each_") :]
-        return cls(bare(name), _body(reader, body), reader.at(name), who)
 
     @property
     def events(self) -> Tuple[Ref, ...]:
@@ -106,29 +123,66 @@ _side: ref | "(" _body ")\""""
     def names(self) -> Iterator[Tuple[str, Ref]]:
         return (("event", ref) for ref in self.events)
 
-    @property
-    def text(self) -> str:
-        who = f" for each {self.each}" if self.each else ""
-        return f'rule "{self.name}"{who}: {_body_text(self.body)}'
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        turns = predecessors(self) if kind == "event" else {}
+        if name in turns:
+            after = " and ".join(" or ".join(sorted(some)) for some in turns[name])
+            yield f"rule {self.name}: its turn comes {f'after {after}' if after else 'first in each round'}"
 
 
-def _body(reader: TreeReader, tree: Any) -> RuleBody:
-    if tree.data == "ref":
-        return reader.ref(tree)
-    first, second = (_body(reader, child) for child in tree.children)
-    return _BODIES[tree.data][0](first, second, reader.span(tree))
+Earlier = Tuple[FrozenSet[str], ...]
+"""What has to have happened: of each of these sets one event. Empty: nothing."""
 
 
-def _events(body: RuleBody) -> Iterator[Ref]:
+def predecessors(rule: Rule) -> Dict[str, Earlier]:
+    """For each event of a rule what it waits for in a round; nothing: it is its turn at the start."""
+    before: Dict[str, Earlier] = {ref.name: () for ref in rule.events}
+
+    def visit(body: RuleBody) -> Tuple[Set[str], Earlier]:
+        """Notes who follows whom in the body; its first events, and what has happened when it is over."""
+        if isinstance(body, Ref):
+            return {body.name}, (frozenset({body.name}),)
+        first, over = visit(body.first)
+        first_then, over_then = visit(body.second)
+        if isinstance(body, Choice):
+            return first | first_then, _either(over, over_then)
+        if isinstance(body, Both):
+            return first | first_then, over + over_then
+        for name in first_then:
+            before[name] = over
+        return first, over_then
+
+    starts, _ = visit(rule.body)
+    return {name: () if name in starts else earlier for name, earlier in before.items()}
+
+
+def _either(a: Earlier, b: Earlier) -> Earlier:
+    """What has happened if one of these has; where that would be long, something that is less."""
+    if len(a) * len(b) > _MOST_EARLIER:
+        return (frozenset().union(*a, *b),)
+    return tuple(dict.fromkeys(one | other for one in a for other in b))
+
+
+def locations_of(body: RuleBody, lasting: AbstractSet[str]) -> int:
+    """How many locations the automaton of a rule has between the first and the last one of that part of it."""
     if isinstance(body, Ref):
-        yield body
-    else:
-        yield from (*_events(body.first), *_events(body.second))
+        return int(body.name in lasting)
+    first, second = locations_of(body.first, lasting), locations_of(body.second, lasting)
+    if isinstance(body, Both):
+        return (first + 2) * (second + 2) - 2
+    return first + second + isinstance(body, Sequence)
 
 
-def _body_text(body: RuleBody) -> str:
+def has_both(body: RuleBody) -> bool:
+    """True where some of its parts come in any order."""
     if isinstance(body, Ref):
-        return body.name
-    word = next(word for kind, word in _BODIES.values() if isinstance(body, kind))
-    sides = (side.name if isinstance(side, Ref) else f"({_body_text(side)})" for side in (body.first, body.second))
-    return f" {word} ".join(sides)
+        return False
+    return isinstance(body, Both) or has_both(body.first) or has_both(body.second)
+
+
+def can_turn(body: RuleBody, possible: FrozenSet[str]) -> bool:
+    """True where a round can end with these events alone."""
+    if isinstance(body, Ref):
+        return body.name in possible
+    first, second = can_turn(body.first, possible), can_turn(body.second, possible)
+    return first or second if isinstance(body, Choice) else first and second

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Mapping, Optional, Tuple
+from typing import ClassVar, Iterator, Optional, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Span
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.numbers import Number, Window, window_of
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.base import StatementKind, window_text
-from pursue_gen.language.tree_reader import TreeReader
+from pursue_gen.language.statements.base import StatementKind, check_window
+from pursue_gen.language.template import Template
 from pursue_gen.language.word import Form, Word
 
 
@@ -27,7 +27,7 @@ class Travel(StatementKind):
     span: Span = NOWHERE
 
     listed_in: ClassVar[str] = "travels"
-    words: ClassVar[Tuple[Word, ...]] = (
+    own_words: ClassVar[Tuple[Word, ...]] = (
         Word(
             "travel",
             "How long an agent takes from a place to the next one, in place of what distance and mobile say.",
@@ -40,19 +40,11 @@ class Travel(StatementKind):
             True,
         ),
     )
-    grammar: ClassVar[str] = 'travel: TRAVEL (ref | NAME) "from" ref TO ref TAKES window'
-    form: ClassVar[str] = "travel bot from a to b takes 5 to 8"
-    forms: ClassVar[Tuple[Form, ...]] = (
-        Form("an agent's own time for a way", "travel {agent} from {POI} to {POI} takes {=5} to {=8}"),
+    template: ClassVar[Template] = Template(
+        'travel {agent:"agent"=bot} from {a:POI=a} to {b:POI=b} takes {earliest,latest:window=5 to 8}'
     )
-    refers_to: ClassVar[Mapping[str, str]] = {"agent": "agent", "a": "POI", "b": "POI"}
-    used: ClassVar[Mapping[str, str]] = {"travel": "agent", "from": "POI", "to": "POI"}
+    forms: ClassVar[Tuple[Form, ...]] = (Form("an agent's own time for a way", template.to_fill_in),)
     second: ClassVar[str] = "from"
-
-    @classmethod
-    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Travel:
-        _, agent, a, _to, b, _takes, takes = children
-        return cls(reader.agent_ref(agent), reader.ref(a), reader.ref(b), *reader.window(takes), at["span"])
 
     @property
     def way(self) -> Tuple[str, str]:
@@ -65,6 +57,13 @@ class Travel(StatementKind):
         return window_of(self.earliest, self.latest)
 
     @property
-    def text(self) -> str:
-        takes = window_text(self.earliest, self.latest)
-        return f'travel "{self.agent.name}" from {self.a.name} to {self.b.name} takes {takes}'
+    def movement(self) -> str:
+        """Who goes where, in words."""
+        return f"the way of {self.agent.name} from {self.a.name} to {self.b.name}"
+
+    def check(self) -> Iterator[Diagnostic]:
+        if self.latest is not None:
+            yield from check_window(self.movement, self.earliest, self.latest, "takes", self.span)
+        elif self.earliest <= 0:
+            hint = "write a number above 0, or takes 0 to 1"
+            yield error("PML200", f"{self.movement} takes no time", self.span, hint)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from typing import Callable, Collection, Mapping, Sequence, Tuple
+from typing import Callable, Collection, Sequence, Tuple
 
 from pursue_gen.language.names import check_names
 from pursue_gen.language.parser import read
@@ -83,14 +83,13 @@ def one_of(choices: Sequence[str]) -> Callable[[str], str]:
     return accept
 
 
-def a_choice(choices: Mapping[str, str]) -> Callable[[str], str]:
+def a_choice(words: Sequence[str]) -> Callable[[str], str]:
     """One of these words, or its number in the list."""
-    words = list(choices)
 
     def accept(answer: str) -> str:
         if answer.isascii() and answer.isdigit() and len(answer) < 9 and 1 <= int(answer) <= len(words):
             return words[int(answer) - 1]
-        if answer not in choices:
+        if answer not in words:
             raise ValueError(f"expected a number from 1 to {len(words)} or one of the words, not {answer!r}")
         return answer
 

@@ -14,19 +14,8 @@ from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.synthesis.limits import Limits, Listener, careful_memory
-from pursue_gen.tools.authoring.requirements import (
-    AVOID,
-    CATCH,
-    KINDS,
-    NEVER_WITH,
-    PATROL,
-    REACH,
-    RESPOND,
-    Requirements,
-    Task,
-    deadline,
-    unused,
-)
+from pursue_gen.tools.authoring.goals import GOALS
+from pursue_gen.tools.authoring.requirements import Requirements, Task, unused
 
 _WORK = 50_000_000
 """Enough for a first scenario: ten seconds or so. Not measured."""
@@ -34,14 +23,15 @@ _WORK = 50_000_000
 
 def scenario_text(given: Requirements, file: str) -> str:
     """A scenario that meets the requirements, laid out; `file` is its name in the comments."""
+    goal = GOALS[given.kind]
     parts = [_head(given, file), _places(given), _events(given), _order(given), _agents(given)]
-    parts += [_assumption(given), _goal(given)]
+    parts += [_assumption(given), goal.wanted(given)]
     return format_text("\n\n".join("\n".join(part) for part in parts if part), file)
 
 
 def _head(given: Requirements, file: str) -> List[str]:
     return [
-        f"// A first scenario: {KINDS[given.kind]}.",
+        f"// A first scenario: {GOALS[given.kind].meaning}.",
         "// Change whatever you like, then ask again:",
         f"//   pursue-gen check {file}   is anything wrong with it?",
         f"//   pursue-gen solve {file}   can it be done, and how fast?",
@@ -63,64 +53,43 @@ def _event(task: Task) -> str:
 
 
 def _events(given: Requirements) -> List[str]:
-    if given.kind == PATROL:
-        return []
-    lines = ["// What can happen. Without a location: anywhere. Without a duration: it takes no time."]
-    lines += [_event(task) for task in given.tasks]
-    if given.kind == RESPOND:
-        lines.append(f'event "{given.event}"')
-    elif given.kind == AVOID:
-        lines.append(f'event "{given.event}" location {given.tasks[0].place}')
-    elif given.event:
-        lines += [
-            "// It takes two: one who can do it, and one who reacts to it.",
-            f'event "{given.event}" collaborative',
-        ]
-    return lines
+    lines = [*map(_event, given.tasks), *GOALS[given.kind].events(given)]
+    head = "// What can happen. Without a location: anywhere. Without a duration: it takes no time."
+    return [head, *lines] if lines else []
 
 
 def _order(given: Requirements) -> List[str]:
-    """The rule, or for avoid the state."""
-    if given.kind == AVOID:
-        state, prevents = unused("safe", given.names), given.tasks[0].event
-        return [
-            f"// A state is true or false. When {prevents} has made this one true, {given.event} is not possible.",
-            f'state "{state}": initially false, true_if {prevents}',
-            f"stateDependency: {given.event} only_if {state} is_false",
-        ]
-    steps = [task.event for task in given.tasks]
-    if given.kind == RESPOND:
-        steps.insert(0, given.event)
-    elif given.kind == REACH and given.event:
-        steps.append(given.event)
+    """The rule, and what the goal has in its place or beside it."""
+    goal = GOALS[given.kind]
+    lines, steps = goal.order(given), goal.steps(given)
     if len(steps) < 2:
-        return []
+        return lines
     body = steps[0]
     for number, step in enumerate(steps[1:]):
         body = f"({body}) before {step}" if number else f"{body} before {step}"
     rule = unused("order", given.names)
-    return ["// The order, round after round: each of these waits for its turn.", f'rule "{rule}": {body}']
+    return [*lines, "// The order, round after round: each of these waits for its turn.", f'rule "{rule}": {body}']
 
 
 def _agents(given: Requirements) -> List[str]:
-    first, last = given.places[0], given.places[-1]
+    goal, first, last = GOALS[given.kind], given.places[0], given.places[-1]
     lines = [
         "// Who is there. What is controllable does what the plan says.",
         "// mobile 2: needs 2 units of time for one unit of distance; so a larger number is slower.",
     ]
     for number, robot in enumerate(given.robots):
         can = [robot.task.event] if robot.task is not None else []
-        if given.kind == CATCH or (given.kind == REACH and given.event and number == len(given.robots) - 1):
+        if goal.does(given, number):
             can.append(given.event)
-        start = last if given.kind == NEVER_WITH and number == 1 else first
+        start = last if goal.apart and number == 1 else first
         if robot.mobile is None and robot.task is not None:
             start = robot.task.place
         part = f"can_do {', '.join(can)}" if can else ""
         lines.append(_agent(robot.name, "controllable", robot.mobile, start, part))
     if given.other:
         lines += ["", "// Not controllable: does what it likes, also the worst."]
-        part = {RESPOND: "can_do", AVOID: "can_do", REACH: "reacts_to", CATCH: "reacts_to"}.get(given.kind, "")
-        lines.append(_agent(given.other, "", given.mobile, last, f"{part} {given.event}" if part else ""))
+        part = f"{goal.takes_part} {given.event}" if goal.takes_part else ""
+        lines.append(_agent(given.other, "", given.mobile, last, part))
     return lines
 
 
@@ -136,33 +105,6 @@ def _assumption(given: Requirements) -> List[str]:
 def _agent(name: str, controllable: str, mobile: Optional[int], location: str, part: str) -> str:
     moves = "" if mobile is None else f"mobile {mobile}"
     return " ".join(filter(None, (f'agent "{name}"', controllable, moves, f"location {location}", part)))
-
-
-def _goal(given: Requirements) -> List[str]:
-    tasks = given.tasks
-    if given.kind == RESPOND:
-        time = deadline(given.distances, given.robots)
-        return [
-            "// What has to hold always. Try a shorter time: when it is too short, solve says so, and what would help.",
-            f"objective: if {given.event} then {tasks[-1].event} within {time}",
-        ]
-    if given.kind == AVOID:
-        return ["// What must never happen.", f"objective: avoid {given.event}"]
-    if given.kind == NEVER_WITH:
-        second = given.other or given.robots[1].name
-        return [
-            "// What must always hold (never at one place, and never face to face on a way), and what has to be done.",
-            f"objective: {given.robots[0].name} never_with {second}",
-            f"reach_objective: do {tasks[-1].event}",
-        ]
-    if given.kind == PATROL:
-        who = given.robots[0].name if len(given.robots) == 1 else "any robot"
-        return [
-            "// What has to hold always: in each place again, at most so many units of time after it was left.",
-            f"objective: patrol {', '.join(given.places)} every {given.every} by {who}",
-        ]
-    within = f" within {given.within}" if given.within is not None else ""
-    return ["// What is wanted.", f"reach_objective: do {given.event or tasks[-1].event}{within}"]
 
 
 def place_for(name: str, output: Optional[Path]) -> Path:

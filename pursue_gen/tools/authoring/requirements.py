@@ -3,25 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, Iterable, Optional, Tuple
-
-REACH, RESPOND, AVOID, NEVER_WITH, CATCH, PATROL = "reach", "respond", "avoid", "never-with", "catch", "patrol"
-
-KINDS: Dict[str, str] = {
-    REACH: "the robots do something, one after the other",
-    RESPOND: "whenever somebody calls, the robots answer in time",
-    AVOID: "something must never happen, and a robot prevents it",
-    NEVER_WITH: "the robots do something, and two of those who are there never meet",
-    CATCH: "the robots catch somebody who runs away",
-    PATROL: "the robots are at each place again and again",
-}
-"""The goals that a first scenario can have, in words."""
+from typing import Iterable, Optional, Tuple
 
 MOST_PLACES, MOST_ROBOTS = 20, 9
 MOST_DISTANCE, MOST_MOBILE, MOST_DURATION, MOST_TIME = 100, 20, 500, 1_000_000
 """The largest answers: with them every number of the scenario is one that the language has."""
 
-_BETWEEN = 3
+BETWEEN = 3
 """Time units that pass at most between two steps of a robot, beyond their durations: an end may come 1 later than
 the model's shortest time, the next step can begin after 1 more, and a command may take effect a little later."""
 
@@ -81,60 +69,29 @@ class Requirements:
         return tuple(dict.fromkeys(robot.task for robot in self.robots if robot.task is not None))
 
 
-def fewest_places(kind: str) -> int:
-    """How many places a goal of this kind needs: who is to be avoided or caught is somewhere else at first."""
-    return 1 if kind in (REACH, RESPOND) else 2
-
-
-def allowed_places(kind: str, places: Tuple[str, ...], robot: int) -> Tuple[str, ...]:
-    """Where the robot of this number (from 0) can have its task.
-
-    In a row of places nobody gets past another one: who must not meet leaves the other's end free. And what must not
-    happen cannot happen where the other is at first.
-    """
-    if kind == AVOID or (kind == NEVER_WITH and robot == 0):
-        return places[:-1]
-    return places[1:] if kind == NEVER_WITH and robot == 1 else places
-
-
-def may_stand(kind: str) -> bool:
-    """True where a robot need not move. Who catches or makes way has to."""
-    return kind not in (NEVER_WITH, CATCH, PATROL)
-
-
 def shortest_within(given: Requirements) -> int:
     """Time units in which the robots can surely have done everything (kind reach): each goes all the way when it is
     its turn."""
     turns = [(robot.mobile, robot.task.duration if robot.task else 0) for robot in given.robots]
     turns += [(given.robots[-1].mobile, 0)] if given.event else []
-    return sum(_travel(given.distances, mobile) + duration + _BETWEEN for mobile, duration in turns)
+    return sum(travel_time(given.distances, mobile) + duration + BETWEEN for mobile, duration in turns)
 
 
 def shortest_every(distances: Iterable[int], robots: Tuple[Robot, ...]) -> int:
     """Time units after which the fastest robot is surely in the same place again if it walks to and fro."""
-    return 2 * _travel(distances, min(robot.mobile or 1 for robot in robots))
+    return 2 * travel_time(distances, min(robot.mobile or 1 for robot in robots))
 
 
-def _travel(distances: Iterable[int], mobile: Optional[int]) -> int:
+def travel_time(distances: Iterable[int], mobile: Optional[int]) -> int:
     """Time units that the way through all places takes; none where it stands."""
-    return sum(distance * mobile + _BETWEEN for distance in distances) if mobile else 0
+    return sum(distance * mobile + BETWEEN for distance in distances) if mobile else 0
 
 
 def deadline(distances: Iterable[int], robots: Tuple[Robot, ...]) -> int:
     """Time units in which the robots can answer a call, at any moment: all go to their places first, and stay there."""
     slowest = max(robot.mobile or 0 for robot in robots)
-    return _travel(distances, slowest) + sum((robot.task.duration if robot.task else 0) + _BETWEEN for robot in robots)
-
-
-def slow_enough(kind: str, places: Tuple[str, ...], distances: Tuple[int, ...], robots: Tuple[Robot, ...]) -> int:
-    """The smallest `mobile` of the other with which the robots surely win (kinds avoid and catch)."""
-    fastest = min(robot.mobile or 0 for robot in robots)  # 0: one stands where its task is
-    if kind == CATCH:  # on each way a robot gains more than it loses by turning after the other
-        return fastest + -(-_BETWEEN // min(distances))
-    (task,) = {robot.task for robot in robots if robot.task is not None}
-    at = places.index(task.place)
-    travel = _travel(distances[:at], fastest)
-    return max(1, -(-(travel + task.duration + _BETWEEN) // sum(distances[at:])))
+    at_work = sum((robot.task.duration if robot.task else 0) + BETWEEN for robot in robots)
+    return travel_time(distances, slowest) + at_work
 
 
 def unused(name: str, taken: Iterable[str]) -> str:

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from itertools import count
 from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 
-from pursue_gen.diagnostics import PursueError, Span, error
+from pursue_gen.diagnostics import NOWHERE, PursueError, error
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.formatter import format_text, formatted
 from pursue_gen.language.kinds import DECLARED, RESERVED, STATEMENTS
 from pursue_gen.language.names import KINDS
 from pursue_gen.language.navigation import rename
 from pursue_gen.language.poses import read_poses
-from pursue_gen.language.rewriting import parts_of
+from pursue_gen.language.rewriting import parts_in, parts_of
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.usable import reserved
@@ -95,7 +95,7 @@ def _move_spot(document: Draft, values: Values) -> Done:
     x, y = fields.metres_of(values, "x"), fields.metres_of(values, "y")
     number = _declared(document, "POI", name)
     pose = parts_of(document.statements[number]).get("POSE")
-    if pose is None or not read_poses(str(pose[0]), Span("", 1, 1, 1, 1)).spots:
+    if pose is None or not read_poses(str(pose[0]), NOWHERE, [])[1]:
         raise refused(f"no robot has a spot of its own at {name}", "choose it again")
     comment = with_spot(str(pose[0]), robot, x, y)
     if comment is None:
@@ -277,8 +277,7 @@ def _restate(document: Draft, values: Values) -> Done:
     """{statement, words}: other words for a statement."""
     number = fields.index_of(values, "statement", len(document.statements))
     words = fields.text_of(values, "words")
-    known = STATEMENTS.get(document.statements[number].kind)
-    if known is not None and known.parts:
+    if parts_in(document.statements[number].kind):
         raise refused("this statement has a form of its own", "load the page again")
     alone = Draft.of(words, document.file).statements
     if len(alone) != 1 or not words:

@@ -18,7 +18,7 @@ from pursue_gen.drawing.floor_picture import read_floor
 from pursue_gen.drawing.ground import read_ground
 from pursue_gen.language.checks import checked
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import condition_of_promise, objective_words, periods_found, promise_words
+from pursue_gen.language.sentences import condition_of_promise, objective_words, periods_found, promise_words
 from pursue_gen.outcomes import INTERRUPTED, LimitHit, Lost
 from pursue_gen.solving.answers import answers
 from pursue_gen.solving.inputs import game_of, settled

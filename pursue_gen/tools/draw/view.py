@@ -11,11 +11,11 @@ from pursue_gen.drawing.look import agent_looks, mark
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.names import KINDS
-from pursue_gen.language.rewriting import parts_of
+from pursue_gen.language.rewriting import parts_in, parts_of
+from pursue_gen.language.sentences import objective_words
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.word import HOLE
-from pursue_gen.language.wording import objective_words
 from pursue_gen.solving.inputs import findings_of
 from pursue_gen.tools.draw.places import positions
 from pursue_gen.tools.draw.poses import heading
@@ -25,7 +25,6 @@ from pursue_gen.workspace.robot_size import NOTHING_TOLD, Told, sizes_of
 from pursue_gen.workspace.spots import SPOT_DISTANCE
 
 _MOST_FINDINGS = 200
-_OWN_FORMS = ("POI", "CONNECT", "EVENT", "AGENT")
 
 
 def view(
@@ -47,7 +46,7 @@ def view(
         "ways": _ways(document, {place["name"] for place in places}),
         "agents": _agents(document),
         "events": _events(document),
-        "others": [_other(document, k) for k, one in enumerate(document.statements) if one.kind not in _OWN_FORMS],
+        "others": [_other(document, k) for k, one in enumerate(document.statements) if not parts_in(one.kind)],
         "names": {kind: list(document.declared[kind]) for kind in KINDS},
         "findings": [_finding(document, one) for one in found[:_MOST_FINDINGS]],
         "errors": sum(one.severity is Severity.ERROR for one in found),
@@ -60,9 +59,7 @@ def forms() -> List[Dict[str, Any]]:
     """The statements that can be chosen from lists: their words cut at their holes, and what belongs into each hole."""
     found = []
     for kind, statement in STATEMENTS.items():
-        for number, form in enumerate(statement.forms):
-            if kind in _OWN_FORMS:
-                continue
+        for number, form in enumerate(() if statement.parts else statement.forms):
             kinds = {"=": "example", "": "name"}
             holes = [{"kind": kinds[example], "of": what} for example, what in HOLE.findall(form.words)]
             words = HOLE.split(form.words)[::3]

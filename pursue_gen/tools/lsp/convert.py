@@ -8,7 +8,7 @@ from lsprotocol import types as lsp
 
 from pursue_gen.diagnostics import Diagnostic, Severity
 from pursue_gen.language.document import Edit
-from pursue_gen.language.kinds import KEYWORDS
+from pursue_gen.language.kinds import KEYWORDS, STATEMENTS
 from pursue_gen.language.occurrences import Occurrence
 from pursue_gen.tools.lsp.completion import Completion
 from pursue_gen.tools.lsp.fixes import Fix
@@ -24,24 +24,8 @@ _ITEM_KINDS = {
     "value": lsp.CompletionItemKind.Value,
     "statement": lsp.CompletionItemKind.Snippet,
 }
-_NAME_KINDS = {
-    "POI": lsp.CompletionItemKind.Constant,
-    "event": lsp.CompletionItemKind.Event,
-    "rule": lsp.CompletionItemKind.Struct,
-    "state": lsp.CompletionItemKind.Variable,
-    "agent": lsp.CompletionItemKind.Class,
-}
-_SYMBOL_KINDS = {
-    "POI": lsp.SymbolKind.Constant,
-    "CONNECT": lsp.SymbolKind.Interface,
-    "EVENT": lsp.SymbolKind.Event,
-    "RULE": lsp.SymbolKind.Struct,
-    "STATE": lsp.SymbolKind.Boolean,
-    "STATEDEPENDENCY": lsp.SymbolKind.Operator,
-    "AGENT": lsp.SymbolKind.Class,
-    "OBJECTIVE": lsp.SymbolKind.Key,
-    "REACH_OBJECTIVE": lsp.SymbolKind.Key,
-}
+_SYMBOLS = {kind.declares: kind.symbol for kind in STATEMENTS.values() if kind.declares}
+"""The symbol of each kind of thing that has a name."""
 
 
 def range_of(document: OpenDocument, start: int, end: int) -> lsp.Range:
@@ -82,7 +66,8 @@ def completion_items(document: OpenDocument, items: Iterable[Completion], snippe
         if item.snippet and not snippets:
             insert = KEYWORDS[item.token] + " " if item.kind == "statement" else item.label
         form = lsp.InsertTextFormat.Snippet if item.snippet and snippets else lsp.InsertTextFormat.PlainText
-        kind = _NAME_KINDS[item.of] if item.of in _NAME_KINDS else _ITEM_KINDS.get(item.kind)
+        known = lsp.CompletionItemKind
+        kind = getattr(known, _SYMBOLS[item.of], known.Variable) if item.of in _SYMBOLS else _ITEM_KINDS.get(item.kind)
         about = lsp.MarkupContent(lsp.MarkupKind.Markdown, item.about) if item.about else None
         found.append(
             lsp.CompletionItem(
@@ -123,7 +108,7 @@ def document_symbols(document: OpenDocument, symbols: Iterable[Symbol]) -> List[
     return [
         lsp.DocumentSymbol(
             name=symbol.name,
-            kind=_SYMBOL_KINDS[symbol.kind],
+            kind=getattr(lsp.SymbolKind, STATEMENTS[symbol.kind].symbol),
             range=range_of(document, symbol.start, symbol.end),
             selection_range=range_of(document, symbol.name_start, symbol.name_end),
             detail=symbol.detail or None,

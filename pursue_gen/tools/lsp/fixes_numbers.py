@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.assumptions import NUMBERED
-from pursue_gen.language.checks import MOST_TIMES
 from pursue_gen.language.document import Edit, behind, written
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.numbers import exact, read_number
+from pursue_gen.language.statements.event import MOST_TIMES
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.tokens import bare, start_of
 from pursue_gen.tools.lsp.fixes_syntax import Proposals

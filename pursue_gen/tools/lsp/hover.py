@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, Dict, Iterator, List, Optional, Tuple
+from functools import partial
+from typing import Callable, Dict, List, Optional, Tuple
 
 from pursue_gen.diagnostics import units
-from pursue_gen.language.assumptions import NUMBERED
-from pursue_gen.language.batteries import MOST_CAPACITY, levels
-from pursue_gen.language.behaviour import predecessors
-from pursue_gen.language.conditions import condition_words, names_in
+from pursue_gen.language.batteries import levels
+from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.kinds import KEYWORDS, MEANINGS, STATEMENTS
 from pursue_gen.language.labels import in_markdown, markdown
@@ -23,16 +22,16 @@ from pursue_gen.language.scenario import (
     Ref,
     Rule,
     RuleBody,
-    Safety,
     Scenario,
     Sequence,
     State,
     Window,
 )
+from pursue_gen.language.statements.base import Written
+from pursue_gen.language.statements.battery import MOST_CAPACITY
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.tokens import start_of
 from pursue_gen.language.tree_reader import MOST
-from pursue_gen.language.wording import battery_words, size_words
 
 _MOST_LINES = 12
 
@@ -60,7 +59,7 @@ def hover(document: Draft, offset: int) -> Optional[Hover]:
         return None
     start = start_of(token)
     if token.type in KEYWORDS:
-        form = f"\n\n```pursue\n{STATEMENTS[token.type].form}\n```" if token.type in STATEMENTS else ""
+        form = f"\n\n```pursue\n{STATEMENTS[token.type].form()}\n```" if token.type in STATEMENTS else ""
         return Hover(f"**{token}**: {MEANINGS[token.type]}{form}", start, start + len(token))
     number = read_number(token) if token.type == "NUMBER" else None
     if number is not None and part is not None and number <= MOST:
@@ -129,22 +128,7 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
         if event.duration is not None:
             both = "both are busy until it ends" if event.together else "the partner may leave as soon as it has begun"
             lines.append(f"- {both}")
-    for rule in scenario.rules:
-        turns = predecessors(rule)
-        if event.name in turns:
-            after = " and ".join(" or ".join(sorted(some)) for some in turns[event.name])
-            turn = f"its turn comes after {after}" if after else "its turn comes first in each round"
-            lines.append(f"- rule {rule.name}: {turn}")
-    for dependency in scenario.dependencies:
-        if dependency.event.name == event.name:
-            lines.append(f"- only while {dependency.state.name} is {str(dependency.value).lower()}")
-    if event.only_if is not None:
-        lines.append(f"- only while {in_markdown(scenario, condition_words(event.only_if))}")
-    for state in scenario.states:
-        for value, refs in (("true", state.true_if), ("false", state.false_if)):
-            if _in(event.name, refs):
-                lines.append(f"- makes {state.name} {value}")
-    return lines + [f"- {line}" for each in scenario.objectives for line in each.about("event", event.name)]
+    return lines + _said(scenario, "event", event.name)
 
 
 def _rule(scenario: Scenario, rule: Rule) -> List[str]:
@@ -179,24 +163,16 @@ def _state(scenario: Scenario, state: State) -> List[str]:
     lines = [f"**{state.name}**: a state, {'true' if state.initially else 'false'} at the start", ""]
     lines.append("- made true by " + (", ".join(ref.name for ref in state.true_if) or "nothing"))
     lines.append("- made false by " + (", ".join(ref.name for ref in state.false_if) or "nothing"))
-    for dependency in scenario.dependencies:
-        if dependency.state.name == state.name:
-            lines.append(f"- {dependency.event.name} can happen only while it is {str(dependency.value).lower()}")
-    for way in scenario.connections:
-        if way.only_if is not None and any(ref.name == state.name for _, ref in names_in(way.only_if)):
-            only_if = in_markdown(scenario, condition_words(way.only_if))
-            lines.append(f"- between {way.a} and {way.b} only while {only_if}")
-    for event in scenario.events:
-        if event.only_if is not None and any(ref.name == state.name for _, ref in names_in(event.only_if)):
-            lines.append(f"- {event.name} only while {in_markdown(scenario, condition_words(event.only_if))}")
-    return lines + [line for safety in scenario.safety for line in _never(scenario, safety, state.name)]
+    return lines + _said(scenario, "state", state.name)
 
 
-def _never(scenario: Scenario, safety: Safety, name: str) -> Iterator[str]:
-    """The condition with which the objective is broken, if it has this name in it."""
-    broken = safety.breaks.condition
-    if broken is not None and any(ref.name == name for _, ref in names_in(broken)):
-        yield f"- must never be: {in_markdown(scenario, condition_words(broken))}"
+def _said(scenario: Scenario, kind: str, name: str) -> List[str]:
+    """What statements say of a thing that another one declares."""
+    parts: Tuple[Written, ...] = (
+        *scenario.rules, *scenario.dependencies, *scenario.connections, *scenario.events, *scenario.states,
+        *scenario.batteries, *scenario.assumptions, *scenario.objectives,
+    )  # fmt: skip
+    return [f"- {line}" for part in parts for line in part.about(kind, name, partial(in_markdown, scenario))]
 
 
 def _agent(scenario: Scenario, agent: Agent) -> List[str]:
@@ -212,16 +188,10 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
         known = {(way.a, way.b) for way in scenario.connections} | own  # the other direction takes as long
         movements = scenario.movements(agent).items()
         lines += _listed([f"- {a} to {b}: {lasts(window)}" for (a, b), window in movements if (a, b) in known])
-    lines += [f"- {words} on a map" for words in [size_words(agent)] if words]
+    lines += [f"- {words} on a map" for words in [agent.size_words] if words]
     lines += _if_any("can do", [ref.name for ref in agent.can_do])
     lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])
-    lines += [f"- {in_markdown(scenario, battery_words(b))}" for b in scenario.batteries if b.agent.name == agent.name]
-    assumed = (each.clause for each in scenario.assumptions if each.is_about(agent.name))
-    lines += [f"- assumed: {in_markdown(scenario, words)}" for words in assumed]
-    for safety in scenario.safety:
-        lines += [f"- {line}" for line in safety.about("agent", agent.name)]
-        lines += _never(scenario, safety, agent.name)
-    return lines
+    return lines + _said(scenario, "agent", agent.name)
 
 
 def _number(scenario: Scenario, part: Statement, start: int, number: Number) -> str:
@@ -245,22 +215,8 @@ def _number(scenario: Scenario, part: Statement, start: int, number: Number) -> 
         return "\n".join(lines + _listed(ways))
     if part.kind == "BATTERY":
         return _battery(scenario, part)
-    if word == "OPTIONAL":
-        return "The first one to be given up is the one with the greatest number; those with one number go together."
-    if part.kind == "ASSUME" and word in NUMBERED:
-        return NUMBERED[word].number_words(number)
-    if word == "EVERY":
-        return f"Somebody is there again {units(number)} of time after the last one left, or after the start."
-    if word == "AT_MOST":
-        return f"It can happen {'once' if number == 1 else f'{number} times'} in all."
-    if word == "WITHIN" and part.kind == "REACH_OBJECTIVE":
-        return f"It must have happened {units(number)} of time after the start at most."
-    if word == "WITHIN":
-        return f"The answer must have come {units(number)} of time later at most."
-    if word == "AFTER":
-        later = f"later than {units(number)} of time after the start" if number else "at any time"
-        return f"It counts when it happens {later}."
-    return ""
+    kind = STATEMENTS.get(word) or STATEMENTS.get(part.kind)  # a number may stand behind optional itself
+    return kind.number_words(word.lower(), number) if kind is not None else ""
 
 
 def _read_as(label: Optional[str]) -> str:

@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Dict, List, Tuple
 
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.kinds import KEYWORDS, section_of
+from pursue_gen.language.kinds import KEYWORDS, STATEMENTS, section_of
 from pursue_gen.language.tokens import bare, end_of, start_of
 
 
@@ -40,7 +40,7 @@ def symbols(document: Draft) -> Tuple[Symbol, ...]:
     """The outline: a symbol for each statement that begins like one, in the order of the text."""
     found = []
     for part in document.statements:
-        if part.kind not in KEYWORDS:
+        if part.kind not in STATEMENTS:
             continue
         words = " ".join(document.text[part.start : part.end].split())
         token = part.name

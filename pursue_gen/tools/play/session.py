@@ -13,7 +13,7 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.numbers import time_text
-from pursue_gen.language.wording import objective_words, promise_words
+from pursue_gen.language.sentences import objective_words, promise_words
 from pursue_gen.tools.play.advice import Holding
 from pursue_gen.tools.play.counter import CounterPlay
 from pursue_gen.tools.play.saving import save

@@ -12,7 +12,7 @@ from pursue_gen.explanation.costs import Costs, in_words
 from pursue_gen.explanation.explain import Explanation
 from pursue_gen.language.numbers import decimal_text, time_text
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.wording import kind_words, objective_words, promise_words, speed_words
+from pursue_gen.language.sentences import objective_words, promise_words, speed_words
 from pursue_gen.partition import unneeded, unneeded_words
 from pursue_gen.solving.answers import answers
 from pursue_gen.solving.rules import Rules
@@ -87,5 +87,5 @@ def _agents(scenario: Scenario) -> str:
         does = ", ".join(ref.shown for ref in agent.can_do) or "-"
         reacts = ", ".join(ref.shown for ref in agent.reacts_to) or "-"
         speed = speed_words(agent, scenario)
-        rows.append((agent.shown, kind_words(agent), agent.location.shown, speed, does, reacts))
+        rows.append((agent.shown, agent.kind_words, agent.location.shown, speed, does, reacts))
     return table(("agent", "is", "starts at", "moves", "can do", "takes part in"), rows, "Who is there")

@@ -14,7 +14,6 @@ from pursue_gen.diagnostics import Severity
 from pursue_gen.language import parse
 from pursue_gen.language.assumption_checks import setting_of
 from pursue_gen.language.assumptions import KINDS, NUMBERED, Assumption
-from pursue_gen.language.assumptions.base import NAMES
 from pursue_gen.language.checks import check
 from pursue_gen.language.conditions import At, Condition, Doing, Not, OnWay, Who
 from pursue_gen.language.draft import Draft
@@ -55,7 +54,8 @@ VALUES: Dict[str, st.SearchStrategy[Any]] = {
 def drawn(data: st.DataObject, kind: Type[Assumption]) -> Assumption:
     """An assumption of this kind about STORY."""
     made: Any = kind
-    found: Assumption = made(**{field: data.draw(VALUES[field]) for _, field in kind.fields()})
+    fields = (hole.fields[0] for hole in kind.template.holes)
+    found: Assumption = made(**{field: data.draw(VALUES[field]) for field in fields})
     return found
 
 
@@ -65,7 +65,7 @@ def read(text: str) -> Scenario:
 
 def all_kinds(of: Type[Assumption] = Assumption) -> Iterator[Type[Assumption]]:
     for kind in of.__subclasses__():
-        yield from [kind] if hasattr(kind, "written") else []
+        yield from [kind] if hasattr(kind, "template") else []
         yield from all_kinds(kind)
 
 
@@ -90,31 +90,33 @@ def test_its_text_is_read_as_the_same(kind: Type[Assumption], data: st.DataObjec
 @given(st.data())
 def test_it_names_what_editors_find_in_its_text(kind: Type[Assumption], data: st.DataObject) -> None:
     one = drawn(data, kind)
-    assert {(kind, ref.name) for kind, ref in one.names()} <= {
+    assert {(thing, ref.name) for thing, ref in one.names()} <= {
         (found.kind, found.name) for found in occurrences(Draft.of(one.text, "story.pur").statements)
     }
-    outside = [getattr(one, field).name for _, field in one.fields() if field in NAMES]
+    outside = [getattr(one, hole.fields[0]).name for hole in kind.template.holes if hole.filling.of]
     assert [ref.name for _, ref in one.names()] == outside and all(name in one.clause for name in outside)
     assert one.is_about("guest") == ("guest" in re.findall(r"\w+", one.text)) and not one.is_about("bot")
 
 
 @each_kind
 def test_its_form_and_its_example_are_of_the_kind(kind: Type[Assumption]) -> None:
-    assert (kind.title, kind.form()) in [(form.title, form.words) for form in STATEMENTS["ASSUME"].forms]
+    ((title, words),) = kind.forms
+    assert (title, f"assume: {words}") in STATEMENTS["ASSUME"].forms
     fillings = {"agent": "guest", "event": "call", "POI": "hall"}
-    filled = HOLE.sub(lambda hole: hole[2] if hole[1] else fillings[hole[2]], kind.form())
-    for text in (filled, kind.filled(kind.example.__getitem__)):
+    filled = HOLE.sub(lambda hole: hole[2] if hole[1] else fillings[hole[2]], words)
+    for text in (f"assume: {filled}", f"assume: {kind.form()}"):
         (found,) = read(STORY.format(text)).assumptions
         assert type(found) is kind and found.text.replace("((", "(") == text
 
 
 @each_kind
 def test_its_words_are_known_everywhere(kind: Type[Assumption]) -> None:
-    for word, meaning in kind.meanings.items():
-        assert KEYWORDS[word.upper()] == MAY_BE_NAMES[word.upper()] == word and MEANINGS[word.upper()] == meaning
-    assert all(word in KEYWORDS.values() or word.startswith("{") for word in kind.written.split())
+    for word in kind.own_words:
+        assert KEYWORDS[word.token] == MAY_BE_NAMES[word.token] == word.text and MEANINGS[word.token] == word.meaning
+    assert set(re.findall('"([a-z_]+)"', kind.template.grammar("kind"))) <= set(KEYWORDS.values())
     assert (kind in NUMBERED.values()) == bool(kind.number)
-    assert not kind.number or kind.number_words(3).endswith(".")
+    assert not kind.number or all(kind.number_words(word, 3).endswith(".") for word in kind.numbers)
+    assert bool(kind.number) == bool(kind.numbers)
 
 
 @each_kind
@@ -127,7 +129,7 @@ def test_numbers_that_are_proposed_say_more_and_can_be_assumed(kind: Type[Assump
     for number in (*one.stronger(30), kind.nearest):
         other = one.with_number(number)
         assert other.subject == one.subject
-        assert "PML251" not in [finding.code for finding in other.check(setting_of(whole))]
+        assert "PML251" not in [finding.code for finding in other.check_in(setting_of(whole))]
 
 
 @each_kind

@@ -21,16 +21,14 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.tools.authoring.dialog import ask_requirements
 from pursue_gen.tools.authoring.first_scenario import scenario_text
+from pursue_gen.tools.authoring.goals import GOALS
 from pursue_gen.tools.authoring.requirements import (
-    KINDS,
     Requirements,
     Robot,
     Task,
     deadline,
-    fewest_places,
     shortest_every,
     shortest_within,
-    slow_enough,
 )
 from pursue_gen.tools.commands.dialog import StreamDialog
 
@@ -57,10 +55,10 @@ def dialog(*lines: str) -> StreamDialog:
 
 @pytest.mark.parametrize("places", [1, 2, 3])
 @pytest.mark.parametrize("robots", [1, 2, 3])
-@pytest.mark.parametrize("kind", list(KINDS))
+@pytest.mark.parametrize("kind", list(GOALS))
 def test_every_combination_of_options_is_won(kind: str, robots: int, places: int) -> None:
     quiet, row = StreamDialog(io.StringIO(), io.StringIO(), quiet=True), ",".join(ROW[:places])
-    if places < fewest_places(kind):
+    if places < GOALS[kind].fewest_places:
         with pytest.raises(PursueError) as caught:
             ask_requirements(quiet, kind, row, robots)
         assert "expected 2 to" in str(caught.value)
@@ -82,7 +80,7 @@ def test_the_others_may_be_as_fast_as_is_allowed(
     places = ROW[: len(distances) + 1]
     task = None if kind == "catch" else Task("lock", places[-2], 2)
     robots = tuple(Robot(f"bot{number}", speed, task) for number, speed in enumerate(speeds))
-    mobile = slow_enough(kind, places, distances, robots)
+    mobile = GOALS[kind].slow_enough(places, distances, robots)
     event = "grab" if kind == "catch" else "enter"
     sound_and_won(scenario_text(Requirements(kind, places, distances, robots, "thief", mobile, event), "floor.pur"))
 
@@ -118,7 +116,7 @@ ANSWERS: Dict[str, List[str]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("kind", list(KINDS))
+@pytest.mark.parametrize("kind", list(GOALS))
 def test_the_answers_are_in_the_scenario(kind: str) -> None:
     screen = io.StringIO()
     source = io.StringIO("".join(line + "\n" for line in ANSWERS[kind]))
@@ -131,7 +129,7 @@ def test_the_answers_are_in_the_scenario(kind: str) -> None:
     assert {word for word in words if word[0].isalpha()} <= names
     numbers = [word for word in words if word.isdigit() and word != "0"]
     assert all(f" {number}" in scenario.text for number in numbers)
-    for meaning in KINDS.values():
+    for meaning in (goal.meaning for goal in GOALS.values()):
         assert meaning in screen.getvalue()
 
 
@@ -239,7 +237,7 @@ def test_the_shortest_patrol_that_is_accepted_can_be_walked(
 def test_who_is_too_fast_to_be_caught_is_asked_again() -> None:
     quiet = StreamDialog(io.StringIO(), io.StringIO(), quiet=True)
     usual = ask_requirements(quiet, "catch", "a,b", 1)
-    least = slow_enough("catch", usual.places, usual.distances, usual.robots)
+    least = GOALS["catch"].slow_enough(usual.places, usual.distances, usual.robots)
     screen = io.StringIO()
     answers = ["", "", "", "", str(least - 1), str(least), ""]
     found = ask_requirements(StreamDialog(io.StringIO("\n".join(answers)), screen), "catch", "a,b", 1)
@@ -255,7 +253,7 @@ def test_nobody_answers_so_often_wrongly() -> None:
 
 def test_suggested_names_are_new_ones() -> None:
     quiet = StreamDialog(io.StringIO(), io.StringIO(), quiet=True)
-    for kind in KINDS:
+    for kind in GOALS:
         row = "bot1,fetch,visitor,order,safe,lock,thief,bot1_2"
         found = ask_requirements(quiet, kind, row, 2)
         assert len(set(found.names)) == len(found.names)
@@ -353,4 +351,4 @@ def test_without_a_verdict_in_time_the_scenario_is_written_and_that_is_reported(
 
 
 def test_the_command_line_knows_every_kind() -> None:
-    assert WORDS["kind"] == tuple(KINDS)
+    assert WORDS["kind"] == tuple(GOALS)

@@ -10,6 +10,7 @@ from typing import Any, Dict, Iterator, List
 import pytest
 
 from pursue_gen.language.formatter import format_text
+from pursue_gen.language.kinds import STATEMENTS
 
 from .client import SNIPPETS, URI, Editor, Refused, edited
 from .scenarios import SMALL
@@ -125,6 +126,13 @@ def test_the_states_that_an_objective_costs_stand_behind_it(editor: Editor) -> N
     assert editor.about("inlayHint", range=first) == []
     editor.change(EMOJI.replace("do hand", "do hnd"))
     assert editor.about("inlayHint", range=whole) == []
+
+
+def test_each_kind_of_statement_is_in_the_outline(editor: Editor) -> None:
+    lines = [kind.form().split(" · ")[0].split(" (")[0] for kind in STATEMENTS.values()]
+    editor.change("\n".join([*lines, "controllable: x"]))
+    symbols = editor.about("documentSymbol")
+    assert len(symbols) == len(lines) and len({symbol["kind"] for symbol in symbols}) == 8
 
 
 def test_outline_folds_and_formatting(editor: Editor) -> None:

@@ -1,11 +1,11 @@
-"""Scenarios in English sentences: objectives, speeds, kinds of agents."""
+"""Sentences on a whole scenario: what is wanted, what was promised, as long as what, how fast agents are."""
 
 from __future__ import annotations
 
 from typing import Dict, List
 
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.scenario import Agent, Battery, Scenario, StatedObjective
+from pursue_gen.language.scenario import Agent, Scenario, StatedObjective
 
 
 def objective_words(scenario: Scenario) -> List[str]:
@@ -40,33 +40,15 @@ def periods_found(scenario: Scenario, won: bool = True) -> List[str]:
     return list(dict.fromkeys(sentence for each in scenario.patrols for sentence in each.period_found(won)))
 
 
-def statement_text(objective: StatedObjective) -> str:
-    """The whole statement, as in `objective: avoid e`."""
-    optional = f"optional {objective.optional} " if objective.optional else ""
-    return f"{optional}{objective.word}: {objective.text}"
-
-
 def condition_of_promise(scenario: Scenario) -> str:
     """All that is assumed of agents that are not controlled, in one clause; "" where nothing is."""
     says = [assumption.clause for assumption in scenario.assumptions]
     return f"as long as {', and '.join(says)}" if says else ""
 
 
-def battery_words(battery: Battery) -> str:
-    """What a battery holds, what is used, and where it is recharged."""
-    text = f"battery of {battery.capacity}, uses {battery.uses} per unit"
-    return text if battery.dock is None else f"{text}, recharges {battery.recharges} per unit at {battery.dock.shown}"
-
-
-def size_words(agent: Agent) -> str:
-    """What is said of a robot's size; "": nothing."""
-    size = {"radius": agent.radius, "goal tolerance": agent.tolerance, "inflation radius": agent.inflation}
-    return ", ".join(f"{what} {metres} m" for what, metres in size.items() if metres is not None)
-
-
 def speed_words(agent: Agent, scenario: Scenario) -> str:
     """How fast an agent is, in words, and what its battery holds."""
-    batteries = [battery_words(battery) for battery in scenario.batteries if battery.agent.name == agent.name]
+    batteries = [battery.in_words for battery in scenario.batteries if battery.agent.name == agent.name]
     if agent.mobile is None:
         return ", ".join(["stays there", *batteries])
     words = [f"{agent.mobile} time unit{'' if agent.mobile == 1 else 's'} per unit of distance"]
@@ -78,10 +60,3 @@ def speed_words(agent: Agent, scenario: Scenario) -> str:
 def window_words(low: Number, high: Number) -> str:
     """Between which times something ends; a window of one time unit, which is the usual one, by its first time."""
     return str(low) if high == low + 1 else f"{low} to {high}"
-
-
-def kind_words(agent: Agent) -> str:
-    """What an agent is, in words."""
-    if not agent.controllable:
-        return "not controlled"
-    return "a person who is instructed" if agent.human else "a robot"

@@ -1,0 +1,81 @@
+"""Statements that are a word, a colon, and one of several kinds behind them: objectives and assumptions."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Dict, Mapping, Tuple, Type
+
+from pursue_gen.language.assumptions import KINDS as ASSUMPTIONS
+from pursue_gen.language.numbers import Number
+from pursue_gen.language.objectives import KINDS as OBJECTIVES
+from pursue_gen.language.objectives import Reach
+from pursue_gen.language.statements.base import StatementKind
+from pursue_gen.language.tree_reader import TreeReader
+from pursue_gen.language.word import Form, Word
+
+
+class Headed(StatementKind):
+    """A statement that is a word, a colon, and one of several kinds of what stands behind them."""
+
+    head: ClassVar[Word]
+    """The word."""
+    kinds: ClassVar[Mapping[str, Type[Any]]]
+    """These kinds, classes of `Written`, by their rules in the grammar."""
+
+    def __init_subclass__(cls) -> None:
+        kinds = cls.kinds.values()
+        cls.own_words = (cls.head, *(word for kind in kinds for word in kind.own_words))
+        cls.forms = tuple(Form(form.title, f"{cls.head.text}: {form.words}") for kind in kinds for form in kind.forms)
+
+    @classmethod
+    def form(cls) -> str:
+        return " · ".join(f"{cls.head.text}: {kind.form()}" for kind in cls.kinds.values())
+
+    @classmethod
+    def grammar(cls) -> str:
+        rules = (kind.template.grammar(rule) for rule, kind in cls.kinds.items())
+        return "\n".join((f'{cls.rule()}: "{cls.head.text}" ":" ({" | ".join(cls.kinds)})', *rules))
+
+    @classmethod
+    def used(cls) -> Dict[str, str]:
+        found = (kind.template.used(cls.head.text) for kind in cls.kinds.values())
+        return {word: thing for words in found for word, thing in words.items()}
+
+    @classmethod
+    def conditions_behind(cls) -> Tuple[str, ...]:
+        return tuple(word for kind in cls.kinds.values() for word in kind.template.conditions_behind)
+
+    @classmethod
+    def number_words(cls, word: str, number: Number) -> str:
+        return next(filter(None, (kind.number_words(word, number) for kind in cls.kinds.values())), "")
+
+    @classmethod
+    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Any:
+        (tree,) = children
+        return cls.kinds[tree.data].read(reader, *tree.children, **at)
+
+
+class Assume(Headed):
+    """What agents that are not controlled do, or do not do."""
+
+    listed_in: ClassVar[str] = "assumptions"
+    kinds = ASSUMPTIONS
+    head = Word(
+        "assume", "What an agent that is not controlled is assumed to do, or not to do. A mission watches it."
+    )
+
+
+class Objective(Headed):
+    """What always holds."""
+
+    kinds = OBJECTIVES
+    head = Word(
+        "objective", "What must always hold: an answer in time, an event that never happens, two agents who never meet."
+    )
+
+
+class ReachObjective(Headed):
+    """What is reached once."""
+
+    among: ClassVar[str] = "OBJECTIVE"
+    kinds: ClassVar[Mapping[str, Type[Any]]] = {"reach": Reach}
+    head = Word("reach_objective", "What is to be achieved once.")
