@@ -228,13 +228,9 @@ def _hearing(edges: Sequence[Edge], channel: str) -> List[Edge]:
 
 def _is_led_out(watching: Sequence[Automaton], here: _Places, values: _Valuation, kept: AbstractSet[_Places]) -> bool:
     """True if the environment can at once lead one of the automata out of `kept`."""
-    taken = enumerate(_taken(watching, here, values))
-    moves = ((*here[:k], e.target, *here[k + 1 :]) for k, some in taken for e in some if _is_environments(e))
-    return any(there not in kept for there in moves)
-
-
-def _is_environments(edge: Edge) -> bool:
-    return not edge.controllable and edge.sync is None and not edge.guard.clocks
+    taken = ((k, edge) for k, some in enumerate(_taken(watching, here, values)) for edge in some)
+    led = ((k, edge.target) for k, edge in taken if not (edge.controllable or edge.sync or edge.guard.clocks))
+    return any((*here[:k], there, *here[k + 1 :]) not in kept for k, there in led)
 
 
 def _ends(automaton: Automaton, edge: Edge) -> bool:

@@ -79,7 +79,8 @@ class RelaxedPlanner:
     def time_to_goal(
         self, state: State, comes: Callable[[int, int, Mapping[Fact, int]], Optional[int]]
     ) -> Optional[int]:
-        """When the last location of the goal is come to (see `achieved`); None where one never is."""
+        """When the last location of the goal is come to (see `achieved`); None where one never is. Requires a goal."""
+        assert self._goals
         times = self.achieved(state, comes).times
         return max(times[goal] for goal in self._goals) if self._goals <= times.keys() else None
 

@@ -13,9 +13,9 @@ where somebody in the part sends it. The move is not its own: nobody at the boun
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import AbstractSet, Dict, Iterator, Optional, Sequence, Tuple
+from typing import AbstractSet, Iterator, Optional, Sequence, Tuple
 
-from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Network, Sync, Test
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Network, Sync, Test
 
 HIDDEN = "_hidden"
 """The automaton that stands for the hidden ones, and its only location."""
@@ -127,11 +127,8 @@ def _right_after(
 
 def _tests(edge: Edge, variables: AbstractSet[str], clocks: Tuple[ClockBound, ...] = ()) -> Guard:
     """The edge's tests of these variables; what may hold for another one is no test."""
-    found: Dict[Clause, None] = {}
-    for clause in edge.guard.integers:
-        if all(test.variable in variables for test in clause):
-            found[clause] = None
-    return Guard(clocks, tuple(found))
+    known = (clause for clause in edge.guard.integers if all(test.variable in variables for test in clause))
+    return Guard(clocks, tuple(dict.fromkeys(known)))
 
 
 def _assigned(edge: Edge, variables: AbstractSet[str]) -> Tuple[Tuple[str, int], ...]:
