@@ -17,17 +17,8 @@ LABELLED = {kind.declares: kind.listed_in for kind in STATEMENTS.values() if iss
 _SIGNS = re.compile(r"[!-/:-@\[-`{-~]")
 """The signs that mean something in Markdown; a backslash before one of them makes it an ordinary sign."""
 
-_INVISIBLE = (
-    (0x034F, 0x034F),
-    (0x115F, 0x1160),
-    (0x17B4, 0x17B5),
-    (0x180B, 0x180F),
-    (0x2800, 0x2800),
-    (0x3164, 0x3164),
-    (0xFFA0, 0xFFA0),
-    (0xFFF0, 0xFFF8),
-    (0x1D159, 0x1D159),
-    (0xE0000, 0xE0FFF),
+_INVISIBLE = re.compile(
+    "[\u034f\u115f-\u1160\u17b4-\u17b5\u180b-\u180f\u2800\u3164\uffa0\ufff0-\ufff8\U0001d159\U000e0000-\U000e0fff]"
 )
 """Those of Default_Ignorable_Code_Point (Unicode, DerivedCoreProperties.txt) that Python may hold for printable, and
 others that are blank: the empty cell of Braille, the empty head of a note. U+FE00 to U+FE0F are not here: they choose
@@ -47,16 +38,11 @@ def why_no_label(label: str) -> str:
         return f"it is longer than {LONGEST_LABEL} letters"
     if '"' in label or not label.isprintable():
         return "it has characters that cannot be seen, or that change the direction of writing"
-    if any(map(_is_invisible, label)):
+    if _INVISIBLE.search(label):
         return "it has characters that show nothing"
     if all(unicodedata.category(letter)[0] in "MZ" for letter in label):
         return "it has no letter or sign of its own"
     return ""
-
-
-def _is_invisible(letter: str) -> bool:
-    """True for a character that shows nothing."""
-    return any(first <= ord(letter) <= last for first, last in _INVISIBLE)
 
 
 def markdown(text: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import FrozenSet, List, Sequence, Tuple
+from typing import FrozenSet, List, Optional, Sequence, Tuple
 
 from lark import Token
 
@@ -50,10 +50,9 @@ def looks_like_statement(token: Token) -> bool:
 def unknown_statement(chunk: Sequence[Token], span: Span) -> Diagnostic:
     """A statement that begins with no word that begins one."""
     token = chunk[0]
-    if token.type in ("UNCLOSED_COMMENT", "UNCLOSED_NAME"):
-        return _unclosed(token, span)
-    if _invisible(token):
-        return _unseen(token, span)
+    unread = _unread(token, span)
+    if unread is not None:
+        return unread
     if token.type in ("HUMAN", "CONTROLLABLE", "MOBILE", "RADIUS", "TOLERANCE", "INFLATION"):
         hint = f"it belongs to an agent: {STATEMENTS['AGENT'].form()}"
     elif token.type in KEYWORDS and _MEANT.get(str(token)) not in _STARTERS:
@@ -67,10 +66,9 @@ def unknown_statement(chunk: Sequence[Token], span: Span) -> Diagnostic:
 def explain(chunk: Sequence[Token], index: int, expected: FrozenSet[str], span: Span) -> Diagnostic:
     """The token at `index` of the statement is none of the expected ones."""
     token = chunk[index]
-    if token.type in ("UNCLOSED_COMMENT", "UNCLOSED_NAME"):
-        return _unclosed(token, span)
-    if _invisible(token):
-        return _unseen(token, span)
+    unread = _unread(token, span)
+    if unread is not None:
+        return unread
     message = f"expected {_in_words(expected)} after {_shown(chunk[index - 1])}, found {_shown(token)}"
     return error("PML010", message, span, _hint(chunk, index, expected) or _form(chunk))
 
@@ -99,22 +97,19 @@ _GENERAL = ("the form is", "a statement begins with")
 """How hints begin that know nothing of what was meant."""
 
 
-def _invisible(token: Token) -> bool:
-    return token.type == "STRAY" and not str(token)[0].isprintable()
-
-
-def _unseen(token: Token, span: Span) -> Diagnostic:
-    """A sign that cannot be seen, as it comes with text from web pages and word processors."""
-    message = f"a sign that cannot be seen stands here: {shown(str(token)[0])}"
-    return error("PML015", message, span, "delete it, or put an ordinary blank in its place")
-
-
-def _unclosed(token: Token, span: Span) -> Diagnostic:
+def _unread(token: Token, span: Span) -> Optional[Diagnostic]:
+    """What is wrong with a token that is never closed, or cannot be seen (as it comes with text from web pages and word
+    processors); None: it is another one."""
     if token.type == "UNCLOSED_NAME":
         return error("PML012", "this name has no closing quote on its line", span, 'write it as "name"')
-    span = Span(span.file, span.line, span.column, span.line, span.column + 2)
-    hint = "close it with */, or use // for one line"
-    return error("PML013", "this comment is never closed: expected `*/`", span, hint)
+    if token.type == "UNCLOSED_COMMENT":
+        span = Span(span.file, span.line, span.column, span.line, span.column + 2)
+        hint = "close it with */, or use // for one line"
+        return error("PML013", "this comment is never closed: expected `*/`", span, hint)
+    if token.type == "STRAY" and not str(token)[0].isprintable():
+        message = f"a sign that cannot be seen stands here: {shown(str(token)[0])}"
+        return error("PML015", message, span, "delete it, or put an ordinary blank in its place")
+    return None
 
 
 def _hint(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:

@@ -93,11 +93,11 @@ def _instead(
     some = ", ".join(_usable(known, taken) for known in list(declared)[:_SOME])
     some += ", …" if len(declared) > _SOME else ""
     if elsewhere:
-        another = f'declare {_a(kind)} with another name: {_keyword(kind)} "…"'
+        another = f'declare {_a(kind)} with another name: {kind.lower()} "…"'
         return f"write the name of {_a(kind)}: {some}" if some else another
     better = proposal(name, RESERVED, taken)
     declare = "declare it" if better == name else "declare it with another name"
-    return f'{declare}: {_keyword(kind)} "{better}", or use one of: ' + (some or "(none yet)")
+    return f'{declare}: {kind.lower()} "{better}", or use one of: ' + (some or "(none yet)")
 
 
 def _usable(name: str, taken: Container[str]) -> str:
@@ -166,7 +166,3 @@ def _again(name: str, kind: str, span: Span, first_kind: str, first: Span) -> Di
 
 def _a(kind: str) -> str:
     return ("an " if kind[0] in "ea" else "a ") + kind
-
-
-def _keyword(kind: str) -> str:
-    return kind.lower()

@@ -50,15 +50,6 @@ class Spot:
 
 
 @dataclass(frozen=True)
-class PoseComment:
-    """What a comment behind a place holds: its pose, those of single robots there, and what is wrong with them."""
-
-    pose: Optional[Pose]
-    spots: Tuple[Spot, ...] = ()
-    findings: Tuple[Diagnostic, ...] = ()
-
-
-@dataclass(frozen=True)
 class _Item:
     """A list in a comment: the name before it ("": the place's own), comment[start:end], and what is in it."""
 
@@ -69,27 +60,32 @@ class _Item:
     closed: bool
 
 
-def read_poses(comment: str, span: Span) -> PoseComment:
-    """The poses that a comment holds; none where it holds words only (a placeholder). `span`: of the comment."""
+def read_poses(comment: str, span: Span, findings: List[Diagnostic]) -> Tuple[Optional[Pose], Tuple[Spot, ...]]:
+    """The pose that a comment behind a place holds, and those of single robots there; none where it holds words only (a
+    placeholder). `span`: of the comment; what is wrong with it is added to the findings.
+    """
     place, *others = list(_items(comment))
     if place.name:
-        if not _is_pose(place.inner):
-            return PoseComment(None)  # an ordinary comment
-        message = f"the pose of the place has to come before the one of {shown(place.name, 60)}"
-        return PoseComment(None, (), (error("PML020", message, _part(span, place), _FORM_OF_ROBOT),))
-    pose, findings = _read_list(place, span, "a pose", _FORM)
+        if _is_pose(place.inner):  # else an ordinary comment
+            message = f"the pose of the place has to come before the one of {shown(place.name, 60)}"
+            findings.append(error("PML020", message, _part(span, place.start, place.end), _FORM_OF_ROBOT))
+        return None, ()
+    pose = _read_list(place, span, "a pose", _FORM, findings)
     spots: Dict[str, Spot] = {}
     for item in others:
-        here = _part(span, item)
-        found, more = _read_list(item, here, f"the pose of {shown(item.name, 60)}", _FORM_OF_ROBOT)
-        findings += more
+        here = _part(span, item.start, item.end)
+        found = _read_list(item, here, f"the pose of {shown(item.name, 60)}", _FORM_OF_ROBOT, findings)
         if item.name in spots:
             message = f"{shown(item.name, 60)} has two poses at this place"
-            findings += (error("PML022", message, here, "delete one of them"),)
+            findings.append(error("PML022", message, here, "delete one of them"))
         elif found is not None:
-            spots[item.name] = Spot(Ref(item.name, _name_part(span, item)), found)
-    findings += _without_name(comment, (others or [place])[-1].end, span)
-    return PoseComment(pose, tuple(spots.values()), findings)
+            spots[item.name] = Spot(Ref(item.name, _part(span, item.start, item.start + len(item.name))), found)
+    for match in _LIST.finditer(comment, (others or [place])[-1].end):
+        if _is_pose(match[1]):
+            message = "a robot's name is expected before this list of numbers"
+            findings.append(error("PML020", message, _part(span, match.start(), match.end()), _FORM_OF_ROBOT))
+            break
+    return pose, tuple(spots.values())
 
 
 def robots_in(comment: str) -> List[Tuple[str, int, int]]:
@@ -114,22 +110,9 @@ def _items(comment: str) -> Iterator[_Item]:
         match = _NEXT.match(comment, end) if bracket else None
 
 
-def _without_name(comment: str, end: int, span: Span) -> Tuple[Diagnostic, ...]:
-    """An error for the first list of numbers in the rest of a comment: nobody knows whose pose it is."""
-    for match in _LIST.finditer(comment, end):
-        if _is_pose(match[1]):
-            here = Span(span.file, span.line, span.column + match.start(), span.line, span.column + match.end())
-            return (error("PML020", "a robot's name is expected before this list of numbers", here, _FORM_OF_ROBOT),)
-    return ()
-
-
-def _part(span: Span, item: _Item) -> Span:
-    return Span(span.file, span.line, span.column + item.start, span.line, span.column + item.end)
-
-
-def _name_part(span: Span, item: _Item) -> Span:
-    begin = span.column + item.start
-    return Span(span.file, span.line, begin, span.line, begin + len(item.name))
+def _part(span: Span, start: int, end: int) -> Span:
+    """A part of a comment, by its offsets."""
+    return Span(span.file, span.line, span.column + start, span.line, span.column + end)
 
 
 def _split(inner: str) -> List[str]:
@@ -145,33 +128,20 @@ def _is_pose(inner: str) -> bool:
     return len(items) > 2 and any(_NUMBER.fullmatch(item) for item in items)
 
 
-def _read_list(item: _Item, span: Span, what: str, form: str) -> Tuple[Optional[Pose], Tuple[Diagnostic, ...]]:
+def _read_list(item: _Item, span: Span, what: str, form: str, findings: List[Diagnostic]) -> Optional[Pose]:
     """The pose in a list, None for words; `what` it is called in messages, `form`: what to write."""
     items = _split(item.inner)
     if all(_WORD.fullmatch(one) for one in items) or (item.name and item.closed and len(items) == 1):
-        return None, ()
-    if not item.closed:
-        message = f"{what} is not closed: expected `]` behind its seven numbers"
-        return None, (error("PML020", message, span, form),)
-    for number, one in enumerate(items, 1):
-        if len(one) > _LONGEST or not _NUMBER.fullmatch(one):
-            found = f"'{shown(one)}'" if one else "empty"
-            return None, (error("PML020", f"{what} holds numbers only, but its item {number} is {found}", span, form),)
-    if len(items) != 7:
-        return None, (error("PML020", f"{what} has seven numbers, here are {len(items)}", span, form),)
-    numbers = tuple(float(one) for one in items)
-    if any(abs(number) > _FARTHEST for number in numbers):
-        message = f"{what} is off the map: farther than {_FARTHEST:,.0f} m from its origin"
-        return None, (error("PML020", message, span, form),)
-    return _pose_of(numbers, span)
-
-
-def _pose_of(numbers: Tuple[float, ...], span: Span) -> Tuple[Optional[Pose], Tuple[Diagnostic, ...]]:
-    x, y, z, qx, qy, qz, qw = numbers
+        return None
+    why = _why_no_pose(items, item.closed)
+    if why:
+        findings.append(error("PML020", f"{what} {why}", span, form))
+        return None
+    x, y, z, qx, qy, qz, qw = map(float, items)
     length = math.sqrt(qx * qx + qy * qy + qz * qz + qw * qw)
     if length < _LOOSE_UNIT:
-        return None, (error("PML021", "the orientation of this pose is zero: it has no direction", span, _FORM),)
-    findings = []
+        findings.append(error("PML021", "the orientation of this pose is zero: it has no direction", span, _FORM))
+        return None
     if abs(length - 1) > _LOOSE_UNIT:
         message = f"the orientation of this pose has length {length:.2f} and is scaled to length 1"
         findings.append(warning("PML120", message, span, "the last four numbers are a unit quaternion qx, qy, qz, qw"))
@@ -179,7 +149,22 @@ def _pose_of(numbers: Tuple[float, ...], span: Span) -> Tuple[Optional[Pose], Tu
         hint = "if these are w, x, y, z, move the first number to the end; if the robot does lean, ignore this"
         message = "this orientation is not a turn about z: a robot that stands on a floor has qx = qy = 0"
         findings.append(warning("PML121", message, span, hint))
-    return Pose(x, y, z, qx / length, qy / length, qz / length, qw / length), tuple(findings)
+    return Pose(x, y, z, qx / length, qy / length, qz / length, qw / length)
+
+
+def _why_no_pose(items: List[str], closed: bool) -> str:
+    """Why a list is no pose; "": it is one."""
+    if not closed:
+        return "is not closed: expected `]` behind its seven numbers"
+    for number, one in enumerate(items, 1):
+        if len(one) > _LONGEST or not _NUMBER.fullmatch(one):
+            found = f"'{shown(one)}'" if one else "empty"
+            return f"holds numbers only, but its item {number} is {found}"
+    if len(items) != 7:
+        return f"has seven numbers, here are {len(items)}"
+    if any(abs(float(one)) > _FARTHEST for one in items):
+        return f"is off the map: farther than {_FARTHEST:,.0f} m from its origin"
+    return ""
 
 
 def pose_text(pose: Pose) -> str:

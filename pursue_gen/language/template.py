@@ -128,12 +128,12 @@ class Template:
     def grammar(self, rule: str) -> str:
         """Its rule in Lark's notation, and those that it stands on: a tree has a child for each hole and each flag.
 
-        Each four pieces have a rule, as what may be left out doubles the ways in which a rule can be read.
+        What may be left out doubles the ways in which a rule can be read, so each further four pieces have their own.
         """
         terms = [piece.grammar for piece in self.pieces]
-        fours = {f"_{rule}_{number}": " ".join(terms[number : number + 4]) for number in range(0, len(terms), 4)}
-        rules = {rule: " ".join(fours), **fours}.items()
-        return "\n".join((*(f"{name}: {four}" for name, four in rules), *self.rules))
+        more = {f"_{rule}_{number}": terms[number : number + 4] for number in range(4, len(terms), 4)}
+        rules = {rule: [*terms[:4], *more], **more}.items()
+        return "\n".join((*(f"{name}: {' '.join(parts)}" for name, parts in rules), *self.rules))
 
     @property
     def example(self) -> str:

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Any, List, Mapping, Optional, Tuple
 
 from lark import Token
 
-from pursue_gen.diagnostics import Diagnostic, Span
+from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, EventOrCondition, Holds, Not, OnWay, Who
-from pursue_gen.language.number_messages import no_count, no_number
-from pursue_gen.language.numbers import Number, is_fine, read_number
+from pursue_gen.language.numbers import MOST_DIGITS, Number, is_fine, read_number
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.tokens import bare, span_of
+from pursue_gen.language.tokens import bare, shown, span_of
 
 MOST = 1_000_000
 """The largest distance, duration, inverse speed or deadline: what comes of it must fit a machine's integers."""
+
+_LARGEST_POWER = 6
+"""The largest number has so many zeros."""
 
 
 class TreeReader:
@@ -63,7 +66,13 @@ class TreeReader:
         value = read_number(token)
         if value is not None and value <= MOST and is_fine(value):
             return value
-        self.findings.append(no_number(token, value, MOST, self.at(token)))
+        if value is not None and value > MOST:
+            return self._too_large(token)
+        finding = error("PML014", f"expected a number, found {shown(token)}", self.at(token), _instead(token))
+        if value is not None:
+            message = f"{shown(token, 20)} has more than {MOST_DIGITS} digits after the point"
+            finding = error("PML280", message, self.at(token), "round it, or choose a smaller unit")
+        self.findings.append(finding)
         return 1
 
     def count(self, token: Token) -> int:
@@ -71,7 +80,15 @@ class TreeReader:
         value = read_number(token)
         if isinstance(value, int) and value <= MOST:
             return value
-        self.findings.append(no_count(token, value, MOST, self.at(token)))
+        if value is not None and value > MOST:
+            return self._too_large(token)
+        hint = "write digits only" if value is None else "write it without decimals"
+        self.findings.append(error("PML014", f"expected a whole number, found {shown(token)}", self.at(token), hint))
+        return 1
+
+    def _too_large(self, token: Token) -> int:
+        message = f"{shown(token, 20)} is too large: {MOST} is the largest number"
+        self.findings.append(error("PML014", message, self.at(token), "choose a larger unit"))
         return 1
 
     def window(self, tree: Any) -> Tuple[Number, Optional[Number]]:
@@ -99,3 +116,18 @@ class TreeReader:
     def event_or_condition(self, tree: Any) -> EventOrCondition:
         """The event that is named, or the condition."""
         return self.ref(tree) if tree.data == "ref" else self.condition(tree)
+
+
+def _instead(text: str) -> str:
+    """What to write in place of what is no number."""
+    if re.fullmatch(r"[0-9]{1,9}\.", text):
+        return f"write {text[:-1]}: a point stands between digits"
+    if re.fullmatch(r"\.[0-9]{1,9}", text):
+        return f"write 0{text}: a point stands between digits"
+    power = re.fullmatch(r"([1-9])[eE]([0-9])", text)
+    if power and int(power.group(2)) <= _LARGEST_POWER:
+        return f"write {power.group(1)}{'0' * int(power.group(2))}: all digits of it"
+    unit = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,9})?)[^\W\d]+", text)
+    if unit:
+        return f"write {unit.group(1)}: a number stands alone, in the unit of your choice"
+    return "write digits only, with a point before decimals: 3 or 2.5"

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
+from typing import Callable, Mapping, NamedTuple
+
+from pursue_gen.language.numbers import Number
 
 
 class Word(NamedTuple):
@@ -33,3 +35,7 @@ class Form(NamedTuple):
 
     title: str
     words: str
+
+
+Numbers = Mapping[str, Callable[[str, Number], str]]
+"""What numbers mean, by the word before each: a sentence from the number in units, and from the number itself."""

@@ -87,6 +87,6 @@ def _objectives(objectives: Iterable[pml.StatedObjective]) -> Iterator[str]:
     turns: List[pml.StatedObjective] = []
     for objective in objectives:
         turns.append(objective)
-        if not isinstance(objective, Patrol) or len(turns) >= len(objective.order):
+        if len(turns) >= len(objective.order):
             yield objective.full_text
             turns = []

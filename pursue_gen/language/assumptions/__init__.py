@@ -21,7 +21,5 @@ KINDS: Mapping[str, Type[Assumption]] = {
 }  # fmt: skip
 """The kinds of assumptions, by their rules in the grammar."""
 
-NUMBERED: Mapping[str, Type[Assumption]] = {
-    hole.begins: kind for kind in KINDS.values() for hole in kind.template.holes if kind.number in hole.fields
-}
+NUMBERED: Mapping[str, Type[Assumption]] = {word.upper(): kind for kind in KINDS.values() for word in kind.numbers}
 """The kinds that have a number, by the word before it, as the token that it is."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Mapping, Optional, Sequence, Tuple
+from typing import ClassVar, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, counted, error
 from pursue_gen.language.assumptions.base import AboutOne, Setting
@@ -11,7 +11,7 @@ from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import Form, Word
+from pursue_gen.language.word import Form, Numbers, Word
 
 MOST_TIMES = 100
 """The most times that an assumption may allow: each is a value of a variable of its own."""
@@ -28,7 +28,7 @@ class AtMost(AboutOne):
     template: ClassVar[Template] = Template("{agent=guest} does {event=call} at_most {times:count=2} times")
     own_words: ClassVar[Tuple[Word, ...]] = (Word("does", "The event that the assumption is about.", True),)
     forms: ClassVar[Tuple[Form, ...]] = (Form("how often somebody does something", template.to_fill_in),)
-    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
+    numbers: ClassVar[Numbers] = {
         "at_most": lambda _, times: f"It begins that {counted(times, 'time')} at most in the whole mission.",
     }
     number: ClassVar[str] = "times"

@@ -7,7 +7,7 @@ from typing import AbstractSet, Any, Callable, ClassVar, Iterator, Mapping, Name
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
 from pursue_gen.language.conditions import Condition
-from pursue_gen.language.numbers import Number
+from pursue_gen.language.numbers import Number, whole_above
 from pursue_gen.language.objectives import Safety
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
@@ -155,3 +155,21 @@ class AboutOne(Assumption):
         else:
             return None
         return warning("PML254", message, self.span, "delete the assumption")
+
+
+class NotSooner(AboutOne):
+    """An assumption that an agent begins an event only so many time units after something, or later."""
+
+    event: Ref
+    time: Number
+    number: ClassVar[str] = "time"
+    nearest: ClassVar[int] = 1
+
+    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+        if self.time <= 0:
+            message = f"{''.join(self.numbers)} 0 assumes nothing: expected more than 0"
+            return error("PML251", message, self.span, "write the time, or delete the assumption")
+        return self.never_does(agent, self.event)
+
+    def stronger(self, longest: Number) -> Sequence[int]:
+        return whole_above(self.time, longest)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Mapping, Optional, Sequence, Tuple
+from typing import ClassVar, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.assumptions.base import AboutOne, Setting
@@ -11,7 +11,7 @@ from pursue_gen.language.numbers import Number, whole_below
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import Form, Word
+from pursue_gen.language.word import Form, Numbers, Word
 
 SHORTEST_STAY = 2
 """Time units: an agent rests for one before it may set off."""
@@ -28,9 +28,7 @@ class Leaves(AboutOne):
     template: ClassVar[Template] = Template("{agent=visitor} leaves {place:POI=hall} within {time:number=30}")
     own_words: ClassVar[Tuple[Word, ...]] = (Word("leaves", "The place that it leaves in time.", True),)
     forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody stays", template.to_fill_in),)
-    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
-        "within": "It has set off {} of time after it came, or after the start.".format,
-    }
+    numbers: ClassVar[Numbers] = {"within": "It has set off {} of time after it came, or after the start.".format}
     number: ClassVar[str] = "time"
     nearest: ClassVar[int] = SHORTEST_STAY
 

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
+from typing import ClassVar, Iterator, Sequence, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
+from pursue_gen.diagnostics import NOWHERE, Span, units
 from pursue_gen.language.assumptions.at_most import AtMost
-from pursue_gen.language.assumptions.base import AboutOne, Assumption, Setting
+from pursue_gen.language.assumptions.base import Assumption, NotSooner, Setting
 from pursue_gen.language.numbers import Number, whole_above
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import Form, Word
+from pursue_gen.language.word import Form, Numbers, Word
 
 
 @dataclass(frozen=True)
-class Waits(AboutOne):
+class Waits(NotSooner):
     """`assume: agent waits time between event`: so many time units from the end of one to the beginning of the next."""
 
     agent: Ref
@@ -29,29 +28,16 @@ class Waits(AboutOne):
         Word("between", "The event: from the end of one to the beginning of the next.", True),
     )
     forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody waits in between", template.to_fill_in),)
-    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
-        "waits": "The next one begins {} of time after the end of the last, or later.".format,
-    }
-    number: ClassVar[str] = "time"
-    nearest: ClassVar[int] = 1
+    numbers: ClassVar[Numbers] = {"waits": "The next one begins {} of time after the end of the last, or later.".format}
     counts: ClassVar[bool] = True  # whether it has happened: the first time is free
 
     @property
     def clause(self) -> str:
         return f"{self.agent.shown} waits {units(self.time)} between one {self.event.shown} and the next"
 
-    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
-        if self.time <= 0:
-            message = "waits 0 assumes nothing: expected more than 0"
-            return error("PML251", message, self.span, "write the time, or delete the assumption")
-        return self.never_does(agent, self.event)
-
     @property
     def since(self) -> str:
         return f"{self.agent.shown}'s last {self.event.shown}"
-
-    def stronger(self, longest: Number) -> Sequence[int]:
-        return whole_above(self.time, longest)
 
     @classmethod
     def missing(cls, setting: Setting, longest: Number) -> Iterator[Tuple[Assumption, Sequence[int]]]:

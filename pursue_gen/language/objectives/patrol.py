@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Callable, ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, ClassVar, Iterator, Optional, Sequence, Tuple
 
 from lark import Token
 
@@ -15,7 +15,7 @@ from pursue_gen.language.refs import Ref
 from pursue_gen.language.symbols import Role
 from pursue_gen.language.template import Filling, Template
 from pursue_gen.language.tree_reader import TreeReader
-from pursue_gen.language.word import Form, Word
+from pursue_gen.language.word import Form, Numbers, Word
 
 
 def _read_who(reader: TreeReader, tree: Any) -> Who:
@@ -64,7 +64,7 @@ class Patrol(Safety):
         ),
         Word("by", "Who has to be there: an agent, or any robot.", True),
     )
-    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
+    numbers: ClassVar[Numbers] = {
         "every": "Somebody is there again {} of time after the last one left, or after the start.".format,
     }
     forms: ClassVar[Tuple[Form, ...]] = (

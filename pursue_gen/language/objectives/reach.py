@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
+from typing import Callable, ClassVar, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
 from pursue_gen.language.numbers import Number, exact
@@ -12,7 +12,7 @@ from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.language.template import Filling, Template
 from pursue_gen.language.tree_reader import TreeReader
-from pursue_gen.language.word import Form, Word
+from pursue_gen.language.word import Form, Numbers, Word
 
 MOST_EVENTS = 5
 """So many events stand behind one `do` at most: the order in which they happen is free, and each order counts."""
@@ -48,7 +48,7 @@ class Reach(StatedObjective):
         Word("do", "The event that is wanted."),
         Word("after", "Later than so many units of time after the start."),
     )
-    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
+    numbers: ClassVar[Numbers] = {
         "after": lambda time, number: (
             f"It counts when it happens {f'later than {time} of time after the start' if number else 'at any time'}."
         ),

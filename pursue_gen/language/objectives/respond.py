@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Callable, ClassVar, Iterator, Mapping, Sequence, Tuple
+from typing import Callable, ClassVar, Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.conditions import EventOrCondition, condition_text, condition_words, held_by
@@ -12,7 +12,7 @@ from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective,
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.symbols import Role
 from pursue_gen.language.template import Template, event_or_condition_text
-from pursue_gen.language.word import Form, Word
+from pursue_gen.language.word import Form, Numbers, Word
 
 
 def _shown(what: EventOrCondition) -> str:
@@ -44,9 +44,7 @@ class Respond(Safety):
         Word("then", "The event that has to follow, or the condition that has to hold at some moment."),
         Word("within", "How many units of time later the answer must have come."),
     )
-    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
-        "within": "The answer must have come {} of time later at most.".format,
-    }
+    numbers: ClassVar[Numbers] = {"within": "The answer must have come {} of time later at most.".format}
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("an answer in time", "if {event} then {event} within {=20}"),
         Form("an answer to what comes to hold", "if {agent} at {POI} then {agent} at {POI} within {=20}"),

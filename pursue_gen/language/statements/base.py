@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, ClassVar, Dict, Iterator, Mapping, Optional, Tuple
+from typing import Any, Callable, ClassVar, Dict, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, units
 from pursue_gen.language.conditions import Condition, names_in
@@ -10,7 +10,7 @@ from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.template import Template
 from pursue_gen.language.tree_reader import TreeReader
-from pursue_gen.language.word import Form, Word
+from pursue_gen.language.word import Form, Numbers, Word
 
 
 class Written:
@@ -25,8 +25,8 @@ class Written:
     """Its words that no kind before it has; of a statement first the one that begins it."""
     forms: ClassVar[Tuple[Form, ...]] = ()
     """Ways to write it, to fill in."""
-    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {}
-    """What a number means, by the word before it: a sentence from the number in units, and the number itself."""
+    numbers: ClassVar[Numbers] = {}
+    """What its numbers mean."""
 
     @classmethod
     def form(cls) -> str:

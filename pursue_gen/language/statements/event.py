@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Iterator, Mapping, Optional, Tuple
+from typing import Callable, ClassVar, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.conditions import Condition, condition_words
@@ -11,7 +11,7 @@ from pursue_gen.language.numbers import Number, Window, window_of
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import Labelled, check_window
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import Form, Word
+from pursue_gen.language.word import Form, Numbers, Word
 
 MOST_TIMES = 100
 """How often an event can happen at most that is counted: each count is a location of an automaton."""
@@ -77,7 +77,7 @@ class Event(Labelled):
     )
     declares: ClassVar[str] = "event"
     shortest: ClassVar[str] = 'event "{name}"'
-    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
+    numbers: ClassVar[Numbers] = {
         "at_most": lambda _, times: f"It can happen {'once' if times == 1 else f'{times} times'} in all.",
     }
     parts: ClassVar[Tuple[str, ...]] = template.begins

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Callable, ClassVar, Mapping, Tuple
+from typing import Any, ClassVar, Tuple
 
 from pursue_gen.diagnostics import error
-from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives import StatedObjective
 from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.statements.headed import Objective, ReachObjective
 from pursue_gen.language.template import Filling, Template
 from pursue_gen.language.tree_reader import TreeReader
-from pursue_gen.language.word import Form, Word
+from pursue_gen.language.word import Form, Numbers, Word
 
 _BEHIND = {kind.rule(): kind for kind in (Objective, ReachObjective)}
 """What stands behind the number, by its rule in the grammar."""
@@ -42,7 +41,7 @@ class Optional(StatementKind):
         Form("achieve something if it can be promised", "optional {=1} reach_objective: do {event}"),
         Form("what always holds if it can be promised", "optional {=1} objective: avoid {event}"),
     )
-    numbers: ClassVar[Mapping[str, Callable[[str, Number], str]]] = {
+    numbers: ClassVar[Numbers] = {
         "optional": lambda *_: (
             "The first one to be given up is the one with the greatest number; those with one number go together."
         ),

@@ -14,15 +14,13 @@ from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word
 
 
-def _read_poses(reader: TreeReader, comment: Any) -> Tuple[Optional[Pose], Tuple[Spot, ...]]:
-    found = read_poses(str(comment), reader.at(comment))
-    reader.findings += found.findings
-    return found.pose, found.spots
-
-
 def _poses_text(pose: Optional[Pose], spots: Tuple[Spot, ...]) -> str:
     own = "[none]" if pose is None else pose_text(pose)
     return f"//{own}" + "".join(f" {spot.robot.name} {pose_text(spot.pose)}" for spot in spots)
+
+
+def _read_poses(reader: TreeReader, comment: Any) -> Tuple[Optional[Pose], Tuple[Spot, ...]]:
+    return read_poses(str(comment), reader.at(comment), reader.findings)
 
 
 @dataclass(frozen=True)

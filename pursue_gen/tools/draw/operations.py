@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import count
 from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 
-from pursue_gen.diagnostics import PursueError, Span, error
+from pursue_gen.diagnostics import NOWHERE, PursueError, error
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.formatter import format_text, formatted
 from pursue_gen.language.kinds import DECLARED, RESERVED, STATEMENTS
@@ -95,7 +95,7 @@ def _move_spot(document: Draft, values: Values) -> Done:
     x, y = fields.metres_of(values, "x"), fields.metres_of(values, "y")
     number = _declared(document, "POI", name)
     pose = parts_of(document.statements[number]).get("POSE")
-    if pose is None or not read_poses(str(pose[0]), Span("", 1, 1, 1, 1)).spots:
+    if pose is None or not read_poses(str(pose[0]), NOWHERE, [])[1]:
         raise refused(f"no robot has a spot of its own at {name}", "choose it again")
     comment = with_spot(str(pose[0]), robot, x, y)
     if comment is None:

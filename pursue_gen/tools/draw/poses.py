@@ -6,7 +6,7 @@ import math
 import re
 from typing import Optional
 
-from pursue_gen.diagnostics import Span
+from pursue_gen.diagnostics import NOWHERE
 from pursue_gen.drawing.layout import yaw_of
 from pursue_gen.language.numbers import rounded_text
 from pursue_gen.language.poses import read_poses, robots_in
@@ -61,4 +61,4 @@ def _direction(yaw: float) -> str:
 
 
 def _is_pose(comment: str) -> bool:
-    return read_poses(comment, Span("", 1, 1, 1, 1)).pose is not None
+    return read_poses(comment, NOWHERE, [])[0] is not None
