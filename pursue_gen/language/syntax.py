@@ -67,7 +67,7 @@ class Statement:
     @property
     def kind(self) -> str:
         """The token that says which statement it is; anything where no statement begins like this."""
-        return kind_of(self.tokens) if self.tokens else ""
+        return kind_of(self.tokens)
 
     @property
     def body(self) -> Statement:
