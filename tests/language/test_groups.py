@@ -15,7 +15,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.conditions import condition_text
-from pursue_gen.language.document import Document
+from pursue_gen.language.document import Document, statement_text
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.navigation import rename
@@ -23,6 +23,10 @@ from pursue_gen.language.parser import read
 from pursue_gen.language.rewriting import Rewriting
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.writer import _meaning, scenario_text, written
+from pursue_gen.tools.draw.view import view
+from pursue_gen.tools.lsp.completion import complete
+from pursue_gen.tools.lsp.fixes import fixes
+from pursue_gen.tools.lsp.outline import symbols
 
 HOTEL = """\
 poi "hall"
@@ -350,3 +354,47 @@ def test_a_member_keeps_its_name_where_a_name_made_of_it_is_used() -> None:
     document = Draft.of(text, "story.pur")
     with pytest.raises(PursueError, match="look_room2"):
         rename(document, text.index("room2"), "suite")
+
+
+def test_a_statement_is_quoted_with_its_member() -> None:
+    story = parse(HOTEL, "story.pur")
+    said = "objective: if call of r then look of r within 60 (r is room3)"
+    assert statement_text(HOTEL, story.safety[2].span) == said
+
+
+def test_patrols_in_order_are_one_for_each() -> None:
+    story = scenario(
+        'poi "a"', 'poi "b"', 'poi "hall"', 'group "rooms": a, b', 'agent "bot" controllable mobile 1 location hall',
+        "for each r in rooms: objective: patrol r, hall in order every 60 by bot",
+    )  # fmt: skip
+    assert [[each.text for each in statement] for statement in story.statements] == [
+        ["patrol a, hall in order every 60 by bot"] * 2, ["patrol b, hall in order every 60 by bot"] * 2
+    ]  # fmt: skip
+
+
+# Editors --------------------------------------------------------------------------------------------------------------
+
+
+def labels(text: str) -> List[str]:
+    return [item.label for item in complete(Draft.of(text, "story.pur"), len(text))]
+
+
+def test_editors_propose_groups_and_what_goes_on() -> None:
+    start = labels(HOTEL)
+    assert any(label.startswith("group … ") for label in start) and any(label.startswith("for … ") for label in start)
+    assert "each" in labels(HOTEL + "for ") and "in" in labels(HOTEL + "for each r ")
+    assert {"event", "objective"} <= set(labels(HOTEL + "for each r in rooms: "))
+    assert "hall" in labels(HOTEL + 'for each r in rooms: event "sing" of r location ')
+    assert {"room1", "bob"} <= set(labels(HOTEL + 'group "more": '))
+
+
+def test_the_outline_and_the_page_list_them_as_they_are_written() -> None:
+    words = "for each r in rooms: connect hall and r distance 3"
+    assert words in [symbol.name for symbol in symbols(Draft.of(HOTEL, "story.pur"))]
+    shown = view(HOTEL)
+    assert words in [other["words"] for other in shown["others"]] and shown["errors"] == 0
+
+
+def test_a_quick_fix_does_not_change_what_is_for_each() -> None:
+    document = Draft.of(changed("location r duration", "location rom duration"), "story.pur")
+    assert document.findings and fixes(document, 0, len(document.text)) == ()
