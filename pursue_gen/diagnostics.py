@@ -6,7 +6,7 @@ This module is independent of terminals and stages; `render` makes the text for 
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Dict, Iterable, List, Optional, Tuple
 
@@ -25,13 +25,17 @@ class Severity(enum.Enum):
 
 @dataclass(frozen=True)
 class Span:
-    """A range of a text: `file` as the user named it; lines and columns count from 1, the end column is exclusive."""
+    """A range of a text: `file` as the user named it; lines and columns count from 1, the end column is exclusive.
+
+    `member`: of which member a statement speaks that was written for each of a group, as in `r is room2`.
+    """
 
     file: str
     line: int
     column: int
     end_line: int
     end_column: int
+    member: str = ""
 
 
 NOWHERE = Span("", 1, 1, 1, 1)
@@ -47,6 +51,10 @@ class Diagnostic:
     message: str
     span: Optional[Span] = None
     hint: str = ""
+
+    def at_member(self, member: str) -> Diagnostic:
+        """The same about a statement for one member of a group; `member` as in `Span`."""
+        return self if self.span is None else replace(self, span=replace(self.span, member=member))
 
 
 class PursueError(Exception):
@@ -91,13 +99,23 @@ def units(amount: object) -> str:
 
 
 def in_order(diagnostics: Iterable[Diagnostic]) -> Tuple[Diagnostic, ...]:
-    """The diagnostics by file, line and column; those without a place last."""
+    """The diagnostics by file, line and column; those without a place last.
+
+    What is wrong with a statement that was written for each member of a group is said once where it is the same for
+    several of them, else with the member.
+    """
 
     def key(diagnostic: Diagnostic) -> Tuple[bool, str, int, int]:
         span = diagnostic.span
         return (True, "", 0, 0) if span is None else (False, span.file, span.line, span.column)
 
-    return tuple(sorted(diagnostics, key=key))
+    found: Dict[Diagnostic, List[str]] = {}
+    for diagnostic in diagnostics:
+        member = diagnostic.span.member if diagnostic.span is not None else ""
+        found.setdefault(diagnostic.at_member(""), []).append(member)
+    alone = ((one, some[0] if len(some) == 1 else "") for one, some in found.items())
+    said = (replace(one, message=f"{one.message} ({member})") if member else one for one, member in alone)
+    return tuple(sorted(said, key=key))
 
 
 def render(diagnostic: Diagnostic, source: Optional[str] = None) -> str:
@@ -141,5 +159,5 @@ def as_json(diagnostic: Diagnostic) -> Dict[str, Any]:
         "hint": diagnostic.hint,
     }
     if diagnostic.span:
-        result.update(vars(diagnostic.span))
+        result.update({name: value for name, value in vars(diagnostic.span).items() if name != "member"})
     return result

@@ -57,7 +57,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     """
     scenario = reading.partial
     findings: List[Diagnostic] = list(reading.diagnostics)
-    if {f.code for f in findings} & {"PML003", "PML018"}:
+    if not reading.whole or {f.code for f in findings} & {"PML003", "PML018"}:
         return reading.diagnostics
     findings += check_names(scenario)
     findings += check_references(scenario, reading.lost)

@@ -64,15 +64,18 @@ def behind(token: Token, text: str) -> Edit:
 
 
 def statement_text(text: str, span: Span) -> str:
-    """The statement at a span of a text on one line, without its comments."""
+    """The statement at a span of a text on one line, without its comments; with the member of a group that is meant."""
     begin, end = Lines(text).of_span(span)
     alone = Document(text[begin:end])
-    return " ".join(alone.changed(*(written(comment, " ") for comment in alone.comments)).text.split())
+    words = " ".join(alone.changed(*(written(comment, " ") for comment in alone.comments)).text.split())
+    return f"{words} ({span.member})" if span.member else words
 
 
 def rank(statement: Statement) -> int:
-    """The place of a statement's kind in the order that the original reads; all kinds of objectives have one place."""
-    return min(_RANK.get(statement.kind, _RANK["OBJECTIVE"]), _RANK["OBJECTIVE"])
+    """The place of a statement's kind in the order that the original reads; all kinds of objectives have one place, and
+    what is for each of a group stands among those of its kind.
+    """
+    return min(_RANK.get(statement.body.kind, _RANK["OBJECTIVE"]), _RANK["OBJECTIVE"])
 
 
 @dataclass(frozen=True)

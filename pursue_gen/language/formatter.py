@@ -88,10 +88,17 @@ def _items(document: Document) -> Iterator[List[_Item]]:
 
 def _block(group: List[_Item]) -> _Block:
     first, last = group[0], group[-1]
-    kind = "" if first.is_comment else section_of(first.kind)
+    kind = "" if first.is_comment else section_of(_begins(group).kind)
     if kind and last.kind == _LINE and not any(item.is_comment for item in group[:-1]):
         return _Block(kind, first.breaks > 1, _laid_out(group[:-1]), last.text)
     return _Block(kind, first.breaks > 1, _laid_out(group))
+
+
+def _begins(group: List[_Item]) -> _Item:
+    """The word that begins a statement; of one that is for each of a group, the one behind the colon."""
+    words = [item for item in group if not item.is_comment]
+    colon = next((number for number, item in enumerate(words) if item.kind == "COLON"), len(words))
+    return words[colon + 1] if words[0].kind == "FOR" and colon + 1 < len(words) else words[0]
 
 
 def _laid_out(group: List[_Item]) -> str:

@@ -11,6 +11,7 @@ from pursue_gen.language.statements.battery import Battery
 from pursue_gen.language.statements.connect import Connection
 from pursue_gen.language.statements.dependency import Dependency
 from pursue_gen.language.statements.event import Event
+from pursue_gen.language.statements.group import ForEach, Group
 from pursue_gen.language.statements.headed import Assume, Objective, ReachObjective
 from pursue_gen.language.statements.optional import Optional
 from pursue_gen.language.statements.poi import Poi
@@ -24,6 +25,8 @@ STATEMENTS: Mapping[str, Type[StatementKind]] = {
         Poi,
         Connection,
         Event,
+        Group,
+        ForEach,
         Rule,
         State,
         Dependency,

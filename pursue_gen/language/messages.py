@@ -35,10 +35,11 @@ _MEANT = {
 
 
 def kind_of(chunk: Sequence[Token]) -> str:
-    """The token that says which statement it is: the first one, but that of the objective behind `optional 1`."""
+    """The token that says which statement it is: the first one, but that of the objective behind `optional 1`;
+    "" where there is none."""
     kinds = [token.type for token in chunk[:3]]
     optional = kinds[:2] == ["OPTIONAL", "NUMBER"] and kinds[2:] in (["OBJECTIVE"], ["REACH_OBJECTIVE"])
-    return kinds[2] if optional else kinds[0]
+    return kinds[2] if optional else "".join(kinds[:1])
 
 
 def looks_like_statement(token: Token) -> bool:

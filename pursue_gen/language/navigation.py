@@ -63,8 +63,11 @@ def _check_new(document: Draft, new: str) -> None:
 
 def _check_after(document: Draft, edits: Tuple[Edit, ...]) -> None:
     """Refuses names that are fine alone, but collide with others in what is generated."""
+    changed = document.changed(*edits)
     before = {finding.message for finding in check_names(document.scenario)}
-    after = check_names(document.changed(*edits).scenario)
-    new = [finding for finding in after if finding.message not in before]
+    new = [finding for finding in check_names(changed.scenario) if finding.message not in before]
+    if document.syntax.groups and not new:  # names are made of others there, and may be used elsewhere
+        known = {(finding.code, finding.span and finding.span.line) for finding in document.findings}
+        new = [one for one in changed.findings if (one.code, one.span and one.span.line) not in known]
     if new:
         raise PursueError(new[:1])

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
 from lark import Token
 
+from pursue_gen.language.groups import ROBOTS, around_of, body_of, variables_of
 from pursue_gen.language.kinds import DECLARED, KEYWORDS, MAY_BE_NAMES, STATEMENTS
 from pursue_gen.language.messages import kind_of
 from pursue_gen.language.poses import robots_in
@@ -22,6 +23,9 @@ _BEFORE_NAMES = frozenset({"COLON", "COMMA", "LPAR"})
 
 SUBJECTS = ("agent", "state")
 """The kinds of things with which a part of a condition may begin."""
+
+MEMBERS = ("POI", "agent", "event", "state")
+"""The kinds of things that may be in a group."""
 
 _OPENS = {(token, word.upper()) for token, kind in STATEMENTS.items() for word in kind.conditions_behind()}
 """The statements with a condition in them, and the word behind which it begins."""
@@ -45,6 +49,7 @@ class Occurrence:
 
 def kinds_behind(tokens: Sequence[Token]) -> Tuple[str, ...]:
     """What a name may stand for that is used behind these tokens of one statement; (): no name is used there."""
+    tokens = body_of(tokens)
     if not tokens:
         return ()
     start = condition_start(tokens)
@@ -52,6 +57,8 @@ def kinds_behind(tokens: Sequence[Token]) -> Tuple[str, ...]:
         return names_in_condition(tokens, start)[1]
     named = are_names(tokens)
     keywords = [token.type for token, is_name in zip(tokens, named) if token.type in KEYWORDS and not is_name]
+    if keywords == ["GROUP"]:
+        return MEMBERS
     kind = _USED.get((kind_of(tokens), keywords[-1])) if keywords else None
     return () if kind is None else (kind,)
 
@@ -76,8 +83,22 @@ def are_names(tokens: Sequence[Token]) -> List[bool]:
 
 
 def occurrences(parts: Sequence[Statement]) -> Tuple[Occurrence, ...]:
-    """Every name in the statements that stands where one may stand, in the order of the text."""
-    return tuple(found for number, part in enumerate(parts) for found in _occurrences(part, number))
+    """Every name in the statements that stands where one may stand, in the order of the text; not those that are made
+    of others (`call of r`), nor variables and groups.
+    """
+    found = tuple(one for number, part in enumerate(parts) for one in _occurrences(part.body, number))
+    if not any(part.kind in ("GROUP", "FOR") for part in parts):
+        return found
+    kinds = {one.name: one.kind for one in reversed(found) if one.declares}
+    groups = {ROBOTS, *(bare(part.tokens[1]) for part in parts if part.kind == "GROUP" and len(part.tokens) > 1)}
+    variables = [variables_of(part.tokens) for part in parts]
+    made = {start_of(token) + (token.type == "NAME") for part in parts for token in around_of(part.tokens)}
+    named = (one for one in found if one.start not in made and one.name not in variables[one.statement])
+    return tuple(
+        replace(one, kind=kinds.get(one.name, one.kind)) if parts[one.statement].kind == "GROUP" else one
+        for one in named
+        if one.declares or one.name not in groups
+    )
 
 
 def _occurrences(part: Statement, number: int) -> Iterator[Occurrence]:

@@ -32,13 +32,14 @@ class Reading:
     """A text as far as it could be read: the scenario (None after a syntax error) and what was found on the way.
 
     `partial` is the scenario that the sound statements make, with errors or without; `lost` are the names that the
-    others may have declared.
+    others may have declared; `whole` is as in `Syntax`.
     """
 
     scenario: Optional[pml.Scenario]
     diagnostics: Tuple[Diagnostic, ...]
     partial: pml.Scenario
     lost: FrozenSet[str] = frozenset()
+    whole: bool = True
 
 
 def parse(text: str, file: str, name: Optional[str] = None) -> pml.Scenario:
@@ -107,7 +108,8 @@ def read_document(document: Document, name: Optional[str] = None) -> Reading:
         **{field: tuple(some) for field, some in parts.items()},
     )
     broken = any(finding.severity is Severity.ERROR for finding in syntax.findings)
-    return Reading(None if broken else value, in_order(findings), value, syntax.lost if broken else frozenset())
+    lost = syntax.lost if broken else frozenset()
+    return Reading(None if broken else value, in_order(findings), value, lost, syntax.whole)
 
 
 def without_errors(scenario: Optional[pml.Scenario], findings: Tuple[Diagnostic, ...]) -> pml.Scenario:
@@ -123,6 +125,7 @@ def _parts(tree: Any, reader: TreeReader) -> Tuple[Any, ...]:
     original's tools leave."""
     if isinstance(tree, Token):
         return ()
+    reader.member = getattr(tree.meta, "member", "")
     found = BY_RULE[tree.data].read(reader, *tree.children, span=reader.span(tree))
     return found if isinstance(found, tuple) else (found,)
 

@@ -12,7 +12,7 @@ from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from lark import Token
 
-from pursue_gen.diagnostics import Span
+from pursue_gen.diagnostics import Span, error
 from pursue_gen.language.document import Document, Edit, behind, written
 from pursue_gen.language.kinds import KEYWORDS, STATEMENTS
 from pursue_gen.language.numbers import Number, decimal_text
@@ -22,6 +22,7 @@ from pursue_gen.language.scenario import Agent, Connection, Event, Poi, Pose, Sc
 from pursue_gen.language.statements.agent import SIZE
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.tokens import end_of, start_of
+from pursue_gen.outcomes import Invalid
 
 REMARK = re.compile(r"(?://|/\*)[ \t]*(?P<command>survey|calibrate): ")
 """Begins a remark."""
@@ -74,7 +75,7 @@ class Rewriting:
 
     def written_by(self, span: Span) -> Optional[str]:
         """The command that wrote the numbers of the statement around this place, as its remark says; None: a person."""
-        remark = remark_behind(self._document, self._statement(span))
+        remark = remark_behind(self._document, self._around(span))
         match = REMARK.match(remark) if remark is not None else None
         return match["command"] if match else None
 
@@ -114,7 +115,14 @@ class Rewriting:
         return [Edit(at, at, blank + "\n".join(lines) + ("\n" if at == len(text) else ""))]
 
     def _statement(self, span: Span) -> Statement:
-        """The statement around a place."""
+        """The statement around a place. Raises Invalid where it is for each of a group: it has one number for all."""
+        if span.member:
+            message = f"this statement is for each of a group ({span.member}): it has no number of its own"
+            hint = "write it out, a statement for each member, so that numbers can be written into them"
+            raise Invalid([error("PML412", message, span, hint)])
+        return self._around(span)
+
+    def _around(self, span: Span) -> Statement:
         found = self._document.statement_at(self._document.lines.of_span(span)[0])
         assert found is not None, "the scenario was read from this text"
         return found

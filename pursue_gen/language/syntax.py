@@ -13,6 +13,7 @@ from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Sequence, Set
 from lark import Lark, Token, UnexpectedToken
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
+from pursue_gen.language.groups import body_of, check_groups, no_list, without_owners, written_out
 from pursue_gen.language.kinds import BY_RULE, DECLARED, KEYWORDS, MAY_BE_NAMES, STATEMENTS, TAIL
 from pursue_gen.language.messages import (
     explain,
@@ -66,7 +67,12 @@ class Statement:
     @property
     def kind(self) -> str:
         """The token that says which statement it is; anything where no statement begins like this."""
-        return kind_of(self.tokens) if self.tokens else ""
+        return kind_of(self.tokens)
+
+    @property
+    def body(self) -> Statement:
+        """What stands behind `for each … :`; else the statement itself."""
+        return Statement(tuple(body_of(self.tokens)))
 
     @property
     def start(self) -> int:
@@ -99,12 +105,15 @@ class Syntax:
     """What the statements of a text are: the trees of those that are well formed, an error for each other one, in file
     order.
 
-    `lost` are the names in the others: they may have been declared there.
+    `lost` are the names in the others: they may have been declared there. `whole` is False where statements are
+    missing, as a group or what is for each of it is not right; `groups`: some statements were written out.
     """
 
     trees: Tuple[Any, ...]
     findings: Tuple[Diagnostic, ...]
     lost: FrozenSet[str] = frozenset()
+    whole: bool = True
+    groups: bool = False
 
 
 @lru_cache(maxsize=None)
@@ -119,6 +128,7 @@ def grammar_text() -> str:
     rules = [
         (Path(__file__).parent / "grammar.lark").read_text(encoding="utf-8"),
         f"?statement: {' | '.join((*BY_RULE, TAIL))}",
+        f"_each: {' | '.join(rule for rule in BY_RULE if rule not in ('group', 'foreach'))}",
         *(kind.grammar() for kind in STATEMENTS.values()),
         f"ref: WORD | {' | '.join(MAY_BE_NAMES)}",
         *(f'{token}: "{word}"' for token, word in KEYWORDS.items()),
@@ -168,14 +178,18 @@ def statements_of(tokens: Iterable[Token]) -> Tuple[Statement, ...]:
 def syntax_of(statements: Sequence[Statement], text: str, file: str) -> Syntax:
     """What the statements of a text are."""
     reader = _Reader(file)
-    for number, statement in enumerate(statements):
-        reader.take(statement.tokens)
-        if len(reader.findings) == MOST_FINDINGS and number + 1 < len(statements):
-            reader.findings.append(too_many(span_of(statements[number + 1].tokens[0], file)))
+    expansion = written_out([statement.tokens for statement in statements], file, MOST_WORDS)
+    for number, (tokens, member) in enumerate(expansion.statements):
+        reader.take(tokens, member)
+        if len(reader.findings) >= MOST_FINDINGS and number + 1 < len(expansion.statements):
+            reader.findings.append(too_many(span_of(expansion.statements[number + 1][0][0], file)))
             break
     lines = text.split("\n") if reader.findings else []
     findings = tuple(of_a_comment(finding, lines) for finding in reader.findings)
-    return Syntax(tuple(reader.trees), findings, frozenset(reader.lost))
+    of_groups = expansion.findings or tuple(check_groups(expansion, reader.lost, file))
+    whole = expansion.whole and not of_groups
+    groups = any(statement.kind in ("GROUP", "FOR") for statement in statements)
+    return Syntax(tuple(reader.trees), (*findings, *of_groups), frozenset(reader.lost), whole, groups)
 
 
 def too_large(file: str) -> Diagnostic:
@@ -201,8 +215,8 @@ class _Reader:
         self._after_objective = False
         self._next: Dict[Tuple[Any, ...], FrozenSet[str]] = {}
 
-    def take(self, chunk: Sequence[Token]) -> None:
-        """Parses one statement; notes its tree, or what is wrong with it."""
+    def take(self, chunk: Sequence[Token], member: str = "") -> None:
+        """Parses one statement; notes its tree, or what is wrong with it. `member`: as in `Span`."""
         first, finding = chunk[0], None
         if first.type not in (*STATEMENTS, TAIL):
             finding = unknown_statement(chunk, span_of(first, self.file))
@@ -212,8 +226,10 @@ class _Reader:
         else:
             finding = self._parse(chunk)
         if finding is not None:
-            self.findings.append(finding)
+            self.findings.append(finding if finding.span is None else finding.at_member(member))
             self.lost |= _declared(chunk)
+        elif member:
+            self.trees[-1].meta.member = member
         self._after_objective = kind_of(chunk) in ("OBJECTIVE", "REACH_OBJECTIVE")
 
     def _parse(self, chunk: Sequence[Token]) -> Optional[Diagnostic]:
@@ -229,6 +245,8 @@ class _Reader:
             try:
                 parser.feed_token(token)
             except UnexpectedToken:
+                if token.type == "COMMA" and token != ",":
+                    return no_list(token, self.file)
                 return explain(chunk, index, self._expected(parser), span_of(token, self.file))
         try:
             tree = parser.feed_eof(chunk[-1])
@@ -278,7 +296,7 @@ def accepts(tokens: Sequence[Token]) -> FrozenSet[str]:
     if tokens[0].type not in (*STATEMENTS, TAIL):
         return frozenset()
     try:
-        return frozenset(_parser_after(tokens).accepts())
+        return frozenset(_parser_after(without_owners(tokens)).accepts())
     except UnexpectedToken:
         return frozenset()
 
@@ -300,7 +318,17 @@ def _significant(tokens: Iterable[Token]) -> List[Token]:
 
 def _opened(found: List[List[Token]]) -> bool:
     """True where the last statement is `optional 1` so far."""
-    return bool(found) and found[-1][0].type == "OPTIONAL" and len(found[-1]) <= 2
+    last = body_of(found[-1]) if found else ()
+    return 1 <= len(last) <= 2 and last[0].type == "OPTIONAL"
+
+
+def _awaits(chunk: Sequence[Token], token: Token) -> bool:
+    """True where this token goes on with a statement, whatever it begins elsewhere: behind `for each r in rooms:`, and
+    as `for each robot` behind the name of a rule."""
+    if chunk[0].type == "FOR" and chunk[-1].type == "COLON":
+        return not body_of(chunk)
+    kinds = [one.type for one in body_of(chunk)] if token.type == "FOR" else []
+    return kinds[:1] == ["RULE"] and "COLON" not in kinds
 
 
 def _chunks(tokens: List[Token]) -> List[List[Token]]:
@@ -311,17 +339,21 @@ def _chunks(tokens: List[Token]) -> List[List[Token]]:
         following = tokens[index + 1].type if index + 1 < len(tokens) else ""
         goes_on = following in ("NAME", "UNCLOSED_NAME", "COLON")
         ended = index == 0 or tokens[index - 1].type in _ENDS
-        if token.type in _SECOND:  # an event may be called so
+        if found and _awaits(found[-1], token):
+            begins = False
+        elif token.type in _SECOND:  # an event may be called so
             second = index + 2 < len(tokens) and tokens[index + 2].type == _SECOND[token.type]
             begins = goes_on or second or (opens_line and (ended or following == "WORD"))
         elif [one.type for one in tokens[max(0, index - 2) : index]] == ["FOR", "EACH"]:
             begins = False  # a rule is for each robot, or agent
         elif token.type == "OPTIONAL":  # a name may be called so; none is before a number
             begins = following == "NUMBER" or (opens_line and (ended or following in ("OBJECTIVE", "REACH_OBJECTIVE")))
+        elif token.type == "GROUP":  # a name may be called so
+            begins = goes_on or (opens_line and ended)
         elif token.type in ("OBJECTIVE", "REACH_OBJECTIVE") and _opened(found):
             begins = False
         elif token.type in (*STATEMENTS, TAIL):  # inside a line such a word may also stand where a name should
-            begins = opens_line or goes_on or token.type in ("CONNECT", TAIL)
+            begins = opens_line or goes_on or token.type in ("CONNECT", "FOR", TAIL)
         elif token.type in ("WORD", "ROBOT") and opens_line and index:
             begins = goes_on or (ended and looks_like_statement(token))
         else:

@@ -24,10 +24,10 @@ def bare(name: Optional[Token]) -> str:
     return "" if name is None else str(name)[1:-1]
 
 
-def span_of(token: Token, file: str) -> Span:
-    """Where a token stands."""
+def span_of(token: Token, file: str, member: str = "") -> Span:
+    """Where a token stands; `member` as in `Span`."""
     line, column = token.line or 1, token.column or 1
-    return Span(file, line, column, token.end_line or line, token.end_column or column + len(token))
+    return Span(file, line, column, token.end_line or line, token.end_column or column + len(token), member)
 
 
 def shown(text: str, most: int = 30) -> str:

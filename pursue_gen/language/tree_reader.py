@@ -22,22 +22,24 @@ _LARGEST_POWER = 6
 
 
 class TreeReader:
-    """Reads pieces of statements; `findings`: what is wrong with those that were read."""
+    """Reads pieces of statements; `findings`: what is wrong with those that were read. `member`: as in `Span`, of the
+    statement that is read."""
 
     def __init__(self, file: str, labels: Mapping[str, str]) -> None:
         """`labels`: of the names that have one."""
         self.file = file
         self._labels = labels
+        self.member = ""
         self.findings: List[Diagnostic] = []
 
     def at(self, token: Token) -> Span:
         """Where a token stands."""
-        return span_of(token, self.file)
+        return span_of(token, self.file, self.member)
 
     def span(self, tree: Any) -> Span:
         """Where a tree stands."""
         meta = tree.meta
-        return Span(self.file, meta.line, meta.column, meta.end_line, meta.end_column)
+        return Span(self.file, meta.line, meta.column, meta.end_line, meta.end_column, self.member)
 
     def ref(self, tree: Any) -> Ref:
         """A name."""

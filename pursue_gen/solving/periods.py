@@ -15,6 +15,7 @@ from typing import List, Optional, Tuple
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.document import Document, Edit, edited
+from pursue_gen.language.groups import without_owners
 from pursue_gen.language.lines import Lines
 from pursue_gen.language.scenario import Patrol, Scenario
 from pursue_gen.language.sentences import periods_found
@@ -55,7 +56,7 @@ def with_period(scenario: Scenario, every: int, least: Optional[int] = None) -> 
     `least`: nothing below it can be promised, where that is known.
     """
     changed = {id(each): replace(each, every=every, least=least) for each in without_period(scenario)}
-    edits = [_every(scenario.text, span, every) for span in {each.span for each in without_period(scenario)}]
+    edits = {_every(scenario.text, each.span, every) for each in without_period(scenario)}
     text = edited(scenario.text, edits)
     return replace(scenario.with_each(lambda each: changed.get(id(each), each)), text=text)
 
@@ -64,7 +65,8 @@ def _every(text: str, span: Span, every: int) -> Edit:
     """Writes the period into the statement of a patrol, before the word behind which the robots stand."""
     begin, end = Lines(text).of_span(span)
     words = Document(text[begin:end]).statements[0].tokens
-    by = -2 if words[-2].type == "BY" else -3  # by bot, by any robot
+    *_, first, second, _ = without_owners(words)
+    by = next(n for n, word in enumerate(words) if word is (second if second.type == "BY" else first))  # by any robot
     at = begin + end_of(words[by - 1])
     return Edit(at, at, f" every {every}")
 

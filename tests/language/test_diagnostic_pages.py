@@ -17,8 +17,8 @@ from pursue_gen.language.parser import read
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = {page.stem: page.read_text(encoding="utf-8") for page in (ROOT / "docs" / "diagnostics").glob("*.md")}
 INDEX = (ROOT / "docs" / "diagnostics.md").read_text(encoding="utf-8")
-WITHOUT_EXAMPLE = {"PML001", "PML002", "PML003", "PML018", "PML106", "PML265", "PML266"}
-"""About a file as a whole, or found by solving; tests of their own make such files."""
+WITHOUT_EXAMPLE = {"PML001", "PML002", "PML003", "PML018", "PML106", "PML265", "PML266", "PML412"}
+"""About a file as a whole, or found by solving or by a survey; tests of their own make such files."""
 WITH_EXAMPLE = sorted(code for code in PAGES if code.startswith("PML") and code not in WITHOUT_EXAMPLE)
 
 

@@ -83,6 +83,21 @@ def test_the_text_with_the_period_means_the_same_and_keeps_its_lines() -> None:
     assert found.text.replace(" every 40", "") == text, "nothing else changes, comments neither"
 
 
+@pytest.mark.parametrize("wanted", ["patrol r, hall by bot of r", "patrol r by any robot"])
+def test_patrols_for_each_of_a_group_get_the_period_once_in_the_text(wanted: str) -> None:
+    text = f"""poi "hall"
+poi "a"
+poi "b"
+group "rooms": a, b
+for each r in rooms: connect hall and r distance 2
+for each r in rooms: agent "bot" of r controllable mobile 1 location r
+for each r in rooms: objective: {wanted}
+"""
+    found = with_period(parse(text, "x.pur", "x"), 40)
+    assert found.text == text.replace(" by ", " every 40 by ")
+    assert [each.text for each in parse(found.text, "x.pur", "x").safety] == [each.text for each in found.safety]
+
+
 def test_what_is_optional_stays_so_in_the_text_with_the_period() -> None:
     wanted = "optional 2 objective: patrol gate, hall in order{} by bot1 // now and then\n"
     found = with_period(parse(ROOMS + wanted.format(""), "x.pur", "x"), 40)

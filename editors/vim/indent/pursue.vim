@@ -13,12 +13,14 @@ if exists('*PursueIndent')
 endif
 
 let s:statement = split('
-      \ agent assume battery connect event objective optional poi reach_objective rule state stateDependency travel')
+      \ agent assume battery connect event for group objective optional poi reach_objective rule state stateDependency
+      \ travel')
 let s:goes_on = split('
-      \ after always and any at at_most avoid before between by can_do capacity collaborative controllable distance do
-      \ does doing duration each every false false_if for from human if in inflation initially is_false is_true label
-      \ leaves location mobile never never_with no not on_way one_way only_if or order patrol per radius reacts_to
-      \ recharges robot takes then times to together tolerance true true_if unit uses waits within')
+      \ after all always and any at at_most avoid before between by can_do capacity collaborative controllable
+      \ distance do does doing duration each every false false_if from human if in inflation initially is_false
+      \ is_true label leaves location mobile never never_with no not of on_way one_way only_if or order patrol per
+      \ radius reacts_to recharges robot takes then times to together tolerance true true_if two unit uses waits
+      \ within')
 
 function! s:Begins(line, words) abort
   return index(a:words, matchstr(a:line, '^\s*\zs\w\+')) >= 0

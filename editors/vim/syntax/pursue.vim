@@ -6,14 +6,14 @@ endif
 syntax case match
 syntax iskeyword @,48-57,_
 
-syntax keyword pursueStatement agent assume battery connect event objective optional poi reach_objective rule state
-syntax keyword pursueStatement stateDependency travel
+syntax keyword pursueStatement agent assume battery connect event for group objective optional poi reach_objective rule
+syntax keyword pursueStatement state stateDependency travel
 syntax keyword pursueConstant false is_false is_true true
-syntax keyword pursueKeyword after always and any at at_most avoid before between by can_do capacity collaborative
-syntax keyword pursueKeyword controllable distance do does doing duration each every false_if for from human if in
-syntax keyword pursueKeyword inflation initially label leaves location mobile never never_with no not on_way one_way
-syntax keyword pursueKeyword only_if or order patrol per radius reacts_to recharges robot takes then times to together
-syntax keyword pursueKeyword tolerance true_if unit uses waits within
+syntax keyword pursueKeyword after all always and any at at_most avoid before between by can_do capacity collaborative
+syntax keyword pursueKeyword controllable distance do does doing duration each every false_if from human if in inflation
+syntax keyword pursueKeyword initially label leaves location mobile never never_with no not of on_way one_way only_if or
+syntax keyword pursueKeyword order patrol per radius reacts_to recharges robot takes then times to together tolerance
+syntax keyword pursueKeyword true_if two unit uses waits within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

@@ -93,8 +93,6 @@ class Rule(StatementKind):
     symbol: ClassVar[str] = "Struct"
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("rule", "An order of events, round after round: each may happen only when it is its turn."),
-        Word("for", "A rule for each of several: each of them has its own turn."),
-        Word("each", "A rule for each of several: each of them has its own turn.", True),
         Word("before", "First this, then that, and then the first again.", may_break=True),
         Word("or", "Either of the two, round after round; in a condition: at least one holds.", may_break=True),
     )

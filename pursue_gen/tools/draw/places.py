@@ -40,7 +40,7 @@ def with_all_positions(document: Draft) -> Draft:
     if not computed:
         return document
     for poi in document.scenario.pois:
-        if poi.pose is None and poi.name in where:
+        if poi.pose is None and poi.name in where and poi.name in document.declared["POI"]:
             number = document.declared["POI"][poi.name].statement
             pose = parts_of(document.statements[number]).get("POSE")
             words = with_position(str(pose[0]) if pose else None, where[poi.name].x, where[poi.name].y)

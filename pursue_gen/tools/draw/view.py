@@ -59,7 +59,7 @@ def forms() -> List[Dict[str, Any]]:
     """The statements that can be chosen from lists: their words cut at their holes, and what belongs into each hole."""
     found = []
     for kind, statement in STATEMENTS.items():
-        for number, form in enumerate(() if statement.parts else statement.forms):
+        for number, form in enumerate(() if statement.parts or kind == "FOR" else statement.forms):  # a group is needed
             kinds = {"=": "example", "": "name"}
             holes = [{"kind": kinds[example], "of": what} for example, what in HOLE.findall(form.words)]
             words = HOLE.split(form.words)[::3]

@@ -9,6 +9,7 @@ from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.document import Edit
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.syntax import Statement
+from pursue_gen.language.tokens import start_of
 from pursue_gen.tools.lsp import fixes_meaning as meaning
 from pursue_gen.tools.lsp import fixes_numbers as numbers
 from pursue_gen.tools.lsp import fixes_syntax as syntax
@@ -91,8 +92,16 @@ def fixes(document: Draft, start: int, end: int) -> Tuple[Fix, ...]:
         part = document.statement_at(first)
         if max(last, part.end if part else 0) < start or min(first, part.start if part else first) > end:
             continue
+        if part is not None and _of_groups(part, first, last):
+            continue
         proposals = proposer(document, finding, part or Statement(()), first)
         for number, (title, edits) in enumerate(proposals):
             if edits:
                 found.append(Fix(title, finding, edits, number == 0))
     return tuple(found)
+
+
+def _of_groups(part: Statement, start: int, end: int) -> bool:
+    """True where other statements than the one that stands there were read: a change would be one of all of them."""
+    made = any(token.type == "OF" and start <= start_of(token) < end for token in part.tokens)
+    return made or part.kind in ("FOR", "GROUP")

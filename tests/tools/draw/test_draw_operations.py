@@ -231,7 +231,8 @@ def test_what_makes_no_sense_is_refused_with_a_reason(operation: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "form"), [(token, k) for token, kind in STATEMENTS.items() for k in range(len(kind.forms))]
+    ("kind", "form"),
+    [(token, k) for token, kind in STATEMENTS.items() if token != "FOR" for k in range(len(kind.forms))],
 )
 def test_every_form_can_be_filled(kind: str, form: int) -> None:
     given_ = {"POI": "room", "event": "fetch", "agent": "nurse", "state": "dark"}

@@ -238,11 +238,13 @@ def expanded(snippet: str) -> str:
 
 
 def test_statements_to_fill_in_are_well_formed() -> None:
+    groups = '\npoi "a"\npoi "b"\ngroup "rooms": a\ngroup "robots": a, b'
+    needed = {"GROUP": '\npoi "a"', "FOR": groups}
     names = {kind: list(names) for kind, names in Draft.of(SMALL, "x.pur").declared.items()}
     for token, statement in STATEMENTS.items():
         for form in statement.forms:
             for text in (fill_in(form.words, {}, plain=True), expanded(fill_in(form.words, names))):
-                assert read(text, "x.pur").diagnostics == (), text
+                assert read(text + needed.get(token, ""), "x.pur").diagnostics == (), text
                 assert text.startswith(KEYWORDS[token])
 
 

@@ -24,7 +24,15 @@ from pursue_gen.tools.lsp.statements import ordered
 from .client import PATIENCE
 from .scenarios import SCENARIOS, SMALL
 
-PIECES = SMALL.split() + list('",:()/*\n\t é😀\u200b\x0c\u2028\x00') + ["//", "/*", "*/", '"', "control: x", "//[1,2]"]
+GROUPS = """\
+for each r in places: event "call" of r location r
+group "places": a, b
+for each r in places: event "look" of r location r duration 2
+agent "cart" controllable mobile 1 location b can_do look of places
+for each two x, y in robots: objective: avoid all of robots at b and x at a and y doing look of a
+"""
+PIECES = SMALL.split() + GROUPS.split() + list('",:()/*\n\t é😀\u200b\x0c\u2028\x00')
+PIECES += ["//", "/*", "*/", '"', "control: x", "//[1,2]"]
 
 
 @st.composite
@@ -32,7 +40,7 @@ def texts(draw: st.DrawFn) -> str:
     """A scenario that was hacked to pieces, or pieces that never were one."""
     if draw(st.booleans()):
         return draw(st.sampled_from([" ", ""])).join(draw(st.lists(st.sampled_from(PIECES), max_size=40)))
-    text = draw(st.sampled_from([SMALL, *SCENARIOS.values()]))
+    text = draw(st.sampled_from([SMALL, SMALL + GROUPS, GROUPS + SMALL, *SCENARIOS.values()]))
     for _ in range(draw(st.integers(1, 5))):
         start = draw(st.integers(0, len(text)))
         end = min(len(text), start + draw(st.integers(0, 30)))
