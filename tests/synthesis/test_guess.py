@@ -211,6 +211,40 @@ objective: avoid bot1 at room1 and guest at room1
 """
 
 
+SUPPLY = """
+poi "store"
+poi "lane"
+poi "press"
+poi "mill"
+connect store and lane distance 4
+connect lane and press distance 2
+connect lane and mill distance 6
+event "need_press" location press
+event "need_mill" location mill
+event "fetchP" location store duration 1
+event "fetchM" location store duration 1
+event "feedP" location press duration 2
+event "feedM" location mill duration 2
+rule "p": fetchP before feedP
+rule "m": fetchM before feedM
+agent "cart1" controllable mobile 1 location press can_do fetchP, feedP
+agent "cart2" controllable mobile 1 location mill can_do fetchM, feedM
+agent "machineP" location press can_do need_press
+agent "machineM" location mill can_do need_mill
+objective: if need_press then feedP within 150
+objective: if need_mill then feedM within 150
+objective: cart1 never_with cart2
+"""
+
+
+def test_nobody_shuts_another_one_in_a_dead_end() -> None:
+    """Both fetch from the store, to which one lane leads."""
+    network, objective = game_of(SUPPLY)
+    strategy, _ = guess(network, objective, DEFAULT.reaction, without_pauses=True)
+    assert strategy is not None
+    assert verify(network, objective, strategy, DEFAULT.reaction, closed=True).ok
+
+
 POST = """
 poi "dock"
 poi "post"

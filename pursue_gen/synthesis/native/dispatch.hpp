@@ -80,14 +80,19 @@ class Dispatch {
             for (std::size_t r = 0; r < robots.size() && wanted[q] >= 0; ++r) {
                 if (r == q || !ways[q].count(d[robots[r]]) || !leads_to_loss(together(d, robots[q], robots[r]))) continue;
                 const bool blocked = ways[r].count(d[robots[q]]) && leads_to_loss(together(d, robots[r], robots[q]));
-                if (wanted[r] >= 0 && (r < q || !blocked)) continue;  // it goes on by itself, or first
-                std::set<int> out;
-                commands[r] = makes_way(d, enabled, robots[r], d[robots[q]], ways[q], out);
+                if (wanted[r] >= 0 && !blocked) continue;  // it goes on by itself
+                std::set<int> out, others;
+                const int gives = makes_way(d, enabled, robots[r], d[robots[q]], ways[q], out);
+                if (wanted[r] >= 0 && gives < 0) continue;
+                if (wanted[r] >= 0 && r < q && makes_way(d, enabled, robots[q], d[robots[r]], ways[r], others) >= 0) continue;
+                commands[r] = gives;
                 for_whom[r] = q;
                 if (commands[r] >= 0 && out.count(ended(joints_[wanted[q]].target(d), robots[q])[robots[q]])) commands[q] = -1;
             }
         for (std::size_t q = 0; q < tasks_.load().size() && guess_.by_time; ++q)
             if (commands[q] == wanted[q] && wanted[q] >= 0 && is_in_the_way(d, q, wanted[q], memory, ways[q])) commands[q] = -1;
+        for (std::size_t q = 0; q < robots.size(); ++q)
+            if (commands[q] == wanted[q] && wanted[q] >= 0 && !waits[q] && traps(d, q, wanted[q], memory, ways[q])) commands[q] = -1;
         // Who can leave only when somebody else is there is relieved by one who has nothing to do.
         for (std::size_t q = 0; q < robots.size(); ++q)
             for (std::size_t r = 0; r < robots.size() && commands[q] >= 0; ++r) {
@@ -236,6 +241,25 @@ class Dispatch {
         for (std::size_t r = 0; r < load.size(); ++r)
             if (std::pair(load[r], q) > std::pair(load[q], r) && memory[r] >= 0 && comes(d, r, memory[r], there, robot, left))
                 return true;
+        return false;
+    }
+
+    // Whether a command takes robot q to where another one, at a place on q's way, could not leave it any more: a dead end.
+    bool traps(const Discrete& d, std::size_t q, int command, const std::vector<int>& memory, const std::set<int>& way) {
+        const int robot = duties_.robots()[q];
+        const Discrete there = ended(joints_[command].target(d), robot);
+        std::vector<int> enabled;
+        for (std::size_t r = 0; r < duties_.robots().size(); ++r) {
+            const int other = duties_.robots()[r];
+            const Discrete then = r == q ? there : ended(there, other);
+            if (r == q || !way.count(then[other]) || !leads_to_loss(together(then, robot, other))) continue;
+            joints_.enabled(then, enabled);
+            const bool busy = memory[r] >= 0 && duties_.is_open(then, memory[r] % count_);
+            std::set<int> further, its, out;
+            if (busy && wants(then, enabled, r, memory[r], its) >= 0 && !its.count(then[robot])) continue;
+            wants(then, enabled, q, memory[q], further);
+            if (further.count(then[other]) && makes_way(then, enabled, other, then[robot], further, out) < 0) return true;
+        }
         return false;
     }
 

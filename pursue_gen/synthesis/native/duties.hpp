@@ -116,7 +116,10 @@ class Duties {
         key.push_back(closed);
         if (looks_.size() * static_cast<std::size_t>(facts_) > MOST_KEPT) forget();
         const auto number = static_cast<std::size_t>(looked_from_.number(key));
-        if (number == looks_.size()) looks_.push_back(costs_from(d, robot, closed));
+        if (number == looks_.size()) {
+            if (has_batteries()) spend(ZONES_OF_A_LOOK);  // of which a robot that looks ahead needs very many
+            looks_.push_back(costs_from(d, robot, closed));
+        }
         now_ = &looks_[number];
     }
 
@@ -207,6 +210,7 @@ class Duties {
         std::vector<int> support;         // per precondition the fact that meets it first, -1: none
     };
 
+    static constexpr std::size_t ZONES_OF_A_LOOK = 64;  // it takes about as long as so many zones
     static constexpr std::size_t MOST_KEPT = 1 << 20;  // costs of facts, some 20 bytes each
 
     Look costs_from(const Discrete& d, int robot, int closed) const {
