@@ -122,14 +122,14 @@ def why_it_matters(
     objective: Objective,
     part: Network,
     places: Optional[Places] = None,
-    from_start: bool = True,
+    before: Optional[Network] = None,
     hiding: bool = False,
 ) -> str:
     """Why what the part of the network leaves out may matter in it; "" if it cannot.
 
     `places`: where its automata may come to (see `relaxed_reachability`); None: where they may without commands.
-    `from_start`: they begin in their initial locations, not in the middle of a play. `hiding`: what is left out may do
-    to the part what `tga.hidden` lets it do.
+    `before`: the network with all that may have been done before, where they are in the middle of a play; None: they
+    begin in their initial locations. `hiding`: what is left out may do to the part what `tga.hidden` lets it do.
     """
     places = live(network, frozenset())[1].places if places is None else places
     kept = {automaton.name: automaton for automaton in part.automata}
@@ -141,7 +141,7 @@ def why_it_matters(
             why = _why_an_edge_matters(automaton, kept[automaton.name], part, hiding)
         else:
             why = why_not_hidden(automaton, part) if hiding else _why_it_is_seen(automaton, part)
-            why = why or _why_it_may_stop_time(automaton, network, places[automaton.name], from_start)
+            why = why or _why_it_may_stop_time(automaton, network, places[automaton.name], before)
         if why:
             return f"{automaton.name} {why}"
     return ""
@@ -183,7 +183,7 @@ def _why_it_is_seen(automaton: Automaton, part: Network) -> str:
 
 
 def _why_it_may_stop_time(
-    automaton: Automaton, network: Network, places: AbstractSet[str], from_start: bool
+    automaton: Automaton, network: Network, places: AbstractSet[str], before: Optional[Network]
 ) -> str:
     """Why time may have to stop because of an automaton that nobody commands.
 
@@ -194,15 +194,16 @@ def _why_it_may_stop_time(
     stays = automaton.stays
     if places.isdisjoint(stays):
         return ""
-    own = tuple(sorted(automaton.clocks))
+    whole = network if before is None else before
+    own = tuple(sorted(whole.automaton(automaton.name).clocks))
     start = start_of(network, own)
-    alone = Network(own, network.variables, network.channels, (automaton,), start)
+    alone = Network(own, network.variables, network.channels, (whole.automaton(automaton.name),), start)
     arena = Arena(alone, common_denominator(alone.times))
     for name in sorted(places & stays.keys()):
         bounds = [(0, i, bound) for i, _, bound in arena.limits(stays[name])]
         clocks = {bound.clock for bound in stays[name]}
         stay = Dbm.of(arena.dim, [(i, 0, bound) for _, i, bound in bounds])
-        if from_start and name == automaton.initial and (stay is None or not stay.includes(arena.start)):
+        if before is None and name == automaton.initial and (stay is None or not stay.includes(arena.start)):
             return f"may not stay in {name} at the start"
         entering = [edge for edge in automaton.edges if edge.target == name != edge.source]
         if any(not clocks.issubset(edge.resets) for edge in entering):
@@ -213,20 +214,20 @@ def _why_it_may_stop_time(
             return f"has no time to stay in {name}"
         ways = [edge for edge in automaton.edges if edge.source == name != edge.target and _is_free(edge)]
         if stay is not None and (name != automaton.initial or not network.start):
-            stay = _with_what_has_passed(arena, stay, clocks, automaton, name, network)
+            stay = _with_what_has_passed(arena, stay, clocks, automaton.name, name, whole)
         if stay is None or _left_at(arena, stay, bounds, ways):
             return f"may have to leave {name} and not be able to"
     return ""
 
 
 def _with_what_has_passed(
-    arena: Arena, stay: Dbm, clocks: AbstractSet[str], automaton: Automaton, place: str, network: Network
+    arena: Arena, stay: Dbm, clocks: AbstractSet[str], name: str, place: str, network: Network
 ) -> Optional[Dbm]:
     """The points of a stay of the automaton at the place that began with these clocks at 0: any other of its clocks
     shows as much as they do, unless a move of the stay has reset it alone, and then less by what they show at that move
     at most."""
-    loops = [edge for edge in automaton.edges if edge.source == edge.target == place]
-    foreign = {name for other in network.automata if other is not automaton for e in other.edges for name in e.resets}
+    loops = [edge for edge in network.automaton(name).edges if edge.source == edge.target == place]
+    foreign = {clock for other, edge in network.edges if other != name for clock in edge.resets}
     found: Optional[Dbm] = stay
     for bounding in sorted(clocks):
         for other in sorted(arena.clock.keys() - foreign - {bounding}):

@@ -68,7 +68,7 @@ def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iter
             wanted = stage_objective(objective, ending.goal, extent)
             starts = known.states(part)
             assert starts is not None
-            fault = why_it_matters(alive, wanted, part, resting, from_start=stage == 0)
+            fault = why_it_matters(alive, wanted, part, resting, network if stage else None)
             if wanted.avoids and len(milestones) > 1:
                 fault = "where one part has ended before the others, nobody guards against what is to be avoided"
             if fault:

@@ -288,6 +288,17 @@ def test_a_visitor_who_is_assumed_to_leave_in_time_does_not_matter(does: str) ->
     assert verify(won.network, won.objective, won.strategy, won.reaction).ok
 
 
+def test_what_was_done_before_the_middle_of_a_play_counts() -> None:
+    """What resets the clock of the rest may not be possible any more: it may just have been done."""
+    network, later = (
+        Network(("y", "z"), (), (), (GOAL, _walker(IN, REST, *loops)))
+        for loops in ((_waves(ClockBound("z", "<", Fraction(7, 2))),), ())
+    )
+    part = part_of(later, {"A"}, set())
+    assert why_it_matters(later, REACH, part, before=later) == ""
+    assert why_it_matters(later, REACH, part, before=network).startswith("walker")
+
+
 def test_whoever_starts_beyond_its_time_is_kept() -> None:
     network = Network(("z",), (), (), (GOAL, _walker(IN, OUT, initial="there")))
     assert len(cone_of_influence(network, REACH).automata) == 1
