@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Optional
 
 from pursue_gen.outcomes import LimitHit, NotProven
+from pursue_gen.solving.due_moves import patrols
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
@@ -19,14 +20,17 @@ from pursue_gen.tga.pauses import pauses
 def won_by_policy(
     game: Network, objective: Objective, reaction: Fraction, work: int, options: SolveOptions
 ) -> Optional[Found]:
-    """A proven strategy by a simple policy (see `Engine.guess`), without the clocks of pauses where they do not matter;
-    None where so much work for each finds none."""
-    start = options.limits.now()
+    """A proven strategy by a simple policy (see `Engine.guess`), without the clocks of pauses where they do not matter,
+    and by one by which patrols wait until they are due where others have orders meanwhile; None where so much work for
+    each finds none."""
+    start, names = options.limits.now(), {name for name, _ in objective.bad}
+    late = patrols(game) & names
     for free in (True, False) if pauses(game) else (False,):
-        how = options.engine, replace(options.limits.since(start), work=work), options.progress
-        with suppress(NotProven, LimitHit):
-            strategy, stats = guess(game, objective, reaction, *how, without_pauses=free)
-            if strategy is not None:
-                proven = prove(game, objective, strategy, reaction, options=options.since(start), closed=True)
-                return Found(proven, stats)
+        for put_off in (frozenset(), late) if late and late < names else (frozenset(),):
+            how = options.engine, replace(options.limits.since(start), work=work), options.progress
+            with suppress(NotProven, LimitHit):
+                strategy, stats = guess(game, objective, reaction, *how, without_pauses=free, late=put_off)
+                if strategy is not None:
+                    proven = prove(game, objective, strategy, reaction, options=options.since(start), closed=True)
+                    return Found(proven, stats)
     return None

@@ -14,7 +14,7 @@ agents that are left out stay where they are, and those that are not make no det
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import Dict, FrozenSet, Sequence, Set, Tuple
+from typing import Dict, FrozenSet, Set, Tuple
 
 from pursue_gen.synthesis.detours import Detour, detours
 from pursue_gen.synthesis.time_passes import lets_time_pass
@@ -87,13 +87,12 @@ class _Cone:
         for name, some in self._detours.items():
             if name in self.automata:
                 away = (one for one in some if one.is_unnoticed(self.variables, tests))
-                others = [automaton for automaton in kept if automaton.name != name]
-                gone[name] = frozenset(e for one in away if not self._is_heard(one, others) for e in one.edges)
+                gone[name] = frozenset(e for one in away if not self._is_heard(one, name) for e in one.edges)
         return gone
 
-    def _is_heard(self, detour: Detour, others: Sequence[Automaton]) -> bool:
-        """True if one of these automata hears that the detour begins or ends."""
-        return any(self._hears(a, edge.sync.channel) for a in others for edge in detour.edges if edge.sync is not None)
+    def _is_heard(self, detour: Detour, robot: str) -> bool:
+        """True if another automaton that matters hears that the robot's detour begins or ends."""
+        return any(self._others_hear(robot, edge.channel) for edge in detour.edges if edge.channel is not None)
 
     def _may_go(self, automaton: Automaton, edge: Edge) -> bool:
         """True for an edge that needs a variable which does not matter, and does nothing that does."""
@@ -102,14 +101,16 @@ class _Cone:
         if any(name in self.variables for name, _ in edge.assign):
             return False
         if edge.received is not None:
-            return edge.controllable and not self._hears(automaton, edge.received, edge.source)
-        others = (a for a in self._network.automata if a.name in self.automata and a is not automaton)
-        return edge.sent is None or not any(self._hears(other, edge.sent) for other in others)
+            own = (e for e in automaton.edges if e.received == edge.received and e.source == edge.source)
+            return edge.controllable and not any(self.variables.issuperset(e.variables) for e in own)
+        return edge.sent is None or not self._others_hear(automaton.name, edge.sent)
 
-    def _hears(self, automaton: Automaton, channel: str, source: str = "") -> bool:
-        """True if the automaton has a receiving edge on the channel that does not go."""
-        heard = (e for e in automaton.edges if e.received == channel and source in ("", e.source))
-        return any(self.variables.issuperset(edge.variables) for edge in heard)
+    def _others_hear(self, name: str, channel: str) -> bool:
+        """True if another automaton that matters has a receiving edge on the channel that does not go."""
+        return any(
+            receiver != name and receiver in self.automata and self.variables.issuperset(edge.variables)
+            for receiver, edge in self._network.receivers.get(channel, ())
+        )
 
     def _is_seen(self, edge: Edge, sent: Set[str], received: Set[str]) -> bool:
         """True for an edge of another automaton that changes something which matters."""

@@ -48,10 +48,10 @@ def detours(network: Network, objective: Objective) -> Mapping[str, Tuple[Detour
     controller's hands."""
     named = {*objective.goal, *objective.bad}
     named_by = Counter(clock for automaton in network.automata for clock in automaton.clocks)
-    found = {}
+    found, taken = {}, taken_over(network)
     for automaton in network.automata:
         own = frozenset(clock for clock in automaton.clocks if named_by[clock] == 1)
-        some = tuple(_of(automaton, own, network, named, taken_over(network)))
+        some = tuple(_of(automaton, own, network, named, taken))
         if some:
             found[automaton.name] = some
     return found
