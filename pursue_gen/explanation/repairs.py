@@ -15,9 +15,11 @@ from pursue_gen.explanation.number_changes import (
     battery_changes,
     count_changes,
     event_changes,
+    room_changes,
     travel_changes,
 )
 from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole_below
+from pursue_gen.language.objectives.holds import Holds
 from pursue_gen.language.scenario import Agent, Connection, Event, Reach, Scenario, StatedObjective
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
 from pursue_gen.tga.counts import counted
@@ -85,6 +87,8 @@ def _of_slack(rules: Rules, agent: str, shown: str, late: int) -> Repair:
 def _of_objectives(scenario: Scenario) -> Iterator[Repair]:
     for safety in scenario.safety:
         yield from _of_limit(scenario, safety)
+        if isinstance(safety, Holds):
+            yield from room_changes(scenario, safety)
     for reach in scenario.reach:
         if reach.after > 0:
             yield _earlier(scenario, reach)

@@ -249,6 +249,9 @@ class _Groups:
             kinds = [token.type for token in tokens[index : index + 4]]
             if kinds[:2] in (["ANY", "OF"], ["ALL", "OF"]):
                 index = self._quantified(tokens, index, members, found)
+            elif kinds[0] == "NUMBER" and kinds[1:2] in (["ROBOTS"], ["AGENTS"]):
+                found += tokens[index : index + 2]  # so many of them, whoever they are
+                index += 2
             elif kinds[0] in ("NAME", *_NAMES):
                 names, index = self._names_at(tokens, index, members)
                 found += _listed(names, str(tokens[index - 1]))

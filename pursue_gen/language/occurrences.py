@@ -30,8 +30,12 @@ MEMBERS = ("POI", "agent", "event", "state")
 _OPENS = {(token, word.upper()) for token, kind in STATEMENTS.items() for word in kind.conditions_behind()}
 """The statements with a condition in them, and the word behind which it begins."""
 
-_OBJECT = {"AT": "POI", "DOING": "event"}
-_SUBJECT = {"AT": "agent", "ON_WAY": "agent", "DOING": "agent", "IS_TRUE": "state", "IS_FALSE": "state"}
+_OPENING = frozenset(("ALWAYS", "PATROL", "PLACE", "WAY"))
+"""Words that may be names and with which an objective may begin."""
+_OBJECT = {"AT": "POI", "FROM": "POI", "TO": "POI", "BETWEEN": "POI", "DOING": "event"}
+_SUBJECT = {
+    "AT": "agent", "ON_WAY": "agent", "BETWEEN": "agent", "DOING": "agent", "IS_TRUE": "state", "IS_FALSE": "state",
+}  # fmt: skip
 _NAMES = frozenset(("WORD", *MAY_BE_NAMES))
 
 
@@ -77,7 +81,7 @@ def are_names(tokens: Sequence[Token]) -> List[bool]:
         )  # fmt: skip
         following = tokens[index + 1].type if index + 1 < len(tokens) else ""
         opens = before is not None and before.type == "COLON" and kind == "OBJECTIVE"
-        begins = opens and token.type in ("ALWAYS", "PATROL") and following != "NEVER_WITH"
+        begins = opens and token.type in _OPENING and following != "NEVER_WITH"
         named.append(token.type == "WORD" or (token.type in MAY_BE_NAMES and behind and not begins))
     return named
 
@@ -143,17 +147,23 @@ def names_in_condition(tokens: Sequence[Token], start: int) -> Tuple[Dict[int, s
     # an event may stand there alone
     subjects = ("event", *SUBJECTS) if tokens[start - 1].type in ("AVOID", "IF") else SUBJECTS
     expected: Tuple[str, ...] = subjects
-    number = start
+    number, counts, between = start, False, False
     while number < len(tokens):
         kind = tokens[number].type
         following = tokens[number + 1].type if number + 1 < len(tokens) else ""
         if len(expected) > 1 and kind in ("ANY", "NO") and following in ("ROBOT", "AGENT"):
             number, expected = number + 1, ()
+        elif len(expected) > 1 and kind == "AT_MOST" and following == "NUMBER":
+            number, expected, counts = number + 1, (), True
         elif expected and kind in _NAMES:
-            found[number] = expected[0] if len(expected) == 1 else _SUBJECT.get(following, subjects[0])
+            found[number] = expected[0] if len(expected) == 1 else _subject(tokens[number + 1 :], subjects[0])
             expected = ()
+        elif counts and kind in ("OF", "COMMA"):
+            expected = SUBJECTS
         elif kind in _OBJECT:
-            expected = (_OBJECT[kind],)
+            counts, expected, between = False, (_OBJECT[kind],), kind == "BETWEEN"
+        elif kind == "AND" and between:
+            expected, between = ("POI",), False
         elif kind in ("AND", "OR", "NOT", "LPAR"):
             expected = subjects = SUBJECTS
         elif kind == "THEN":
@@ -162,3 +172,10 @@ def names_in_condition(tokens: Sequence[Token], start: int) -> Tuple[Dict[int, s
             expected = ()
         number += 1
     return found, expected
+
+
+def _subject(following: Sequence[Token], default: str) -> str:
+    """The kind of thing of which a part of a condition speaks, from what follows its name; a list goes on before."""
+    while following and following[0].type == "COMMA":
+        following = following[2:]
+    return _SUBJECT.get(following[0].type, default) if following else default

@@ -38,7 +38,7 @@ _WIDEST = 500
 """Events in one rule, parts of one condition."""
 _SPLIT = "split the rule into several rules"
 _SHORTEN = "say it with fewer of them; a state that events set can stand for much"
-_ATOMS = frozenset(("AT", "ON_WAY", "DOING", "IS_TRUE", "IS_FALSE"))
+_ATOMS = frozenset(("AT", "ON_WAY", "BETWEEN", "DOING", "IS_TRUE", "IS_FALSE"))
 MOST_FINDINGS = 1000
 """The most errors that are reported; with more of them the file is no scenario."""
 
@@ -354,7 +354,7 @@ def _chunks(tokens: List[Token]) -> List[List[Token]]:
             begins = False
         elif token.type in (*STATEMENTS, TAIL):  # inside a line such a word may also stand where a name should
             begins = opens_line or goes_on or token.type in ("CONNECT", "FOR", TAIL)
-        elif token.type in ("WORD", "ROBOT") and opens_line and index:
+        elif token.type in ("WORD", "ROBOT", "PLACE", "WAY") and opens_line and index:
             begins = goes_on or (ended and looks_like_statement(token))
         else:
             begins = opens_line and goes_on and token.type in _OPENS

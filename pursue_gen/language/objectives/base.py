@@ -144,6 +144,10 @@ class Safety(StatedObjective):
         """How it is broken."""
         raise NotImplementedError
 
+    def apart(self, one: str, other: str, place: str) -> bool:
+        """True where these two agents are never both at this place as long as it is kept."""
+        return False
+
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         broken = self.breaks.condition
         if broken is not None and kind in ("state", "agent") and self.speaks_of(kind, name):

@@ -163,10 +163,10 @@ def _words(place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
         return
     span = (place.start, place.end)
     names_hide = set(MAY_BE_NAMES) if "WORD" in expected else set()
-    if set(SUBJECTS) <= set(kinds_behind(place.behind)):
-        names_hide -= {"ANY", "NO"}
+    if set(SUBJECTS) <= set(kinds_behind(place.behind)) and place.behind[-1].type not in ("COMMA", "OF"):
+        names_hide -= {"ANY", "NO", "AT_MOST"}
     if [token.type for token in place.behind[-2:]] == ["OBJECTIVE", "COLON"]:
-        names_hide -= {"ALWAYS", "PATROL"}
+        names_hide -= {"ALWAYS", "PATROL", "PLACE", "WAY"}
     if "BY" in (token.type for token in place.behind):
         names_hide.discard("ANY")
     for token, word in KEYWORDS.items():

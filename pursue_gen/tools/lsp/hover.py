@@ -208,6 +208,9 @@ def _number(scenario: Scenario, part: Statement, start: int, number: Number) -> 
         written = (t for t in part.tokens if t.type == "NUMBER" and start_of(t) > begins)
         numbers = [value for value in map(read_number, written) if value is not None]
         return f"It takes {lasts((numbers[0], numbers[1] if len(numbers) > 1 else exact(numbers[0] + 1)))}."
+    behind = next((t.type for t in part.tokens if start_of(t) > start), "")
+    if word in ("AT_MOST", "HOLDS") and behind != "TIMES":
+        return f"No more than {number} at one time."
     if word == "MOBILE":
         lines = [f"It needs {units(number)} of time for a unit of distance; a larger number is slower.", ""]
         times = [(f"{way.a} to {way.b}", exact(way.distance * number)) for way in scenario.connections]
