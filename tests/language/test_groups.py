@@ -268,7 +268,7 @@ def test_else_the_member_is_named() -> None:
 
 def test_of_alone_is_explained() -> None:
     ((code, line, column, _),) = found('poi "a"\nevent "call" of a\n')[:1]
-    assert (code, line, column) == ("PML010", 2, 14)
+    assert (code, line, column) == ("PML406", 2, 17)
 
 
 @pytest.mark.parametrize(

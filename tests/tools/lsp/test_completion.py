@@ -238,7 +238,8 @@ def expanded(snippet: str) -> str:
 
 
 def test_statements_to_fill_in_are_well_formed() -> None:
-    groups = '\npoi "a"\npoi "b"\ngroup "rooms": a\ngroup "robots": a, b'
+    robots = "".join(f'\nagent "robot{number}" controllable location a' for number in (1, 2))
+    groups = '\npoi "a"\npoi "b"\ngroup "rooms": a' + robots
     needed = {"GROUP": '\npoi "a"', "FOR": groups}
     names = {kind: list(names) for kind, names in Draft.of(SMALL, "x.pur").declared.items()}
     for token, statement in STATEMENTS.items():
