@@ -238,7 +238,7 @@ def changed(old: str, new: str) -> str:
         (HOTEL + "for each r in rooms:", "PML010", 13, 21, "but the statement ends here"),
         (HOTEL + "for each two a in rooms: connect hall and a distance 1", "PML010", 13, 16, "expected `,`"),
         (changed('room3\nfor', 'room3,\nfor'), "PML010", 5, 36, "but the statement ends here"),
-        (HOTEL + 'event "call_room1"', "PML103", 13, 7, "call_room1 is declared twice; line 7 declares it already"),
+        (HOTEL + 'event "call_room1"', "PML103", 13, 7, "call_room1 is declared twice; line 7 (r is room1) declares"),
         (HOTEL + "objective: avoid call of bob", "PML406", 13, 26, "bob is no group"),
     ],
 )  # fmt: skip
