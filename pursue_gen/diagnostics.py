@@ -37,6 +37,16 @@ class Span:
     end_column: int
     member: str = ""
 
+    @property
+    def written(self) -> Span:
+        """The statement as it is written, for all members."""
+        return replace(self, member="")
+
+    @property
+    def in_words(self) -> str:
+        """`line 3`, with the member that is meant."""
+        return lines_in_words((self,))
+
 
 NOWHERE = Span("", 1, 1, 1, 1)
 """The place of what stands in no text: of a scenario that is built in Python."""
@@ -96,6 +106,16 @@ def counted(number: object, noun: str) -> str:
 def units(amount: object) -> str:
     """`1 unit`, `2 units`."""
     return counted(amount, "unit")
+
+
+def lines_in_words(spans: Iterable[Span]) -> str:
+    """`lines 3 and 21 (r is room1; r is room2)`: the lines of these places, each once, with the members that are
+    meant."""
+    members: Dict[int, List[str]] = {}
+    for span in dict.fromkeys(spans):
+        members.setdefault(span.line, []).append(span.member)
+    some = [f"{line} ({'; '.join(found)})" if any(found) else str(line) for line, found in members.items()]
+    return f"line{'s' * (len(some) > 1)} {listed(some)}"
 
 
 def in_order(diagnostics: Iterable[Diagnostic]) -> Tuple[Diagnostic, ...]:

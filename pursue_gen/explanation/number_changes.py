@@ -108,7 +108,7 @@ def battery_changes(scenario: Scenario, battery: Battery) -> Iterator[Repair]:
 
 def room_changes(scenario: Scenario, holds: Holds) -> Iterator[Repair]:
     """A place or a way that holds more."""
-    values = range(holds.most + 1, len(Domains(scenario).counted(holds.kept_if)))
+    values = range(holds.most + 1, len(Domains(scenario).counted(holds.kept_if)) + 1)
     if values:
         yield Repair(
             "room", holds.where, f"more room {holds.where}", holds.most, values,

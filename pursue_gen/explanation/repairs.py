@@ -8,6 +8,7 @@ from typing import Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import Span, listed
 from pursue_gen.explanation.ablations import without_conditions
+from pursue_gen.explanation.as_written import as_written
 from pursue_gen.explanation.assumption_changes import assumption_changes
 from pursue_gen.explanation.number_changes import (
     SLOWER,
@@ -30,6 +31,10 @@ _FINEST = 1000
 
 def repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
     """All that can be changed, in the order in which they are worth knowing (and the quick ones first)."""
+    yield from as_written(scenario, _repairs(scenario, rules))
+
+
+def _repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
     yield from _of_rules(scenario, rules)
     yield from _of_objectives(scenario)
     for agent in scenario.agents:

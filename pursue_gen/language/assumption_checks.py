@@ -26,6 +26,6 @@ def check_assumptions(scenario: Scenario) -> Iterator[Diagnostic]:
     seen: Dict[str, Span] = {}
     for assumption in scenario.assumptions:
         if assumption.subject in seen:
-            yield assumption.again(seen[assumption.subject].line)
+            yield assumption.again(seen[assumption.subject])
         seen.setdefault(assumption.subject, assumption.span)
         yield from assumption.check_in(setting)

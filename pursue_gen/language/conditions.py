@@ -25,7 +25,6 @@ WORDS = (
     Word("any", "At least one of them: any robot, any agent.", True),
     Word("no", "None of them: no robot, no agent.", True),
     Word("robot", "The agents that are controllable and not human.", True),
-    Word("robots", "Those agents: a number of them, or all of them as a group that needs no declaration.", True),
     Word("agents", "A number of agents: robots, people and all others.", True),
 )
 """The words of conditions, and before them, which several kinds of statements have."""

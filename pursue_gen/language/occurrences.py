@@ -7,8 +7,9 @@ from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
 from lark import Token
 
-from pursue_gen.language.groups import ROBOTS, around_of, body_of, variables_of
+from pursue_gen.language.for_each import around_of, body_of, variables_of
 from pursue_gen.language.kinds import DECLARED, KEYWORDS, MAY_BE_NAMES, STATEMENTS
+from pursue_gen.language.members import ROBOTS
 from pursue_gen.language.messages import kind_of
 from pursue_gen.language.poses import robots_in
 from pursue_gen.language.syntax import Statement

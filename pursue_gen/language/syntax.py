@@ -13,8 +13,10 @@ from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Sequence, Set
 from lark import Lark, Token, UnexpectedToken
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
-from pursue_gen.language.groups import body_of, check_groups, no_list, without_owners, written_out
+from pursue_gen.language.for_each import body_of, with_groups, without_owners
+from pursue_gen.language.groups import check_groups, written_out
 from pursue_gen.language.kinds import BY_RULE, DECLARED, KEYWORDS, MAY_BE_NAMES, STATEMENTS, TAIL
+from pursue_gen.language.members import no_list
 from pursue_gen.language.messages import (
     explain,
     kind_of,
@@ -106,7 +108,7 @@ class Syntax:
     order.
 
     `lost` are the names in the others: they may have been declared there. `whole` is False where statements are
-    missing, as a group or what is for each of it is not right; `groups`: some statements were written out.
+    missing, as a group or what is for each of it is not right; `groups`: some may have been written out.
     """
 
     trees: Tuple[Any, ...]
@@ -178,7 +180,8 @@ def statements_of(tokens: Iterable[Token]) -> Tuple[Statement, ...]:
 def syntax_of(statements: Sequence[Statement], text: str, file: str) -> Syntax:
     """What the statements of a text are."""
     reader = _Reader(file)
-    expansion = written_out([statement.tokens for statement in statements], file, MOST_WORDS)
+    parts = [statement.tokens for statement in statements]
+    expansion = written_out(parts, file, MOST_WORDS)
     for number, (tokens, member) in enumerate(expansion.statements):
         reader.take(tokens, member)
         if len(reader.findings) >= MOST_FINDINGS and number + 1 < len(expansion.statements):
@@ -188,8 +191,7 @@ def syntax_of(statements: Sequence[Statement], text: str, file: str) -> Syntax:
     findings = tuple(of_a_comment(finding, lines) for finding in reader.findings)
     of_groups = expansion.findings or tuple(check_groups(expansion, reader.lost, file))
     whole = expansion.whole and not of_groups
-    groups = any(statement.kind in ("GROUP", "FOR") for statement in statements)
-    return Syntax(tuple(reader.trees), (*findings, *of_groups), frozenset(reader.lost), whole, groups)
+    return Syntax(tuple(reader.trees), (*findings, *of_groups), frozenset(reader.lost), whole, with_groups(parts))
 
 
 def too_large(file: str) -> Diagnostic:
@@ -246,7 +248,7 @@ class _Reader:
                 parser.feed_token(token)
             except UnexpectedToken:
                 if token.type == "COMMA" and token != ",":
-                    return no_list(token, self.file)
+                    return no_list(token, any(one.type in _ATOMS for one in chunk), self.file)
                 return explain(chunk, index, self._expected(parser), span_of(token, self.file))
         try:
             tree = parser.feed_eof(chunk[-1])

@@ -32,7 +32,7 @@ GOAL = "reach_objective: do pick\n"
         ("place shelf holds 2 robots", "for 2 robots at shelf", "more than 2 robots are at shelf"),
         ("place shelf holds 2 agents", "for 2 agents at shelf", "more than 2 agents are at shelf"),
         ("place shelf holds 1 of bot1, anna", "for 1 of Porter and anna at shelf", "more than 1 of Porter and anna is"),
-        ("place shelf, end holds 1 robot", "1 robot at shelf and end and on the ways between them", "is at shelf and"),
+        ("place shelf, end holds 1 robot", "for 1 robot at or between shelf and end", "1 robot is at or between shelf"),
         ("way mouth to shelf holds 1 robot", "1 robot between the mouth and shelf", "is between the mouth and shelf"),
     ],
 )

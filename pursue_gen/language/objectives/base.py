@@ -102,6 +102,11 @@ class StatedObjective(Written):
         assert self.limit is not None, "there is no limit, or it has to be found first"
         return self.limit
 
+    @property
+    def limit_word(self) -> str:
+        """The word before its limit."""
+        return next(hole.behind for hole in self.template.holes if self.limited_by in hole.fields)
+
     def with_limit(self: Stated, limit: int) -> Stated:
         """The same with another limit."""
         return cast(Stated, replace(cast(Any, self), **{self.limited_by: limit}))

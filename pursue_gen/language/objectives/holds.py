@@ -76,10 +76,8 @@ class PlaceHolds(Holds):
 
     @property
     def where(self) -> str:
-        places = [ref.shown for ref in self.places]
-        if len(places) == 1:
-            return f"at {places[0]}"
-        return f"at {listed(places)} and on the ways between them, taken together"
+        together = "" if len(self.places) == 1 else "or between "
+        return f"at {together}{listed(ref.shown for ref in self.places)}"
 
     def there(self, who: Who) -> Sequence[Atom]:
         ways = (OnWay(who, a, b, True) for a, b in combinations(self.places, 2))

@@ -112,7 +112,7 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
         lines.append(f"- on the robot's map at x = {poi.pose.x:g} m, y = {poi.pose.y:g} m")
     for spot in poi.spots:
         lines.append(f"- {spot.robot.name} stands at x = {spot.pose.x:g} m, y = {spot.pose.y:g} m")
-    return lines
+    return lines + _said(scenario, "POI", poi.name)
 
 
 def _event(scenario: Scenario, event: Event) -> List[str]:

@@ -174,7 +174,7 @@ def test_a_place_may_be_called_together() -> None:
         ("bot between |", ["a", "b"], []),
         ("bot between a and |", ["a", "b"], []),
         ("bot between a and b and |", ["bot", "man", "tired"], ["at_most", "not", "any", "no"]),
-        ("at_most 2 |", [], ["of", "robot", "robots", "agents"]),
+        ("at_most 2 |", [], ["of", "robots", "robot", "agents"]),
         ("at_most 2 robots |", [], ["at", "on_way", "between", "doing"]),
         ("at_most 2 of bot, |", ["bot", "man", "tired"], []),
         ("at_most 2 of bot, man at |", ["a", "b"], []),
@@ -248,7 +248,8 @@ def expanded(snippet: str) -> str:
 
 
 def test_statements_to_fill_in_are_well_formed() -> None:
-    groups = '\npoi "a"\npoi "b"\ngroup "rooms": a\ngroup "robots": a, b'
+    robots = "".join(f'\nagent "robot{number}" controllable location a' for number in (1, 2))
+    groups = '\npoi "a"\npoi "b"\ngroup "rooms": a' + robots
     needed = {"GROUP": '\npoi "a"', "FOR": groups}
     names = {kind: list(names) for kind, names in Draft.of(SMALL, "x.pur").declared.items()}
     for token, statement in STATEMENTS.items():
