@@ -60,6 +60,11 @@ def _of_each(atom: Any, names: List[str]) -> Tuple[Any, ...]:
     return tuple(replace(atom, who=Who(ref(name))) for name in names)
 
 
+def _at_one(who: Who) -> Tuple[At, ...]:
+    """That somebody is at one of two places."""
+    return tuple(At(who, ref(poi)) for poi in ("yard", "shop"))
+
+
 SEVERAL = st.lists(st.sampled_from(["anna", "bert", "cleo", "dora"]), min_size=1, unique=True)
 COUNTED = st.builds(_of_each, said_of(Who(None)), SEVERAL) | WHO.filter(lambda who: who.agent is None).flatmap(
     lambda who: st.tuples(said_of(who))
@@ -68,6 +73,7 @@ ATOMS: st.SearchStrategy[Condition] = (
     WHO.flatmap(said_of)
     | st.builds(Holds, st.just(ref("light")), st.booleans())
     | st.builds(AtMostOf, st.integers(0, 3), COUNTED)
+    | st.builds(AtMostOf, st.integers(0, 2), st.sampled_from([Who(None), Who(None, True)]).map(_at_one))
 )
 
 

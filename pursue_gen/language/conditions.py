@@ -110,7 +110,7 @@ Atom = Union[At, OnWay, Doing, Holds]
 
 @dataclass(frozen=True)
 class AtMostOf:
-    """`at_most most robots at place`: so many agents, or states, are as one of the parts says, and no more."""
+    """`at_most most robots at place, other`: of so many agents, or states, one of the parts is true, and of no more."""
 
     most: int
     parts: Tuple[Atom, ...]
@@ -172,7 +172,8 @@ def condition_text(condition: Condition) -> str:
         return _joined(condition, condition_text)
     if isinstance(condition, AtMostOf):
         some = some_text(condition.most, _subjects(condition))
-        return f"at_most {some} {predicate_text(condition.parts[0])}"
+        others = dict.fromkeys(atom.place.name for atom in condition.parts if isinstance(atom, At))
+        return f"at_most {some} {', '.join([predicate_text(condition.parts[0]), *list(others)[1:]])}"
     subject = condition.state.name if isinstance(condition, Holds) else who_text(condition.who)
     return f"{subject} {predicate_text(condition)}"
 

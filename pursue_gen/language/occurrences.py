@@ -148,21 +148,23 @@ def names_in_condition(tokens: Sequence[Token], start: int) -> Tuple[Dict[int, s
     # an event may stand there alone
     subjects = ("event", *SUBJECTS) if tokens[start - 1].type in ("AVOID", "IF") else SUBJECTS
     expected: Tuple[str, ...] = subjects
-    number, counts, between = start, False, False
+    more: Tuple[str, ...] = ()  # with which a list goes on
+    number, between = start, False
     while number < len(tokens):
         kind = tokens[number].type
         following = tokens[number + 1].type if number + 1 < len(tokens) else ""
         if len(expected) > 1 and kind in ("ANY", "NO") and following in ("ROBOT", "AGENT"):
             number, expected = number + 1, ()
         elif len(expected) > 1 and kind == "AT_MOST" and following == "NUMBER":
-            number, expected, counts = number + 1, (), True
+            number, expected, more = number + 1, (), SUBJECTS
         elif expected and kind in _NAMES:
             found[number] = expected[0] if len(expected) == 1 else _subject(tokens[number + 1 :], subjects[0])
             expected = ()
-        elif counts and kind in ("OF", "COMMA"):
-            expected = SUBJECTS
+        elif kind == "COMMA" or (kind == "OF" and more == SUBJECTS):
+            expected = more
         elif kind in _OBJECT:
-            counts, expected, between = False, (_OBJECT[kind],), kind == "BETWEEN"
+            expected, between = (_OBJECT[kind],), kind == "BETWEEN"
+            more = expected if kind == "AT" else ()
         elif kind == "AND" and between:
             expected, between = ("POI",), False
         elif kind in ("AND", "OR", "NOT", "LPAR"):

@@ -123,6 +123,9 @@ class TreeReader:
             return AtMostOf(self.count(number), tuple(self._holds(ref, value) for ref in self.refs(refs)))
         if kind == "few":
             most, everybody = self.some(children[0])
+            if children[1].data == "at_one":
+                places = [self.ref(child) for child in children[1].children]
+                return AtMostOf(most, tuple(At(who, place) for who in everybody for place in places))
             return AtMostOf(most, tuple(self._so(who, children[1]) for who in everybody))
         first = children[0].children[0]
         named = not isinstance(first, Token)

@@ -65,6 +65,11 @@ def condition(words: str) -> Condition:
             "at most 1 of anna and bert is doing clean",
         ),
         (
+            "at_most 1 of anna, bert at hall, shop",
+            AtMostOf(1, tuple(At(Who(ref(who)), poi) for who in ("anna", "bert") for poi in WAY)),
+            "at most 1 of anna and bert is at hall or at shop",
+        ),
+        (
             "at_most 1 of light, dark is_false",
             AtMostOf(1, (Holds(ref("light"), False), Holds(ref("dark"), False))),
             "at most 1 of light and dark is false",

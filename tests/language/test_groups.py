@@ -144,6 +144,7 @@ def test_robots_may_be_a_name() -> None:
         ),
         ("any of carts on_way from hall to door", "cart1 on_way from hall to door or cart2 on_way from hall to door"),
         ("at_most 1 of carts at door", "at_most 1 of cart1, cart2 at door"),
+        ("at_most 1 of carts at places", "at_most 1 of cart1, cart2 at hall, door"),
         ("at_most 1 of carts, guest on_way", "at_most 1 of cart1, cart2, guest on_way"),
         ("not at_most 2 robots at door", "not at_most 2 robots at door"),
         ("at_most 1 of wet of rooms is_true", "at_most 1 of wet_a, wet_b is_true"),
@@ -151,7 +152,8 @@ def test_robots_may_be_a_name() -> None:
     ],
 )
 def test_conditions_on_members(said: str, meant: str) -> None:
-    story = scenario('group "carts": cart1, cart2', 'group "rooms": a, b', f"objective: avoid {said}")
+    groups = ('group "carts": cart1, cart2', 'group "rooms": a, b', 'group "places": hall, door')
+    story = scenario(*groups, f"objective: avoid {said}")
     assert story.safety[0].conditions and condition_text(story.safety[0].conditions[0]) == meant
 
 

@@ -178,6 +178,7 @@ def test_a_place_may_be_called_together() -> None:
         ("at_most 2 robots |", [], ["at", "on_way", "between", "doing"]),
         ("at_most 2 of bot, |", ["bot", "man", "tired"], []),
         ("at_most 2 of bot, man at |", ["a", "b"], []),
+        ("at_most 2 of bot, man at a, |", ["a", "b"], []),
         ("bot at |", ["a", "b"], []),
         ("not bot doing |", ["work", "hand", "rest", "new"], []),
         ("bot at a and (|", ["bot", "man", "tired"], ["at_most", "not", "any", "no"]),
