@@ -332,6 +332,7 @@ def names(text: str) -> Dict[str, List[int]]:
 def test_editors_know_the_names_that_stand_there() -> None:
     assert names(HOTEL) == {
         "hall": [1, 6, 11], "room1": [2, 5], "room2": [3, 5], "room3": [4, 5], "bob": [11],
+        "rooms": [5, 6, 7, 8, 10, 11, 12], "r": [6, 6, 7, 7, 7, 8, 9, 9, 10, 10, 10, 10, 12, 12, 12],
     }  # fmt: skip
 
 
