@@ -24,7 +24,8 @@ _BEHIND_POSE = re.compile(r"\][ \t]*,?[ \t]*(\w*)\Z")
 _WORD_AFTER = re.compile(r"\w*")
 _SPECIAL = re.compile(r"[$},|\\]")
 _MOST_CHOICES = 50
-_EXAMPLES = {kind.declares: kind.form().split('"')[1] for kind in STATEMENTS.values() if kind.declares}
+_DECLARING = {GROUP: STATEMENTS["GROUP"], **{kind.declares: kind for kind in STATEMENTS.values() if kind.declares}}
+_EXAMPLES = {thing: kind.form().split('"')[1] for thing, kind in _DECLARING.items()}
 
 
 @dataclass(frozen=True)

@@ -136,6 +136,6 @@ def test_its_words_are_words_of_the_language(kind: Type[StatementKind]) -> None:
 @each_kind
 def test_its_forms_ask_for_things_that_there_are(kind: Type[StatementKind]) -> None:
     assert kind.forms and len({form.title for form in kind.forms}) == len(kind.forms)
-    things = {"POI", "event", "state", "agent"}
+    things = {"POI", "event", "state", "agent", "group"}
     for form in kind.forms:
         assert all(example or what in things for example, what in HOLE.findall(form.words)), form
