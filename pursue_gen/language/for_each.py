@@ -71,6 +71,12 @@ def variables_of(tokens: Sequence[Token]) -> FrozenSet[str]:
     return frozenset(str(token) for before, token in pairs if token.type == "WORD" and before.type != "IN")
 
 
+def behind_of(tokens: Sequence[Token]) -> bool:
+    """True where the last word is the `of` behind a name or a quantifier, which a name has to follow."""
+    kinds = [token.type for token in tokens[-2:]]
+    return kinds[1:] == ["OF"] and kinds[0] in ("NAME", *NAMES)
+
+
 def around_of(tokens: Sequence[Token]) -> Iterator[Token]:
     """The words before and behind each `of`."""
     for before, token, behind in zip(tokens, tokens[1:], tokens[2:]):

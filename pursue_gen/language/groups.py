@@ -23,11 +23,12 @@ Written = Tuple[Tokens, str]
 
 
 class Expansion(NamedTuple):
-    """The statements of a text, those for each member of a group written out; `groups`: name → members. `whole` is
-    False where statements are missing."""
+    """The statements of a text, those for each member of a group written out; `groups`: name → members; `robots`: those
+    of `each robot`. `whole` is False where statements are missing."""
 
     statements: Tuple[Written, ...]
     groups: Mapping[str, Tokens]
+    robots: Tokens = ()
     findings: Tuple[Diagnostic, ...] = ()
     whole: bool = True
 
@@ -82,7 +83,8 @@ class _Groups:
                     self._groups[ROBOTS] = self._groups[""]
         statements = tuple(one for some in found for one in some)
         declared = {name: members for name, members in self._groups.items() if name in self._lines}
-        return Expansion(statements, declared, tuple(self._findings), not self._broken and not self._findings)
+        whole = not self._broken and not self._findings
+        return Expansion(statements, declared, self._groups[""], tuple(self._findings), whole)
 
     def _tried(self, tokens: Tokens) -> List[Written]:
         """What comes of a statement; nothing after a complaint. One that is not well formed stays as it is."""

@@ -124,8 +124,12 @@ class Words:
 
     def _at_any(self, tokens: Tokens, index: int, members: Mapping[str, Token], found: List[Token]) -> int:
         """Writes `guest at any of rooms`, of which `guest` is found, as `(guest at room1 or guest at room2)`; the index
-        behind it."""
+        behind it. Behind `at_most 1 of carts` it is written `at room1, room2`."""
         held, end = self._held(tokens, index, members)
+        if _are_counted(found) and tokens[index].type == "AT":
+            names, end = self._names_at(tokens, index + 3, members)
+            found += [tokens[index], *_listed(names, str(tokens[end - 1]))]
+            return end
         whom = [token.type for token in found[-2:]]
         length = 2 if whom[:1] in (["ANY"], ["NO"]) and whom[1:] in (["ROBOT"], ["AGENT"]) else 1
         subject = tuple(found[-length:])
@@ -201,6 +205,14 @@ def _quantifies(tokens: Tokens, index: int) -> bool:
     """True where `any of carts` stands, or so."""
     kinds = [token.type for token in tokens[index : index + 3]]
     return kinds[:1] != [] and kinds[0] in _QUANTIFIERS and kinds[1:2] == ["OF"] and kinds[-1] in NAMES - {"OF"}
+
+
+def _are_counted(found: Sequence[Token]) -> bool:
+    """True behind `at_most 2 robots` and `at_most 2 of cart1, cart2`."""
+    kinds = [token.type for token in found]
+    while kinds[-2:-1] == ["COMMA"]:
+        kinds = kinds[:-2]
+    return kinds[-3:-1] == ["NUMBER", "OF"] or kinds[-2:-1] == ["NUMBER"]
 
 
 def _each_held(subject: Tokens, held: Sequence[Tokens]) -> Tokens:

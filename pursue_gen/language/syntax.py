@@ -5,15 +5,15 @@ from __future__ import annotations
 import os
 import re
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Sequence, Set, Tuple
+from typing import Any, Dict, FrozenSet, Iterable, List, Mapping, Optional, Sequence, Set, Tuple
 
 from lark import Lark, Token, UnexpectedToken
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
-from pursue_gen.language.for_each import body_of, with_groups, without_owners
+from pursue_gen.language.for_each import NAMES, behind_of, body_of, with_groups, without_owners
 from pursue_gen.language.groups import check_groups, written_out
 from pursue_gen.language.kinds import BY_RULE, DECLARED, KEYWORDS, MAY_BE_NAMES, STATEMENTS, TAIL
 from pursue_gen.language.members import no_list
@@ -108,14 +108,15 @@ class Syntax:
     order.
 
     `lost` are the names in the others: they may have been declared there. `whole` is False where statements are
-    missing, as a group or what is for each of it is not right; `groups`: some may have been written out.
+    missing, as a group or what is for each of it is not right; `groups`: name → members, "" those of `each robot`; none
+    where nothing is said of groups.
     """
 
     trees: Tuple[Any, ...]
     findings: Tuple[Diagnostic, ...]
     lost: FrozenSet[str] = frozenset()
     whole: bool = True
-    groups: bool = False
+    groups: Mapping[str, Tuple[str, ...]] = field(default_factory=dict)
 
 
 @lru_cache(maxsize=None)
@@ -180,8 +181,7 @@ def statements_of(tokens: Iterable[Token]) -> Tuple[Statement, ...]:
 def syntax_of(statements: Sequence[Statement], text: str, file: str) -> Syntax:
     """What the statements of a text are."""
     reader = _Reader(file)
-    parts = [statement.tokens for statement in statements]
-    expansion = written_out(parts, file, MOST_WORDS)
+    expansion = written_out([statement.tokens for statement in statements], file, MOST_WORDS)
     for number, (tokens, member) in enumerate(expansion.statements):
         reader.take(tokens, member)
         if len(reader.findings) >= MOST_FINDINGS and number + 1 < len(expansion.statements):
@@ -191,7 +191,9 @@ def syntax_of(statements: Sequence[Statement], text: str, file: str) -> Syntax:
     findings = tuple(of_a_comment(finding, lines) for finding in reader.findings)
     of_groups = expansion.findings or tuple(check_groups(expansion, reader.lost, file))
     whole = expansion.whole and not of_groups
-    return Syntax(tuple(reader.trees), (*findings, *of_groups), frozenset(reader.lost), whole, with_groups(parts))
+    groups = {name: tuple(map(str, members)) for name, members in {"": expansion.robots, **expansion.groups}.items()}
+    groups = groups if with_groups(part.tokens for part in statements) else {}
+    return Syntax(tuple(reader.trees), (*findings, *of_groups), frozenset(reader.lost), whole, groups)
 
 
 def too_large(file: str) -> Diagnostic:
@@ -297,6 +299,8 @@ def accepts(tokens: Sequence[Token]) -> FrozenSet[str]:
         return frozenset(STATEMENTS)
     if tokens[0].type not in (*STATEMENTS, TAIL):
         return frozenset()
+    if behind_of(tokens):
+        return NAMES
     try:
         return frozenset(_parser_after(without_owners(tokens)).accepts())
     except UnexpectedToken:

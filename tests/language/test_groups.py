@@ -144,6 +144,8 @@ def test_robots_may_be_a_name() -> None:
         ),
         ("any of carts on_way from hall to door", "cart1 on_way from hall to door or cart2 on_way from hall to door"),
         ("at_most 1 of carts at door", "at_most 1 of cart1, cart2 at door"),
+        ("at_most 1 of carts at any of places", "at_most 1 of cart1, cart2 at hall, door"),
+        ("at_most 2 robots at any of places", "at_most 2 robots at hall, door"),
         ("at_most 1 of carts at places", "at_most 1 of cart1, cart2 at hall, door"),
         ("at_most 1 of carts, guest on_way", "at_most 1 of cart1, cart2, guest on_way"),
         ("not at_most 2 robots at door", "not at_most 2 robots at door"),
@@ -343,6 +345,7 @@ def names(text: str) -> Dict[str, List[int]]:
 def test_editors_know_the_names_that_stand_there() -> None:
     assert names(HOTEL) == {
         "hall": [1, 6, 11], "room1": [2, 5], "room2": [3, 5], "room3": [4, 5], "bob": [11],
+        "rooms": [5, 6, 7, 8, 10, 11, 12], "r": [6, 6, 7, 7, 7, 8, 9, 9, 10, 10, 10, 10, 12, 12, 12],
     }  # fmt: skip
 
 

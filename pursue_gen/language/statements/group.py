@@ -59,6 +59,6 @@ class ForEach(_WrittenOut):
         "or any other statement; for each two a, b in rooms: every pair; for each robot r, for each two robots a, b"
     )
     forms: ClassVar[Tuple[Form, ...]] = (
-        Form("an event for each of a group", 'for each {=r} in {=rooms}: event "{=call}" of {=r} location {=r}'),
+        Form("an event for each of a group", 'for each {=r} in {group}: event "{=call}" of {=r} location {=r}'),
         Form("an objective for each two robots", "for each two robots {=x}, {=y}: objective: {=x} never_with {=y}"),
     )

@@ -6,13 +6,15 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Callable, Dict, List, Optional, Tuple
 
-from pursue_gen.diagnostics import units
+from pursue_gen.diagnostics import listed, units
 from pursue_gen.language.batteries import levels
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.draft import Draft
+from pursue_gen.language.for_each import ranges_of
 from pursue_gen.language.kinds import KEYWORDS, MEANINGS, STATEMENTS
 from pursue_gen.language.labels import in_markdown, markdown
 from pursue_gen.language.numbers import Number, exact, read_number
+from pursue_gen.language.occurrences import GROUP, MEMBERS, VARIABLE, Occurrence
 from pursue_gen.language.scenario import (
     Agent,
     Both,
@@ -34,6 +36,7 @@ from pursue_gen.language.tokens import start_of
 from pursue_gen.language.tree_reader import MOST
 
 _MOST_LINES = 12
+_PLURALS = {"POI": "places", "agent": "agents", "event": "events", "state": "states"}
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,7 @@ def hover(document: Draft, offset: int) -> Optional[Hover]:
     """The explanation of what stands at an offset; None where there is none."""
     occurrence = document.occurrence_at(offset)
     if occurrence is not None:
-        text = _about(document.scenario, occurrence.kind, occurrence.name)
+        text = _about_members(document, occurrence) or _about(document.scenario, occurrence.kind, occurrence.name)
         if text is None:
             text = f"There is no {occurrence.kind} `{occurrence.name}`."
         return Hover(text, occurrence.start, occurrence.end)
@@ -71,6 +74,26 @@ def hover(document: Draft, offset: int) -> Optional[Hover]:
 def lasts(window: Window) -> str:
     """How long something takes."""
     return f"{window[0]} to {window[1]} units of time"
+
+
+def _about_members(document: Draft, here: Occurrence) -> str:
+    """What a group, or a variable that stands for each of one, stands for; "" of other names."""
+    groups, kinds = document.syntax.groups, document.declared
+    if here.kind == GROUP:
+        members = groups.get(here.name, ())
+        kind = next((_PLURALS[kind] for kind in MEMBERS if members[:1] and members[0] in kinds[kind]), "things")
+        return f"**{here.name}**: a group of {kind}\n\n- {listed(members) if members else 'nothing is in it'}"
+    if here.kind != VARIABLE:
+        return ""
+    ranges = ranges_of(document.statements[here.statement].tokens)
+    found = next((one for one in ranges if here.name in one.variables), None)
+    if found is None:
+        return f"**{here.name}**: a variable"
+    members = groups.get("" if found.robots else str(found.group), ())
+    others = [name for name in found.variables if name != here.name]
+    group = "robots" if found.robots else found.group
+    words = f"each of {group} in turn" if not others else f"one of {group}, beside {others[0]}: every pair once"
+    return f"**{here.name}**: {words}\n\n- {listed(members) if members else 'nothing is in it'}"
 
 
 def _about(scenario: Scenario, kind: str, name: str) -> Optional[str]:
