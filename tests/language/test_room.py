@@ -6,6 +6,7 @@ import pytest
 
 from pursue_gen.language import check, parse
 from pursue_gen.language.formatter import format_text
+from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import NeverWith, PlaceHolds, WayHolds
 from pursue_gen.language.writer import scenario_text
 from pursue_gen.workspace.spots import spots_in_one
@@ -70,6 +71,13 @@ objective: robots never_with place1
     as_agent = 'poi "a" agent "way" location a agent "place" location a objective: place never_with way'
     (safety,) = parse(as_agent, "x.pur").safety
     assert isinstance(safety, NeverWith)
+
+
+def test_a_misspelled_statement_below_is_one_of_its_own() -> None:
+    for some in ("1 robot", "2 robots", "2 agents"):
+        text = FLOOR + f"objective: place shelf holds {some}\nconect end and mouth distance 1\n"
+        (finding,) = read(text, "x").diagnostics
+        assert (finding.code, finding.span and finding.span.line) == ("PML011", 12) and "mean connect?" in finding.hint
 
 
 def test_very_many_ways_in_which_it_is_full_are_refused() -> None:
