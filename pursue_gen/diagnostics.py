@@ -122,7 +122,7 @@ def in_order(diagnostics: Iterable[Diagnostic]) -> Tuple[Diagnostic, ...]:
     """The diagnostics by file, line and column; those without a place last.
 
     What is wrong with a statement that was written for each member of a group is said once where it is the same for
-    several of them, else with the member.
+    several of them, else with the member, and that the line is for each.
     """
 
     def key(diagnostic: Diagnostic) -> Tuple[bool, str, int, int]:
@@ -134,8 +134,13 @@ def in_order(diagnostics: Iterable[Diagnostic]) -> Tuple[Diagnostic, ...]:
         member = diagnostic.span.member if diagnostic.span is not None else ""
         found.setdefault(diagnostic.at_member(""), []).append(member)
     alone = ((one, some[0] if len(some) == 1 else "") for one, some in found.items())
-    said = (replace(one, message=f"{one.message} ({member})") if member else one for one, member in alone)
+    said = (_of_member(one, member) if member else one for one, member in alone)
     return tuple(sorted(said, key=key))
+
+
+def _of_member(diagnostic: Diagnostic, member: str) -> Diagnostic:
+    hint = f"{diagnostic.hint}; the line is for each of its group" if diagnostic.hint else ""
+    return replace(diagnostic, message=f"{diagnostic.message} ({member})", hint=hint)
 
 
 def render(diagnostic: Diagnostic, source: Optional[str] = None) -> str:

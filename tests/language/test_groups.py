@@ -277,6 +277,7 @@ def test_else_the_member_is_named() -> None:
                    'agent "bob" controllable mobile 1 location hall can_do look_room1, look_room2')  # fmt: skip
     (only,) = found(text)
     assert only[1] == 9 and only[3].endswith("(r is room3)") and "look_room3" in only[3]
+    assert check_reading(read(text, "story.pur"))[0].hint.endswith("; the line is for each of its group")
 
 
 def test_of_alone_is_explained() -> None:

@@ -66,7 +66,7 @@ def hover(document: Draft, offset: int) -> Optional[Hover]:
         return Hover(f"**{token}**: {MEANINGS[token.type]}{form}", start, start + len(token))
     number = read_number(token) if token.type == "NUMBER" else None
     if number is not None and part is not None and number <= MOST:
-        text = _number(document.scenario, part, start, number)
+        text = _number(document.scenario, part.body, start, number)
         return Hover(text, start, start + len(token)) if text else None
     return None
 

@@ -107,6 +107,9 @@ def test_a_new_name_keeps_the_meaning_or_is_refused(old: str, new: str, data: st
         ("each ", "**r**: each of rooms in turn\n\n- room1 and room2"),
         ("connect hall and ", "**r**: each of rooms in turn\n\n- room1 and room2"),
         ("two robots ", "**a**: one of robots, beside b: every pair once\n\n- bob and ida"),
+        ("distance ", "A way of 3 units of distance"),
+        ("duration ", "It takes 2 to 3 units of time"),
+        ("within ", "The answer must have come 60 units of time later at most"),
         ("any of rob", "**robots**: All agents that are controllable and not human"),
     ],
 )
