@@ -37,6 +37,16 @@ class Span:
     end_column: int
     member: str = ""
 
+    @property
+    def written(self) -> Span:
+        """The statement as it is written, for all members."""
+        return replace(self, member="")
+
+    @property
+    def in_words(self) -> str:
+        """`line 3`, with the member that is meant."""
+        return lines_in_words((self,))
+
 
 NOWHERE = Span("", 1, 1, 1, 1)
 """The place of what stands in no text: of a scenario that is built in Python."""
@@ -98,11 +108,21 @@ def units(amount: object) -> str:
     return counted(amount, "unit")
 
 
+def lines_in_words(spans: Iterable[Span]) -> str:
+    """`lines 3 and 21 (r is room1; r is room2)`: the lines of these places, each once, with the members that are
+    meant."""
+    members: Dict[int, List[str]] = {}
+    for span in dict.fromkeys(spans):
+        members.setdefault(span.line, []).append(span.member)
+    some = [f"{line} ({'; '.join(found)})" if any(found) else str(line) for line, found in members.items()]
+    return f"line{'s' * (len(some) > 1)} {listed(some)}"
+
+
 def in_order(diagnostics: Iterable[Diagnostic]) -> Tuple[Diagnostic, ...]:
     """The diagnostics by file, line and column; those without a place last.
 
     What is wrong with a statement that was written for each member of a group is said once where it is the same for
-    several of them, else with the member.
+    several of them, else with the member, and that the line is for each.
     """
 
     def key(diagnostic: Diagnostic) -> Tuple[bool, str, int, int]:
@@ -114,8 +134,13 @@ def in_order(diagnostics: Iterable[Diagnostic]) -> Tuple[Diagnostic, ...]:
         member = diagnostic.span.member if diagnostic.span is not None else ""
         found.setdefault(diagnostic.at_member(""), []).append(member)
     alone = ((one, some[0] if len(some) == 1 else "") for one, some in found.items())
-    said = (replace(one, message=f"{one.message} ({member})") if member else one for one, member in alone)
+    said = (_of_member(one, member) if member else one for one, member in alone)
     return tuple(sorted(said, key=key))
+
+
+def _of_member(diagnostic: Diagnostic, member: str) -> Diagnostic:
+    hint = f"{diagnostic.hint}; the line is for each of its group" if diagnostic.hint else ""
+    return replace(diagnostic, message=f"{diagnostic.message} ({member})", hint=hint)
 
 
 def render(diagnostic: Diagnostic, source: Optional[str] = None) -> str:

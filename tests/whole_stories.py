@@ -9,12 +9,28 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError, Severity
 from pursue_gen.language import check, parse
-from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, Holds, Not, OnWay, Who, condition_text
+from pursue_gen.language.conditions import (
+    AllOf,
+    AnyOf,
+    At,
+    AtMostOf,
+    Condition,
+    Doing,
+    Holds,
+    Not,
+    OnWay,
+    Who,
+    condition_text,
+)
 from pursue_gen.language.scenario import Scenario
 from tests.conditions import ref
 
 EVENTS = ("load", "drop", "ride", "wave", "sing")
 """What robots and the person may do; the guest calls."""
+
+
+ROOM = ("0 robots", "1 robot", "1 agent", "2 agents", "1 of bot1, guest")
+"""How many a place, or a way, may hold."""
 
 
 def conditions(places: Sequence[str], agents: Sequence[str]) -> st.SearchStrategy[str]:
@@ -23,6 +39,8 @@ def conditions(places: Sequence[str], agents: Sequence[str]) -> st.SearchStrateg
     atoms: st.SearchStrategy[Condition] = (
         st.builds(At, who, st.sampled_from([ref(place) for place in places]))
         | st.builds(OnWay, who)
+        | st.builds(lambda one, either: OnWay(one, ref("a"), ref("b"), either), who, st.booleans())
+        | st.builds(AtMostOf, st.integers(0, 1), st.just((At(Who(None), ref("a")),)) | st.just((OnWay(Who(None)),)))
         | st.builds(Doing, st.just(Who(None)), st.just(ref("load")))
         | st.builds(Holds, st.just(ref("open")), st.booleans())
     )
@@ -141,6 +159,8 @@ def _objectives(draw: st.DrawFn, small: bool, condition: st.SearchStrategy[str],
         "follows": f"objective: if call then {draw(condition)} within {draw(st.integers(5, 30))}",
         "condition": f"objective: avoid {draw(condition)}",
         "always": f"objective: always {draw(condition)}",
+        "place": f"objective: place {draw(st.sampled_from((where, 'a, b')))} holds {draw(st.sampled_from(ROOM))}",
+        "way": f"objective: way a to b holds {draw(st.sampled_from(ROOM))}",
         "with": f"objective: bot1 never_with guest{draw(st.sampled_from(('', f' at {where}')))}",
         "answer": f"objective: if {draw(condition)} then {draw(condition)} within {draw(st.integers(5, 30))}",
         "rounds": f"objective: patrol b, a in order every {draw(st.integers(12, 40))} by bot1",

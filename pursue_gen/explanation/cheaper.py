@@ -9,7 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Iterator, Set, Tuple
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.decided import decided_within
+from pursue_gen.language.document import statement_text
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.statements.agent import Agent
@@ -22,8 +24,8 @@ _SHOWN = 3
 
 @dataclass(frozen=True)
 class Form:
-    """What may stand in that line in place of what does, `text`, and what that changes; `states`: the discrete states
-    of the scenario's game with it, which is won."""
+    """What may stand in that line in place of what does, `text`, for all members of a group where it is for each of
+    one, and what that changes; `states`: the discrete states of the scenario's game with it, which is won."""
 
     line: int
     text: str
@@ -57,22 +59,28 @@ def _forms(scenario: Scenario) -> Iterator[Tuple[Form, Scenario]]:
 def _named(scenario: Scenario, robot: Agent) -> Iterator[Tuple[Form, Scenario]]:
     """This robot in place of any robot, in one statement: who keeps that, keeps the promise as it stands."""
     ref = Ref(robot.name, robot.span)
-    for span in dict.fromkeys(each.span for each in scenario.safety):
-        statement = [each for each in scenario.safety if each.span == span]
+    for span in dict.fromkeys(each.span.written for each in scenario.safety):
+        statement = [each for each in scenario.safety if each.span.written == span]
         named = [each.kept_by(ref) for each in statement]
         if named != statement:
-            safety = tuple(each.kept_by(ref) if each.span == span else each for each in scenario.safety)
+            safety = tuple(each.kept_by(ref) if each.span.written == span else each for each in scenario.safety)
             meaning = "other robots do not count there then, but the promise is kept as it stands, too"
-            yield Form(span.line, named[0].statement(named).text, meaning), replace(scenario, safety=safety)
+            text = named[0].statement(named).text
+            if statement[0].span.member:
+                text = statement_text(scenario.text, span).replace("any robot", robot.name)
+            yield Form(span.line, text, meaning), replace(scenario, safety=safety)
 
 
 def _once(scenario: Scenario) -> Iterator[Tuple[Form, Scenario]]:
     """An event that only people do, and that is to be answered, happens once at most."""
     calls = (each.breaks.begins for each in scenario.safety)
     wanted = {call.name for call in calls if isinstance(call, Ref)}
-    for event in scenario.events:
-        controlled = any(agent.controllable for agent in scenario.doers(event.name))
-        if event.name not in wanted or event.at_most is not None or controlled:
-            continue
-        changed, meaning = replace(event, at_most=1), f"only the first {event.name} is answered then"
-        yield Form(event.span.line, "at_most 1 times", meaning), scenario.with_instead(event, changed)
+    for span in dict.fromkeys(event.span.written for event in scenario.events):
+        events = [event for event in scenario.events if event.span.written == span]
+        doers = [agent for event in events for agent in scenario.doers(event.name)]
+        asked = [event.name for event in events if event.name in wanted and event.at_most is None]
+        if asked and not any(agent.controllable for agent in doers):
+            changed = tuple(replace(each, at_most=1) if each in events else each for each in scenario.events)
+            firsts = listed(f"the first {name}" for name in asked)
+            meaning = f"only {firsts} {'are' if len(asked) > 1 else 'is'} answered then"
+            yield Form(span.line, "at_most 1 times", meaning), replace(scenario, events=changed)

@@ -17,6 +17,7 @@ from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.ablations import Part, without_each
 from pursue_gen.explanation.cheaper import Form, cheaper
 from pursue_gen.explanation.decided import Decided, decided, texts
+from pursue_gen.explanation.decided import as_json as decided_json
 from pursue_gen.explanation.longer import Longer, longer
 from pursue_gen.explanation.part import rules_for
 from pursue_gen.language.scenario import Scenario
@@ -106,8 +107,8 @@ def costs(
                 return Costs((cost,), ())
         more = longer(scenario, rules, Limits(_LONGER * seconds, memory), progress)
         objectives = decided(scenario, rules, budget.split(_OBJECTIVES))
-        if objectives is not None and objectives.next_line:
-            for form in cheaper(scenario, rules, budget.split(_FORMS), objectives.next_line):
+        if objectives is not None and objectives.following:
+            for form in cheaper(scenario, rules, budget.split(_FORMS), objectives.following.line):
                 forms.append(form)  # at once: a limit may end the search
         found, undecided = _alone(scenario, rules, budget.split(_ALONE), objectives is None)
         if not found and objectives is None:
@@ -141,7 +142,7 @@ def _left_out(found: Costs) -> str:
 
 def as_json(found: Costs) -> Dict[str, Any]:
     """The costs as a JSON object."""
-    objectives = {} if found.objectives is None else {"objectives": asdict(found.objectives)}
+    objectives = {} if found.objectives is None else {"objectives": decided_json(found.objectives)}
     forms = {"cheaper": [asdict(form) for form in found.cheaper]} if found.cheaper else {}
     more = {"longer": [{**asdict(each), "asked": float(each.asked)} for each in found.longer]} if found.longer else {}
     decided_ones = [asdict(cost) for cost in found.decided]

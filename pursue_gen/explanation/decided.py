@@ -7,9 +7,9 @@ So a number of states stands beside each statement: what it multiplies the other
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, Iterator, List, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import Span, listed
+from pursue_gen.diagnostics import Span, lines_in_words
 from pursue_gen.explanation.part import part_of_scenario, rules_for
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.outcomes import LimitHit
@@ -36,23 +36,23 @@ _Statement = Tuple[StatedObjective, ...]
 
 @dataclass(frozen=True)
 class Known:
-    """What is known of an objective, written as `text` in that line: whether it is won (None: not decided), and how
+    """What is known of an objective, written as `text` at that place: whether it is won (None: not decided), and how
     many discrete states its own game has (0: not known)."""
 
     text: str
-    line: int
+    span: Span
     won: Optional[bool]
     states: int
 
 
 @dataclass(frozen=True)
 class Decided:
-    """Each objective alone; the lines of those that are won together, and of the first one that is not decided together
-    with them (0: none); `lost`: that one is lost with them."""
+    """Each objective alone; the places of those that are won together, and of the first one that is not decided
+    together with them (None: there is none); `lost`: that one is lost with them."""
 
     alone: Tuple[Known, ...]
-    together: Tuple[int, ...] = ()
-    next_line: int = 0
+    together: Tuple[Span, ...] = ()
+    following: Optional[Span] = None
     lost: bool = False
 
 
@@ -65,19 +65,21 @@ def decided(scenario: Scenario, rules: Rules, budget: Budget) -> Optional[Decide
     some = budget.split(_ALONE)
     for number, (text, statement) in enumerate(statements):
         won, states = decided_within(scenario, statement, rules, some, 1 / (len(statements) - number))
-        found.append((Known(text, statement[0].span.line, won, states), statement))
+        found.append((Known(text, statement[0].span, won, states), statement))
     alone = tuple(known for known, _ in found)
     easy = sorted((pair for pair in found if pair[0].won), key=lambda pair: pair[0].states)
-    kept, failed, lost = easy[:1], 0, False
+    kept, lost = easy[:1], False
+    failed: Optional[Span] = None
     for known, statement in easy[1:]:
         objectives = [each for _, other in kept for each in other]
         won, _ = decided_within(scenario, [*objectives, *statement], rules, budget, _SET)
         if won:
             kept.append((known, statement))
         elif not failed:
-            failed, lost = known.line, won is False
-    failed = failed or next((known.line for known in alone if known.won is None), 0)
-    return Decided(alone, tuple(sorted(known.line for known, _ in kept)), failed, lost)
+            failed, lost = known.span, won is False
+    failed = failed or next((known.span for known in alone if known.won is None), None)
+    together = sorted((known.span for known in alone if known in dict(kept)), key=lambda span: (span.line, span.column))
+    return Decided(alone, tuple(together), failed, lost)
 
 
 def decided_within(
@@ -92,13 +94,25 @@ def decided_within(
 
 def texts(found: Decided) -> List[str]:
     """What is decided, a line of text for each objective, and one for those that are won together."""
-    lines = [f"line {one.line}, {one.text}: {_outcome(one)}" for one in found.alone]
-    some = f"line{'s' if len(found.together) > 1 else ''} {listed(map(str, found.together))}" if found.together else ""
+    lines = [f"line {one.span.line}, {one.text}: {_outcome(one)}" for one in found.alone]
+    others = {one.span.written for one in found.alone if one.span not in found.together}
+    places = [span if span.written in others else span.written for span in found.together]
+    some = lines_in_words(places) if places else ""
     together = [f"Won together: {some}."] if len(found.together) > 1 else []
-    if some and found.next_line:
+    if some and found.following:
         verdict = "Lost" if found.lost else "Not decided"
-        together.append(f"{verdict} together with {'these' if together else some}: line {found.next_line}.")
+        together.append(f"{verdict} together with {'these' if together else some}: {found.following.in_words}.")
     return [*lines, *([" ".join(together)] if together else [])]
+
+
+def as_json(found: Decided) -> Dict[str, Any]:
+    """What is decided as a JSON object: of places the lines, and of one alone the member of a group that is meant."""
+    alone = [{"text": k.text, "line": k.span.line, "won": k.won, "states": k.states} for k in found.alone]
+    for one, known in zip(alone, found.alone):
+        one.update({"member": known.span.member} if known.span.member else {})
+    following = found.following.line if found.following else 0
+    lines = list(dict.fromkeys(span.line for span in found.together))
+    return {"alone": alone, "together": lines, "next_line": following, "lost": found.lost}
 
 
 def _outcome(one: Known) -> str:

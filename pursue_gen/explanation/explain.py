@@ -104,7 +104,7 @@ def explain(
         statements = statements_of(scenario, part)
         some = with_one_robot(part_of_scenario(scenario, statements, rules), rules)
         one = _explained(some, rules_for(some, rules), budget.split(1 / (len(parts) - k)), len(part) > 1, part=True)
-        found.append(replace(one, about=tuple(dict.fromkeys(map(quoted, statements)))))
+        found.append(replace(one, about=quoted(statements)))
     return replace(found[0], others=tuple(found[1:]))
 
 
@@ -248,7 +248,7 @@ def as_json(explanation: Explanation) -> Dict[str, Any]:
 
 
 def _change(change: Change) -> str:
-    place = f"line {change.span.line}" if change.span else ""
+    place = change.span.in_words if change.span else ""
     limit = f"{change.next_lost} is not enough" if change.next_lost != change.before else ""
     if not change.least:
         limit += "; what lies between was not decided" if limit else "less was not decided"

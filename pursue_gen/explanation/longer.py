@@ -12,6 +12,8 @@ from functools import partial
 from math import ceil
 from typing import Dict, Iterator, Mapping, Optional, Tuple
 
+from pursue_gen.diagnostics import Span
+from pursue_gen.language.document import Document, statement_text, written
 from pursue_gen.language.numbers import Number, decimal_text
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.outcomes import LimitHit, Lost, NotProven
@@ -78,13 +80,14 @@ def _times(factor: int, each: StatedObjective) -> StatedObjective:
 
 
 def _enough(scenario: Scenario, more: Scenario, late: Mapping[int, Number]) -> Dict[int, Number]:
-    """The limit that is enough for each promise, by its identity: how late it is kept at worst, else that of `more`."""
-    pairs = ((asked, given, given.limit) for asked, given in zip(scenario.objectives, more.objectives))
-    return {
-        id(asked): max(asked.known_limit, min(ceil(late.get(id(given), limit)), limit))
-        for asked, given, limit in pairs
-        if limit is not None
-    }
+    """The limit that is enough for each promise, by its identity: how late it is kept at worst, else that of `more`;
+    the largest one of those that are written in one statement."""
+    largest: Dict[Span, Number] = {}
+    for asked, given in zip(scenario.objectives, more.objectives):
+        if asked.limit and given.limit:
+            needed = max(asked.limit, min(ceil(late.get(id(given), given.limit)), given.limit))
+            largest[asked.span.written] = max(needed, largest.get(asked.span.written, 0))
+    return {id(each): largest[each.span.written] for each in scenario.objectives if each.limit}
 
 
 def _within(enough: Mapping[int, Number], each: StatedObjective) -> StatedObjective:
@@ -93,9 +96,19 @@ def _within(enough: Mapping[int, Number], each: StatedObjective) -> StatedObject
 
 def _statements(scenario: Scenario, enough: Mapping[int, Number]) -> Iterator[Longer]:
     """The statements of promises that need more than they have; all promises of one have the same limit."""
-    for span in dict.fromkeys(each.span for each in scenario.objectives):
-        statement = [each for each in scenario.objectives if each.span == span and each.limit]
-        needed = max((enough[id(each)] for each in statement), default=0)
+    for span in dict.fromkeys(each.span.written for each in scenario.objectives):
+        statement = [each for each in scenario.objectives if each.span.written == span and each.limit]
+        needed = ceil(max((enough[id(each)] for each in statement), default=0))
         if statement and needed > statement[0].known_limit:
-            changed = [each.with_limit(ceil(needed)) for each in statement]
-            yield Longer(span.line, changed[0].statement(changed).text, statement[0].known_limit)
+            changed = [each.with_limit(needed) for each in statement]
+            text = changed[0].statement(changed).text
+            if statement[0].span.member:
+                text = _written_with(statement[0], needed, scenario.text)
+            yield Longer(span.line, text, statement[0].known_limit)
+
+
+def _written_with(objective: StatedObjective, limit: int, text: str) -> str:
+    """The statement of an objective as it stands in the text, for each of a group, with another limit."""
+    document = Document(statement_text(text, objective.span.written))
+    pair = document.statements[0].pair(objective.limit_word.upper())
+    return document.changed(written(pair[1], str(limit))).text if pair else document.text

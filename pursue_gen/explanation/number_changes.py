@@ -7,7 +7,9 @@ from math import ceil, floor
 from typing import Any, Callable, Iterator, Optional, Sequence, Union
 
 from pursue_gen.diagnostics import Span
+from pursue_gen.language.clauses import Domains
 from pursue_gen.language.numbers import Number, whole_above, whole_below
+from pursue_gen.language.objectives.holds import Holds
 from pursue_gen.language.scenario import Battery, Event, Scenario, Travel
 from pursue_gen.language.statements.event import MOST_TIMES
 from pursue_gen.solving.rules import Rules
@@ -101,6 +103,17 @@ def battery_changes(scenario: Scenario, battery: Battery) -> Iterator[Repair]:
             "recharges", name, f"a battery of {name} that is recharged faster", rate, whole_above(rate, 4 * rate + 1),
             lambda k: scenario.with_instead(battery, replace(battery, recharges=k)),
             lambda k: f"a battery of {name} that recharges {k} instead of {rate} per unit", span,
+        )  # fmt: skip
+
+
+def room_changes(scenario: Scenario, holds: Holds) -> Iterator[Repair]:
+    """A place or a way that holds more."""
+    values = range(holds.most + 1, len(Domains(scenario).counted(holds.kept_if)) + 1)
+    if values:
+        yield Repair(
+            "room", holds.where, f"more room {holds.where}", holds.most, values,
+            lambda k: scenario.with_instead(holds, holds.with_room(k)),
+            lambda k: f"room for {holds.with_room(k).some} {holds.where} instead of {holds.some}", holds.span,
         )  # fmt: skip
 
 

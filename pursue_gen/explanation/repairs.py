@@ -8,6 +8,7 @@ from typing import Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import Span, listed
 from pursue_gen.explanation.ablations import without_conditions
+from pursue_gen.explanation.as_written import as_written
 from pursue_gen.explanation.assumption_changes import assumption_changes
 from pursue_gen.explanation.number_changes import (
     SLOWER,
@@ -15,9 +16,11 @@ from pursue_gen.explanation.number_changes import (
     battery_changes,
     count_changes,
     event_changes,
+    room_changes,
     travel_changes,
 )
 from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole_below
+from pursue_gen.language.objectives.holds import Holds
 from pursue_gen.language.scenario import Agent, Connection, Event, Reach, Scenario, StatedObjective
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
 from pursue_gen.tga.counts import counted
@@ -28,6 +31,10 @@ _FINEST = 1000
 
 def repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
     """All that can be changed, in the order in which they are worth knowing (and the quick ones first)."""
+    yield from as_written(scenario, _repairs(scenario, rules))
+
+
+def _repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
     yield from _of_rules(scenario, rules)
     yield from _of_objectives(scenario)
     for agent in scenario.agents:
@@ -85,6 +92,8 @@ def _of_slack(rules: Rules, agent: str, shown: str, late: int) -> Repair:
 def _of_objectives(scenario: Scenario) -> Iterator[Repair]:
     for safety in scenario.safety:
         yield from _of_limit(scenario, safety)
+        if isinstance(safety, Holds):
+            yield from room_changes(scenario, safety)
     for reach in scenario.reach:
         if reach.after > 0:
             yield _earlier(scenario, reach)

@@ -7,23 +7,16 @@ from typing import Dict, Iterator
 from pursue_gen.diagnostics import Diagnostic, Span
 from pursue_gen.language.assumptions.base import Setting
 from pursue_gen.language.behaviour import destinations_from
-from pursue_gen.language.clauses import Domains, TooMany, holds_at_start
-from pursue_gen.language.conditions import Condition
+from pursue_gen.language.clauses import Domains, holds_at_start
 from pursue_gen.language.scenario import Scenario
 
 
 def setting_of(scenario: Scenario) -> Setting:
     """The scenario as assumptions ask for it."""
-
-    def at_start(condition: Condition) -> bool:
-        try:
-            return holds_at_start(condition, scenario, Domains(scenario))
-        except TooMany:
-            return False  # reported with the condition
-
     return Setting(
         scenario.agents, scenario.events, scenario.states, scenario.safety, scenario.assumptions,
-        lambda place: destinations_from(scenario, place), at_start,
+        lambda place: destinations_from(scenario, place),
+        lambda condition: holds_at_start(condition, scenario, Domains(scenario)),
     )  # fmt: skip
 
 
@@ -33,6 +26,6 @@ def check_assumptions(scenario: Scenario) -> Iterator[Diagnostic]:
     seen: Dict[str, Span] = {}
     for assumption in scenario.assumptions:
         if assumption.subject in seen:
-            yield assumption.again(seen[assumption.subject].line)
+            yield assumption.again(seen[assumption.subject])
         seen.setdefault(assumption.subject, assumption.span)
         yield from assumption.check_in(setting)

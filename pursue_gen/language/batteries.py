@@ -68,7 +68,7 @@ def check_batteries(scenario: Scenario) -> Iterator[Diagnostic]:
         if agent is None:
             continue
         if agent.name in seen:
-            message = f"line {seen[agent.name].line} gives {agent.name} a battery already"
+            message = f"{seen[agent.name].in_words} gives {agent.name} a battery already"
             yield error("PML311", message, battery.span, "delete one of the two")
         seen.setdefault(agent.name, battery.span)
         problems = [*_of(agent, battery, scenario), *battery.check()]

@@ -159,7 +159,7 @@ def _travels(scenario: Scenario) -> Iterator[Diagnostic]:
             hint = f"connect them: connect {a} and {b} distance …, or delete this line"
             yield error("PML201", message, travel.span, hint)
         elif (travel.agent.name, travel.way) in seen:
-            message = f"line {seen[travel.agent.name, travel.way].line} says already how long {travel.movement} takes"
+            message = f"{seen[travel.agent.name, travel.way].in_words} says already how long {travel.movement} takes"
             yield error("PML202", message, travel.span, "delete one of the two lines")
         seen.setdefault((travel.agent.name, travel.way), travel.span)
 
@@ -169,7 +169,7 @@ def _connections(scenario: Scenario) -> Iterator[Diagnostic]:
     for way in scenario.connections:
         known = [seen[direction] for direction in way.directions if direction in seen]
         if known and way.a != way.b:
-            message = f"{way.a} and {way.b} are connected twice; line {known[0].line} does it already"
+            message = f"{way.a} and {way.b} are connected twice; {known[0].in_words} does it already"
             hint = "delete one: a connection goes both ways; or write one_way behind both"
             yield error("PML146", message, way.span, hint)
         for direction in way.directions:
@@ -194,16 +194,16 @@ def _missing(scenario: Scenario) -> Iterator[Diagnostic]:
 def _beside(scenario: Scenario) -> Iterator[Diagnostic]:
     """Objectives that stand there twice or contradict each other, and those that can never be reached as they stand."""
     yield from _optional(scenario)
-    lines: Dict[str, int] = {}
+    places: Dict[str, Span] = {}
     statements = [statement[0] for statement in scenario.statements]
     for objective in sorted(statements, key=lambda each: (each.span.line, each.span.column)):
         text = objective.text
-        if text in lines:
-            message = f"the same objective stands in line {lines[text]} already"
+        if text in places:
+            message = f"the same objective stands in {places[text].in_words} already"
             if len(objective.statement(scenario.objectives).objectives) > 1:
                 message = f"{next(objective.names())[1].name} stands twice in this patrol"
             yield error("PML220", message, objective.span, "delete one of the two")
-        lines.setdefault(text, objective.span.line)
+        places.setdefault(text, objective.span)
     for objective in statements:
         yield from objective.check()
     start = {agent.name: agent.location.name for agent in scenario.agents}
@@ -217,7 +217,7 @@ def _beside(scenario: Scenario) -> Iterator[Diagnostic]:
     for reach in scenario.reach:
         for ref in reach.events:
             if ref.name in avoided:
-                message = f"{ref.name} is to be done, and line {avoided[ref.name].span.line} has it avoided"
+                message = f"{ref.name} is to be done, and {avoided[ref.name].span.in_words} has it avoided"
                 yield error("PML221", message, ref.span, "delete one of the two, or name another event")
 
 

@@ -6,11 +6,12 @@ is among those that the clause lists. Positions of different agents are taken to
 
 from __future__ import annotations
 
-from itertools import product
+from itertools import combinations, product
+from math import comb
 from typing import Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_gen.language.behaviour import destinations, reachable
-from pursue_gen.language.conditions import AllOf, AnyOf, At, Atom, Condition, Doing, Holds, Not, OnWay, Who
+from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Atom, Condition, Doing, Holds, Not, OnWay, Who
 from pursue_gen.language.scenario import Agent, Event, Scenario
 
 MOST_CLAUSES = 200
@@ -92,6 +93,14 @@ class Domains:
                 found[name] = values
         return found
 
+    def counted(self, condition: AtMostOf) -> Dict[str, Values]:
+        """Who is counted, with the values with which it is. No empty sets."""
+        found: Dict[str, Values] = {}
+        for atom in condition.parts:
+            for name, values in self.literals(atom).items():
+                found[name] = found.get(name, frozenset()) | values
+        return found
+
     def _values(self, variable: str) -> Iterable[Value]:
         if variable in self._states:
             return (TRUE, FALSE)
@@ -120,7 +129,7 @@ def _is(value: Value, atom: Atom) -> bool:
     if isinstance(atom, At):
         return not value.is_way and value.where == atom.place.name
     if isinstance(atom, OnWay):
-        return value.is_way
+        return value.is_way and atom.includes(value.where, value.what)
     return isinstance(atom, Doing) and value.is_work and value.what == atom.event.name
 
 
@@ -134,6 +143,15 @@ def clauses_of(condition: Condition, domains: Domains, value: bool = True) -> Cl
     if isinstance(condition, (AllOf, AnyOf)):
         parts = [clauses_of(part, domains, value) for part in condition.parts]
         return all_of(parts, domains) if isinstance(condition, AllOf) is value else any_of(parts, domains)
+    if isinstance(condition, AtMostOf):
+        counted = domains.counted(condition)
+        size = condition.most + 1 if value else len(counted) - condition.most
+        if size <= 0:
+            return NEVER
+        if comb(len(counted), size) > MOST_CLAUSES:
+            raise TooMany
+        some = combinations(counted.items(), size)
+        return simplified([{n: v if not value else domains.of(n) - v for n, v in one} for one in some], domains)
     literals = domains.literals(condition)
     if value:
         return simplified([literals], domains)
@@ -169,11 +187,22 @@ def given(clauses: Clauses, variable: str, value: Value) -> Optional[Clauses]:
 
 
 def holds_at_start(condition: Condition, scenario: Scenario, domains: Domains) -> bool:
-    """True if a condition holds before anything has happened. Raises TooMany."""
+    """True if a condition holds before anything has happened."""
     first = {agent.name: Value("at", agent.location.name) for agent in scenario.agents}
     first.update({state.name: TRUE if state.initially else FALSE for state in scenario.states})
-    clauses = clauses_of(condition, domains)
-    return all(any(first[name] in values for name, values in clause.items()) for clause in clauses)
+    return _holds(condition, first, domains)
+
+
+def _holds(condition: Condition, now: Mapping[str, Value], domains: Domains) -> bool:
+    """True if a condition holds where all variables have these values."""
+    if isinstance(condition, Not):
+        return not _holds(condition.part, now, domains)
+    if isinstance(condition, (AllOf, AnyOf)):
+        parts = (_holds(part, now, domains) for part in condition.parts)
+        return all(parts) if isinstance(condition, AllOf) else any(parts)
+    if isinstance(condition, AtMostOf):
+        return sum(now[name] in values for name, values in domains.counted(condition).items()) <= condition.most
+    return any(now[name] in values for name, values in domains.literals(condition).items())
 
 
 def _either(one: Clause, other: Clause) -> Clause:

@@ -2,12 +2,28 @@
 
 from __future__ import annotations
 
+from math import comb
 from typing import Iterator
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
 from pursue_gen.language.clauses import MOST_CLAUSES, Domains, TooMany, clauses_of, holds_at_start
-from pursue_gen.language.conditions import At, Atom, Condition, Doing, Holds, atoms, condition_text, condition_words
+from pursue_gen.language.conditions import (
+    At,
+    AtMostOf,
+    Atom,
+    Condition,
+    Doing,
+    Holds,
+    Not,
+    atoms,
+    condition_text,
+    condition_words,
+    predicate_words,
+)
 from pursue_gen.language.scenario import Safety, Scenario
+
+MOST_ROOM = 1_000
+"""The ways in which more can be somewhere than there is room for: as many edges has its automaton. Not measured."""
 
 
 def check_conditions(scenario: Scenario) -> Iterator[Diagnostic]:
@@ -23,6 +39,8 @@ def check_conditions(scenario: Scenario) -> Iterator[Diagnostic]:
     for safety in scenario.safety:
         if safety.breaks.condition is None:
             yield from _heard(scenario, safety, domains)
+        elif not safety.conditions:
+            yield from _room(scenario, safety, domains)
         for stands in safety.breaks.stands:
             yield from _impossible(scenario, domains, stands, safety.span)
 
@@ -46,6 +64,26 @@ def _heard(scenario: Scenario, safety: Safety, domains: Domains) -> Iterator[Dia
         hint = "put what belongs together into states that events set, or split it into several statements"
         message = f"these conditions, written as clauses that all have to hold, have more than {MOST_CLAUSES} of them"
         yield error("PML233", message, safety.span, hint)
+
+
+def _room(scenario: Scenario, safety: Safety, domains: Domains) -> Iterator[Diagnostic]:
+    """An objective on how many are somewhere: where nobody ever is, or no more, and one that is too large."""
+    broken = safety.breaks.condition
+    assert isinstance(broken, Not) and isinstance(broken.part, AtMostOf), "there are no other ones"
+    most, counted = broken.part.most, domains.counted(broken.part)
+    by_atom = ((atom, list(_impossible(scenario, domains, atom, safety.span))) for atom in broken.part.parts)
+    # Of several places together some are not connected.
+    impossible = [each for atom, found in by_atom for each in found if isinstance(atom, At) or not counted]
+    if impossible:
+        yield from impossible
+    elif len(counted) <= most:
+        message = f"this changes nothing: never are more than {len(counted)} {predicate_words(broken.part.parts[0])}"
+        yield warning("PML232", message, safety.span, "write a smaller number, or delete it")
+    elif comb(len(counted), most + 1) > MOST_ROOM:
+        message = f"so many of {len(counted)} can be there in more than {MOST_ROOM} ways"
+        yield error("PML233", message, safety.span, "let it hold 1, or name fewer of them")
+    else:
+        yield from _lost_at_start(scenario, safety, domains)
 
 
 def _lost_at_start(scenario: Scenario, safety: Safety, domains: Domains) -> Iterator[Diagnostic]:
@@ -77,6 +115,11 @@ def _impossible(scenario: Scenario, domains: Domains, atom: Atom, span: Span) ->
             message = f"{nobody} {'is ever' if who is None else 'is never'} doing {name}"
             hint = f"give it to the agent: can_do {name}" + (f", or reacts_to {name}" if event.is_shared else "")
         yield error("PML231", message, atom.event.span, hint)
+    elif atom.ends:
+        a, b = (ref.name for ref in atom.ends)
+        message = f"{nobody} {'is ever' if who is None else 'is never'} {predicate_words(atom)}"
+        hint = f"connect {a} with {b}, make it mobile, or name another way"
+        yield error("PML230", message, atom.ends[0].span, hint)
     else:
         place = span if who is None else who.span
         message = f"{nobody} {'is ever' if who is None else 'is never'} on its way: nothing there is mobile"

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Callable, Iterator, Optional, Tuple, Union
+from typing import Callable, Collection, Iterator, List, Optional, Tuple, Union
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.word import Word
 
@@ -15,10 +16,16 @@ WORDS = (
     Word("at", "The place; in a condition: the agent stands there, idle or at work.", True),
     Word("not", "What follows does not hold."),
     Word("on_way", "The agent is between two places.", True),
+    Word(
+        "between",
+        "The agent is on the way from one of the two to the other; of an event: from its end to its next beginning.",
+        True,
+    ),
     Word("doing", "The agent is busy with this event.", True),
     Word("any", "At least one of them: any robot, any agent.", True),
     Word("no", "None of them: no robot, no agent.", True),
     Word("robot", "The agents that are controllable and not human.", True),
+    Word("agents", "A number of agents: robots, people and all others.", True),
 )
 """The words of conditions, and before them, which several kinds of statements have."""
 
@@ -41,9 +48,24 @@ class At:
 
 @dataclass(frozen=True)
 class OnWay:
-    """`who on_way`: it is between two places."""
+    """`who on_way`: it is between two places; `who on_way from origin to target`: on this way; with `either_way`
+    `who between origin and target`: on it in either direction.
+    """
 
     who: Who
+    origin: Optional[Ref] = None
+    target: Optional[Ref] = None
+    either_way: bool = False
+
+    @property
+    def ends(self) -> Tuple[Ref, ...]:
+        """The places that are named."""
+        return () if self.origin is None or self.target is None else (self.origin, self.target)
+
+    def includes(self, a: str, b: str) -> bool:
+        """True on the way from a to b."""
+        named = tuple(ref.name for ref in self.ends)
+        return named in ((), (a, b)) or (self.either_way and named == (b, a))
 
 
 @dataclass(frozen=True)
@@ -84,7 +106,17 @@ class AnyOf:
 
 
 Atom = Union[At, OnWay, Doing, Holds]
-Condition = Union[At, OnWay, Doing, Holds, Not, AllOf, AnyOf]
+
+
+@dataclass(frozen=True)
+class AtMostOf:
+    """`at_most most robots at place, other`: of so many agents, or states, one of the parts is true, and of no more."""
+
+    most: int
+    parts: Tuple[Atom, ...]
+
+
+Condition = Union[At, OnWay, Doing, Holds, Not, AllOf, AnyOf, AtMostOf]
 EventOrCondition = Union[Ref, Condition]
 
 
@@ -92,7 +124,7 @@ def atoms(condition: Condition) -> Iterator[Atom]:
     """The parts of a condition that have no parts, from left to right."""
     if isinstance(condition, Not):
         yield from atoms(condition.part)
-    elif isinstance(condition, (AllOf, AnyOf)):
+    elif isinstance(condition, (AllOf, AnyOf, AtMostOf)):
         for part in condition.parts:
             yield from atoms(part)
     else:
@@ -111,6 +143,8 @@ def names_in(condition: Condition) -> Iterator[Tuple[str, Ref]]:
             yield "POI", atom.place
         elif isinstance(atom, Doing):
             yield "event", atom.event
+        else:
+            yield from (("POI", ref) for ref in atom.ends)
 
 
 def held_by(condition: Condition, robot: Ref) -> Condition:
@@ -131,17 +165,30 @@ def condition_text(condition: Condition) -> str:
     """A condition as it is written in a scenario."""
     if isinstance(condition, Not):
         part = condition.part
-        if not isinstance(part, (Not, AllOf, AnyOf, Holds)) and part.who.agent is None:
+        if isinstance(part, (At, OnWay, Doing)) and part.who.agent is None:
             return "no" + condition_text(part)[len("any") :]
         return f"not {_bracketed(part, condition_text)}"
     if isinstance(condition, (AllOf, AnyOf)):
         return _joined(condition, condition_text)
-    if isinstance(condition, Holds):
-        return f"{condition.state.name} is_{'true' if condition.value else 'false'}"
-    who = who_text(condition.who)
-    if isinstance(condition, At):
-        return f"{who} at {condition.place.name}"
-    return f"{who} on_way" if isinstance(condition, OnWay) else f"{who} doing {condition.event.name}"
+    if isinstance(condition, AtMostOf):
+        some = some_text(condition.most, _subjects(condition))
+        others = dict.fromkeys(atom.place.name for atom in condition.parts if isinstance(atom, At))
+        return f"at_most {some} {', '.join([predicate_text(condition.parts[0]), *list(others)[1:]])}"
+    subject = condition.state.name if isinstance(condition, Holds) else who_text(condition.who)
+    return f"{subject} {predicate_text(condition)}"
+
+
+def predicate_text(atom: Atom) -> str:
+    """What is said of an agent, or of a state, as it is written: `at shelf`."""
+    if isinstance(atom, Holds):
+        return f"is_{str(atom.value).lower()}"
+    if isinstance(atom, At):
+        return f"at {atom.place.name}"
+    if isinstance(atom, Doing):
+        return f"doing {atom.event.name}"
+    return ("between {} and {}" if atom.either_way else "on_way from {} to {}" if atom.ends else "on_way").format(
+        *(ref.name for ref in atom.ends)
+    )
 
 
 def condition_words(condition: Condition, holds: bool = True) -> str:
@@ -150,14 +197,46 @@ def condition_words(condition: Condition, holds: bool = True) -> str:
         return condition_words(condition.part, not holds)
     if isinstance(condition, (AllOf, AnyOf)):
         return _joined(condition, condition_words) if holds else f"not ({_joined(condition, condition_words)})"
+    if isinstance(condition, AtMostOf):
+        few = "at most" if holds else "more than"
+        verb, its = ("is", "its") if condition.most == 1 else ("are", "their")
+        words = dict.fromkeys(predicate_words(atom, its) for atom in condition.parts)
+        some = some_text(condition.most, _subjects(condition), shown=True)
+        return f"{few} {some} {verb} {' or '.join(words)}"
     if isinstance(condition, Holds):
         return f"{condition.state.name} is {'true' if condition.value is holds else 'false'}"
     who, verb = who_text(condition.who, shown=True), "is" if holds else "is not"
     if condition.who.agent is None and not holds:
         who, verb = "no" + who[len("any") :], "is"
-    if isinstance(condition, At):
-        return f"{who} {verb} at {condition.place.shown}"
-    return f"{who} {verb} {'on its way' if isinstance(condition, OnWay) else f'doing {condition.event.shown}'}"
+    return f"{who} {verb} {predicate_words(condition)}"
+
+
+def predicate_words(atom: Atom, its: str = "its") -> str:
+    """What is said of an agent, or of a state, in English, as in "at the shelf"."""
+    if isinstance(atom, Holds):
+        return str(atom.value).lower()
+    if isinstance(atom, At):
+        return f"at {atom.place.shown}"
+    if isinstance(atom, Doing):
+        return f"doing {atom.event.shown}"
+    on_way = f"on {its} way"
+    return ("between {} and {}" if atom.either_way else f"{on_way} from {{}} to {{}}" if atom.ends else on_way).format(
+        *(ref.shown for ref in atom.ends)
+    )
+
+
+def some_text(most: int, everybody: Collection[Union[Who, Ref]], shown: bool = False) -> str:
+    """A number of these agents, or states: `2 robots`, `2 of cart1, cart2`; with `shown` as people read it."""
+    refs = [one.agent if isinstance(one, Who) else one for one in everybody]
+    named = dict.fromkeys((ref.shown if shown else ref.name) for ref in refs if ref is not None)
+    if named:
+        return f"{most} of {listed(named) if shown else ', '.join(named)}"
+    robots = any(isinstance(one, Who) and one.robots for one in everybody)
+    return f"{most} {'robot' if robots else 'agent'}{'' if most == 1 else 's'}"
+
+
+def _subjects(condition: AtMostOf) -> List[Union[Who, Ref]]:
+    return [atom.state if isinstance(atom, Holds) else atom.who for atom in condition.parts]
 
 
 def _joined(condition: Union[AllOf, AnyOf], say: Callable[[Condition], str]) -> str:

@@ -12,7 +12,7 @@ from pursue_gen.language.checks import check_reading
 from pursue_gen.language.document import Document
 from pursue_gen.language.lines import plain
 from pursue_gen.language.names import KINDS
-from pursue_gen.language.occurrences import Occurrence, occurrences
+from pursue_gen.language.occurrences import GROUP, Occurrence, occurrences
 from pursue_gen.language.parser import Reading, read_document
 from pursue_gen.language.scenario import Scenario
 
@@ -35,10 +35,10 @@ class Draft(Document):
 
     @cached_property
     def declared(self) -> Dict[str, Dict[str, Occurrence]]:
-        """kind → name → its first declaration."""
-        found: Dict[str, Dict[str, Occurrence]] = {kind: {} for kind in KINDS}
+        """kind → name → its first declaration, of groups, too."""
+        found: Dict[str, Dict[str, Occurrence]] = {kind: {} for kind in (*KINDS, GROUP)}
         for occurrence in self.occurrences:
-            if occurrence.declares:
+            if occurrence.declares and occurrence.kind in found:
                 found[occurrence.kind].setdefault(occurrence.name, occurrence)
         return found
 

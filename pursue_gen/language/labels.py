@@ -70,6 +70,6 @@ def check_labels(scenario: Scenario) -> Iterator[Diagnostic]:
             elif part.label in seen:
                 name, span = seen[part.label]
                 what = "place" if kind == "POI" else kind
-                message = f'people read "{part.label}" for the {what} {name} in line {span.line}, too'
+                message = f'people read "{part.label}" for the {what} {name} in {span.in_words}, too'
                 yield warning("PML283", message, part.span, "give one of them another label")
             seen.setdefault(part.label, (part.name, part.span))

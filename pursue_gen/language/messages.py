@@ -132,7 +132,7 @@ def _hint(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
         return f"quotes stand only where a name is declared: write {shown(name)} without them"
     if statement == "OBJECTIVE" and token.type == "DO":
         return "to have something done write reach_objective: do …"
-    if token.type in KEYWORDS and "WORD" in expected:
+    if token.type in KEYWORDS and "WORD" in expected and statement != "FOR":
         return f"{text} is a word of the language and cannot be a name; choose another name"
     if token.type == "COMMA" and [one.type for one in chunk[index - 1 : index + 2 : 2]] == ["NUMBER", "NUMBER"]:
         whole, rest = str(chunk[index - 1]), str(chunk[index + 1])

@@ -159,8 +159,8 @@ def _unfit(kind: str, name: str, span: Span, taken: Container[str]) -> Optional[
 
 def _again(name: str, kind: str, span: Span, first_kind: str, first: Span) -> Diagnostic:
     if kind == first_kind:
-        return error("PML103", f"{name} is declared twice; line {first.line} declares it already", span, "delete one")
-    message = f"{name} is {_a(kind)} here and {_a(first_kind)} in line {first.line}: a name stands for one thing"
+        return error("PML103", f"{name} is declared twice; {first.in_words} declares it already", span, "delete one")
+    message = f"{name} is {_a(kind)} here and {_a(first_kind)} in {first.in_words}: a name stands for one thing"
     return error("PML104", message, span, "choose another name for one of them")
 
 

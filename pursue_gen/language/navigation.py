@@ -7,8 +7,8 @@ from typing import Optional, Tuple
 from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_gen.language.document import Edit
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.names import KINDS, check_names
-from pursue_gen.language.occurrences import Occurrence
+from pursue_gen.language.names import check_names
+from pursue_gen.language.occurrences import VARIABLE, Occurrence
 from pursue_gen.language.scenario import Poi, Scenario
 
 
@@ -23,6 +23,9 @@ def same_name(document: Draft, offset: int) -> Tuple[Occurrence, ...]:
     if here is None:
         return ()
     named = [occurrence for occurrence in document.occurrences if occurrence.name == here.name]
+    if here.kind == VARIABLE:
+        return tuple(one for one in named if (one.kind, one.statement) == (VARIABLE, here.statement))
+    named = [occurrence for occurrence in named if occurrence.kind != VARIABLE]
     kinds = {occurrence.kind for occurrence in named if occurrence.declares}
     if len(kinds) > 1:  # an error; then the use decides what is meant
         named = [occurrence for occurrence in named if occurrence.kind == here.kind]
@@ -53,8 +56,8 @@ def _check_new(document: Draft, new: str) -> None:
     findings = list(check_names(alone))
     if findings:
         raise PursueError(findings[:1])
-    for kind in KINDS:
-        taken: Optional[Occurrence] = document.declared[kind].get(new)
+    for kind, known in document.declared.items():
+        taken: Optional[Occurrence] = known.get(new)
         if taken is not None:
             line = document.lines.of(taken.start) + 1
             message = f"{new} is taken: line {line} declares {'an' if kind[0] in 'ea' else 'a'} {kind} of this name"

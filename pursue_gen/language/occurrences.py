@@ -7,7 +7,7 @@ from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
 from lark import Token
 
-from pursue_gen.language.groups import ROBOTS, around_of, body_of, variables_of
+from pursue_gen.language.for_each import NAMES, around_of, behind_of, body_of, head_of, variables_of, with_groups
 from pursue_gen.language.kinds import DECLARED, KEYWORDS, MAY_BE_NAMES, STATEMENTS
 from pursue_gen.language.messages import kind_of
 from pursue_gen.language.poses import robots_in
@@ -24,15 +24,21 @@ _BEFORE_NAMES = frozenset({"COLON", "COMMA", "LPAR"})
 SUBJECTS = ("agent", "state")
 """The kinds of things with which a part of a condition may begin."""
 
+GROUP, VARIABLE = "group", "variable"
+"""The kinds of names that stand for members: of the whole text, and of one statement that is for each of a group."""
+
 MEMBERS = ("POI", "agent", "event", "state")
 """The kinds of things that may be in a group."""
 
 _OPENS = {(token, word.upper()) for token, kind in STATEMENTS.items() for word in kind.conditions_behind()}
 """The statements with a condition in them, and the word behind which it begins."""
 
-_OBJECT = {"AT": "POI", "DOING": "event"}
-_SUBJECT = {"AT": "agent", "ON_WAY": "agent", "DOING": "agent", "IS_TRUE": "state", "IS_FALSE": "state"}
-_NAMES = frozenset(("WORD", *MAY_BE_NAMES))
+_OPENING = frozenset(("ALWAYS", "PATROL", "PLACE", "WAY"))
+"""Words that may be names and with which an objective may begin."""
+_OBJECT = {"AT": "POI", "FROM": "POI", "TO": "POI", "BETWEEN": "POI", "DOING": "event"}
+_SUBJECT = {
+    "AT": "agent", "ON_WAY": "agent", "BETWEEN": "agent", "DOING": "agent", "IS_TRUE": "state", "IS_FALSE": "state",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -49,9 +55,11 @@ class Occurrence:
 
 def kinds_behind(tokens: Sequence[Token]) -> Tuple[str, ...]:
     """What a name may stand for that is used behind these tokens of one statement; (): no name is used there."""
-    tokens = body_of(tokens)
+    if behind_of(tokens):
+        return (VARIABLE,) if tokens[-2].type == "NAME" else (VARIABLE, GROUP)
+    head, tokens = tokens, body_of(tokens)
     if not tokens:
-        return ()
+        return (GROUP,) if head and head[-1].type == "IN" else ()
     start = condition_start(tokens)
     if start is not None:
         return names_in_condition(tokens, start)[1]
@@ -77,28 +85,43 @@ def are_names(tokens: Sequence[Token]) -> List[bool]:
         )  # fmt: skip
         following = tokens[index + 1].type if index + 1 < len(tokens) else ""
         opens = before is not None and before.type == "COLON" and kind == "OBJECTIVE"
-        begins = opens and token.type in ("ALWAYS", "PATROL") and following != "NEVER_WITH"
+        begins = opens and token.type in _OPENING and following != "NEVER_WITH"
         named.append(token.type == "WORD" or (token.type in MAY_BE_NAMES and behind and not begins))
     return named
 
 
 def occurrences(parts: Sequence[Statement]) -> Tuple[Occurrence, ...]:
     """Every name in the statements that stands where one may stand, in the order of the text; not those that are made
-    of others (`call of r`), nor variables and groups.
+    of others (`call of r`).
     """
     found = tuple(one for number, part in enumerate(parts) for one in _occurrences(part.body, number))
-    if not any(part.kind in ("GROUP", "FOR") for part in parts):
+    if not with_groups(part.tokens for part in parts):
         return found
     kinds = {one.name: one.kind for one in reversed(found) if one.declares}
-    groups = {ROBOTS, *(bare(part.tokens[1]) for part in parts if part.kind == "GROUP" and len(part.tokens) > 1)}
-    variables = [variables_of(part.tokens) for part in parts]
     made = {start_of(token) + (token.type == "NAME") for part in parts for token in around_of(part.tokens)}
-    named = (one for one in found if one.start not in made and one.name not in variables[one.statement])
-    return tuple(
+    standing = list(_of_groups(parts))
+    taken = made | {one.start for one in standing}
+    standing += [
         replace(one, kind=kinds.get(one.name, one.kind)) if parts[one.statement].kind == "GROUP" else one
-        for one in named
-        if one.declares or one.name not in groups
-    )
+        for one in found
+        if one.start not in taken
+    ]
+    return tuple(sorted(standing, key=lambda one: one.start))
+
+
+def _of_groups(parts: Sequence[Statement]) -> Iterator[Occurrence]:
+    """The names of groups, and of variables in the statements that are for each of a group."""
+    groups = {bare(part.tokens[1]) for part in parts if part.kind == "GROUP" and len(part.tokens) > 1}
+    for number, part in enumerate(parts):
+        variables, head = variables_of(part.tokens), len(head_of(part.tokens))
+        for index, (before, token) in enumerate(zip(part.tokens, part.tokens[1:]), 1):
+            declares = part.kind == "GROUP" and index == 1 and token.type == "NAME"
+            name, start = bare(token) if declares else str(token), start_of(token) + declares
+            listed = token.type == "WORD" or (token.type in NAMES and before.type in ("IN", "OF", "COMMA"))
+            if declares or (listed and name in groups and name not in variables):
+                yield Occurrence(name, GROUP, start, start + len(name), declares, number)
+            elif token.type == "WORD" and name in variables and before.type != "IN":
+                yield Occurrence(name, VARIABLE, start, start + len(name), index < head, number)
 
 
 def _occurrences(part: Statement, number: int) -> Iterator[Occurrence]:
@@ -143,17 +166,25 @@ def names_in_condition(tokens: Sequence[Token], start: int) -> Tuple[Dict[int, s
     # an event may stand there alone
     subjects = ("event", *SUBJECTS) if tokens[start - 1].type in ("AVOID", "IF") else SUBJECTS
     expected: Tuple[str, ...] = subjects
-    number = start
+    more: Tuple[str, ...] = ()  # with which a list goes on
+    number, between = start, False
     while number < len(tokens):
         kind = tokens[number].type
         following = tokens[number + 1].type if number + 1 < len(tokens) else ""
         if len(expected) > 1 and kind in ("ANY", "NO") and following in ("ROBOT", "AGENT"):
             number, expected = number + 1, ()
-        elif expected and kind in _NAMES:
-            found[number] = expected[0] if len(expected) == 1 else _SUBJECT.get(following, subjects[0])
+        elif len(expected) > 1 and kind == "AT_MOST" and following == "NUMBER":
+            number, expected, more = number + 1, (), SUBJECTS
+        elif expected and kind in NAMES:
+            found[number] = expected[0] if len(expected) == 1 else _subject(tokens[number + 1 :], subjects[0])
             expected = ()
+        elif kind == "COMMA" or (kind == "OF" and more == SUBJECTS):
+            expected = more
         elif kind in _OBJECT:
-            expected = (_OBJECT[kind],)
+            expected, between = (_OBJECT[kind],), kind == "BETWEEN"
+            more = expected if kind == "AT" else ()
+        elif kind == "AND" and between:
+            expected, between = ("POI",), False
         elif kind in ("AND", "OR", "NOT", "LPAR"):
             expected = subjects = SUBJECTS
         elif kind == "THEN":
@@ -162,3 +193,10 @@ def names_in_condition(tokens: Sequence[Token], start: int) -> Tuple[Dict[int, s
             expected = ()
         number += 1
     return found, expected
+
+
+def _subject(following: Sequence[Token], default: str) -> str:
+    """The kind of thing of which a part of a condition speaks, from what follows its name; a list goes on before."""
+    while following and following[0].type == "COMMA":
+        following = following[2:]
+    return _SUBJECT.get(following[0].type, default) if following else default

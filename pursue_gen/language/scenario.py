@@ -11,7 +11,7 @@ from pursue_gen.language import assumptions as kinds_of_assumptions
 from pursue_gen.language import objectives as kinds_of_objectives
 from pursue_gen.language.assumptions import *
 from pursue_gen.language.assumptions.base import Assumption
-from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, Holds, Not, OnWay, Who
+from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Condition, Doing, Holds, Not, OnWay, Who
 from pursue_gen.language.numbers import Window, exact, window_of
 from pursue_gen.language.objectives import *
 from pursue_gen.language.objectives import GivenUp, Patrol, Reach, Safety, StatedObjective, WhyGivenUp
@@ -29,9 +29,9 @@ from pursue_gen.language.statements.state import State
 from pursue_gen.language.statements.travel import Travel
 
 __all__ = [
-    "Agent", "AllOf", "AnyOf", "At", "Battery", "Both", "Choice", "Condition", "Connection", "Dependency", "Doing",
-    "Event", "Holds", "Not", "OnWay", "Poi", "Pose", "Ref", "Rule", "RuleBody", "Scenario", "Sequence", "Spot", "State",
-    "Travel", "Who", "Window",
+    "Agent", "AllOf", "AnyOf", "At", "AtMostOf", "Battery", "Both", "Choice", "Condition", "Connection", "Dependency",
+    "Doing", "Event", "Holds", "Not", "OnWay", "Poi", "Pose", "Ref", "Rule", "RuleBody", "Scenario", "Sequence",
+    "Spot", "State", "Travel", "Who", "Window",
 ]
 __all__ += kinds_of_assumptions.__all__
 __all__ += kinds_of_objectives.__all__

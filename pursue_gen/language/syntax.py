@@ -5,16 +5,18 @@ from __future__ import annotations
 import os
 import re
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Dict, FrozenSet, Iterable, List, Optional, Sequence, Set, Tuple
+from typing import Any, Dict, FrozenSet, Iterable, List, Mapping, Optional, Sequence, Set, Tuple
 
 from lark import Lark, Token, UnexpectedToken
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
-from pursue_gen.language.groups import body_of, check_groups, no_list, without_owners, written_out
+from pursue_gen.language.for_each import NAMES, behind_of, body_of, with_groups, without_owners
+from pursue_gen.language.groups import check_groups, written_out
 from pursue_gen.language.kinds import BY_RULE, DECLARED, KEYWORDS, MAY_BE_NAMES, STATEMENTS, TAIL
+from pursue_gen.language.members import no_list
 from pursue_gen.language.messages import (
     explain,
     kind_of,
@@ -38,7 +40,7 @@ _WIDEST = 500
 """Events in one rule, parts of one condition."""
 _SPLIT = "split the rule into several rules"
 _SHORTEN = "say it with fewer of them; a state that events set can stand for much"
-_ATOMS = frozenset(("AT", "ON_WAY", "DOING", "IS_TRUE", "IS_FALSE"))
+_ATOMS = frozenset(("AT", "ON_WAY", "BETWEEN", "DOING", "IS_TRUE", "IS_FALSE"))
 MOST_FINDINGS = 1000
 """The most errors that are reported; with more of them the file is no scenario."""
 
@@ -50,7 +52,7 @@ _OPENS = frozenset(("CONTROLLABLE", "MOBILE", *MAY_BE_NAMES)) - {"LABEL"}
 _ENDS = frozenset(
     (
         "WORD NUMBER NAME POSE RPAR IS_TRUE IS_FALSE TRUE FALSE "
-        "COLLABORATIVE TOGETHER ONE_WAY TIMES CONTROLLABLE HUMAN ON_WAY"
+        "COLLABORATIVE TOGETHER ONE_WAY TIMES CONTROLLABLE HUMAN ON_WAY ROBOT ROBOTS AGENTS"
     ).split()
 )
 """Tokens behind which no name can stand: one that opens the next line begins something else."""
@@ -106,14 +108,15 @@ class Syntax:
     order.
 
     `lost` are the names in the others: they may have been declared there. `whole` is False where statements are
-    missing, as a group or what is for each of it is not right; `groups`: some statements were written out.
+    missing, as a group or what is for each of it is not right; `groups`: name → members, "" those of `each robot`; none
+    where nothing is said of groups.
     """
 
     trees: Tuple[Any, ...]
     findings: Tuple[Diagnostic, ...]
     lost: FrozenSet[str] = frozenset()
     whole: bool = True
-    groups: bool = False
+    groups: Mapping[str, Tuple[str, ...]] = field(default_factory=dict)
 
 
 @lru_cache(maxsize=None)
@@ -188,7 +191,8 @@ def syntax_of(statements: Sequence[Statement], text: str, file: str) -> Syntax:
     findings = tuple(of_a_comment(finding, lines) for finding in reader.findings)
     of_groups = expansion.findings or tuple(check_groups(expansion, reader.lost, file))
     whole = expansion.whole and not of_groups
-    groups = any(statement.kind in ("GROUP", "FOR") for statement in statements)
+    groups = {name: tuple(map(str, members)) for name, members in {"": expansion.robots, **expansion.groups}.items()}
+    groups = groups if with_groups(part.tokens for part in statements) else {}
     return Syntax(tuple(reader.trees), (*findings, *of_groups), frozenset(reader.lost), whole, groups)
 
 
@@ -246,7 +250,7 @@ class _Reader:
                 parser.feed_token(token)
             except UnexpectedToken:
                 if token.type == "COMMA" and token != ",":
-                    return no_list(token, self.file)
+                    return no_list(token, any(one.type in _ATOMS for one in chunk), self.file)
                 return explain(chunk, index, self._expected(parser), span_of(token, self.file))
         try:
             tree = parser.feed_eof(chunk[-1])
@@ -295,6 +299,8 @@ def accepts(tokens: Sequence[Token]) -> FrozenSet[str]:
         return frozenset(STATEMENTS)
     if tokens[0].type not in (*STATEMENTS, TAIL):
         return frozenset()
+    if behind_of(tokens):
+        return NAMES
     try:
         return frozenset(_parser_after(without_owners(tokens)).accepts())
     except UnexpectedToken:
@@ -354,7 +360,7 @@ def _chunks(tokens: List[Token]) -> List[List[Token]]:
             begins = False
         elif token.type in (*STATEMENTS, TAIL):  # inside a line such a word may also stand where a name should
             begins = opens_line or goes_on or token.type in ("CONNECT", "FOR", TAIL)
-        elif token.type in ("WORD", "ROBOT") and opens_line and index:
+        elif token.type in ("WORD", "ROBOT", "PLACE", "WAY") and opens_line and index:
             begins = goes_on or (ended and looks_like_statement(token))
         else:
             begins = opens_line and goes_on and token.type in _OPENS

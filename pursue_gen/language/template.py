@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from typing import Any, Callable, Dict, Iterable, Iterator, Mapping, NamedTuple, Sequence, Tuple
 
-from pursue_gen.language.conditions import Condition, Who, condition_text
+from pursue_gen.language.conditions import Condition, Who, condition_text, some_text
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.tree_reader import TreeReader
@@ -88,6 +88,7 @@ FILLINGS: Mapping[str, Filling] = {
     "number": Filling("NUMBER", TreeReader.number),
     "count": Filling("NUMBER", TreeReader.count),
     "window": Filling("window", TreeReader.window, _window),
+    "some": Filling("some", TreeReader.some, some_text, "agent", ("of",)),
     "condition": Filling("condition", TreeReader.condition, condition_text, is_condition=True),
     "bracketed": Filling("_plain", TreeReader.condition, lambda one: f"({condition_text(one)})", is_condition=True),
     "bool": Filling("(TRUE | FALSE)", lambda _, token: token.type == "TRUE", lambda value: str(value).lower()),
@@ -189,7 +190,8 @@ class Template:
         """Each name in the fields, outside of conditions, behind the kind of thing that it stands for."""
         for hole in self.holes:
             for value in (getattr(part, name) for name in hole.fields if hole.filling.of):
-                refs = value if isinstance(value, tuple) else (value.agent if isinstance(value, Who) else value,)
+                some = value if isinstance(value, tuple) else (value,)
+                refs = (one.agent if isinstance(one, Who) else one for one in some)
                 yield from ((hole.filling.of, ref) for ref in refs if isinstance(ref, Ref))
 
     def conditions(self, part: Any) -> Tuple[Condition, ...]:

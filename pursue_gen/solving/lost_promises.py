@@ -147,12 +147,14 @@ def in_words(problem: Lost, scenario: Scenario) -> Lost:
     objectives, findings = stated(scenario), list(problem.diagnostics)
     for k, names in enumerate(problem.parts):
         some = [objectives[name] for name in names]
-        before, after = cannot_be_promised(names), cannot_be_promised(map(quoted, some))
+        before, after = cannot_be_promised(names), cannot_be_promised(quoted(some))
         message = after + findings[k].message[len(before) :]
         findings[k] = replace(findings[k], message=message, span=some[0].span)
     return Lost(findings, problem.parts)
 
 
-def quoted(objective: StatedObjective) -> str:
-    """An objective as it is written, with its line."""
-    return f'"{objective.text}" (line {objective.span.line})'
+def quoted(objectives: Sequence[StatedObjective]) -> Tuple[str, ...]:
+    """Objectives as they are written, with their lines: one of several in a line is named behind the last of these."""
+    lines = {f'"{each.text}"': each.span.line for each in objectives}
+    behind = [*list(lines.values())[1:], 0]
+    return tuple(text + f" (line {line})" * (line != after) for (text, line), after in zip(lines.items(), behind))

@@ -15,7 +15,7 @@ from typing import List, Optional, Tuple
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.document import Document, Edit, edited
-from pursue_gen.language.groups import without_owners
+from pursue_gen.language.for_each import without_owners
 from pursue_gen.language.lines import Lines
 from pursue_gen.language.scenario import Patrol, Scenario
 from pursue_gen.language.sentences import periods_found

@@ -63,7 +63,7 @@ def without_room(scenario: Scenario, spots: Mapping[str, Sequence[Tuple[str, Opt
     for place, found in spots.items():
         names = [robot for robot, pose in found if pose is None]
         if names:
-            hint = "move the place to where there is more room, or keep robots apart: objective: … never_with … at …"
+            hint = f"move the place to where there is more room, or write objective: place {place} holds 1 robot"
             yield warning("MAP007", f"there is no room for {_listed(names)} beside {place}", spans[place], hint)
 
 
@@ -80,7 +80,7 @@ def shut_in_places(scenario: Scenario, grid: Grid, ways: Ways, radius: float, ro
         exits = exits_of(poi.name, (poi.pose.x, poi.pose.y), ways, room)
         names = [list(points)[number] for number in shut_in(grid, list(points.values()), exits, 2 * radius)]
         if names:
-            hint = "move the place out of the dead end, or keep robots apart: objective: … never_with … at …"
+            hint = f"move the place out of the dead end, or write objective: place {poi.name} holds 1 robot"
             yield warning(
                 "MAP009", f"{_listed(names)} cannot leave {poi.name} while all others stand there", poi.span, hint
             )

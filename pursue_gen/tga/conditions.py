@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Dict, FrozenSet, List, Mapping, Optional, Tuple
+from itertools import combinations
+from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Tuple
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.clauses import NEVER, TRUE, Clause, Clauses, Domains, Value, clauses_of, given
-from pursue_gen.language.conditions import AllOf, AnyOf, Condition, Doing, Not, atoms
+from pursue_gen.language.clauses import NEVER, TRUE, Clause, Clauses, Domains, Value, clauses_of, given, simplified
+from pursue_gen.language.conditions import AllOf, AnyOf, AtMostOf, Condition, Doing, Not, atoms
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.tga.network import Clause as Tests
 from pursue_gen.tga.network import Test
@@ -47,7 +48,7 @@ class Conditions:
 
     def ways_to_hold(self, condition: Condition) -> Tuple[Tuple[Tests, ...], ...]:
         """Guards of which one holds if and only if the condition does; none for one that never does."""
-        found = (clauses_of(part, self.domains) for part in _alternatives(condition))
+        found = _alternatives(condition, self.domains)
         return tuple(self.tests(clauses) for clauses in found if clauses != NEVER)
 
     def _guard(self, clauses: Clauses, agent: str, where: Value) -> Optional[Tuple[Tests, ...]]:
@@ -108,10 +109,15 @@ class Conditions:
         return self._positions.doing(value.where) if value.is_work else self._positions.at(value.where)
 
 
-def _alternatives(condition: Condition) -> Tuple[Condition, ...]:
+def _alternatives(condition: Condition, domains: Domains) -> Iterator[Clauses]:
     """The parts of a disjunction, else the condition alone: guards of parts are smaller than that of the whole."""
+    negated = condition.part if isinstance(condition, Not) else None
     if isinstance(condition, AnyOf):
-        return condition.parts
-    if isinstance(condition, Not) and isinstance(condition.part, AllOf):
-        return tuple(Not(part) for part in condition.part.parts)
-    return (condition,)
+        yield from (clauses_of(part, domains) for part in condition.parts)
+    elif isinstance(negated, AllOf):
+        yield from (clauses_of(part, domains, False) for part in negated.parts)
+    elif isinstance(negated, AtMostOf):
+        for some in combinations(domains.counted(negated).items(), negated.most + 1):
+            yield simplified([{name: values} for name, values in some], domains)
+    else:
+        yield clauses_of(condition, domains)

@@ -25,7 +25,8 @@ def awaited_by(condition: Condition, scenario: Scenario, domains: Domains) -> It
     """The agents with the POIs at which their arrival changes the condition."""
     for atom in atoms(condition):
         if isinstance(atom, (At, OnWay)):
-            places = [atom.place.name] if isinstance(atom, At) else [poi.name for poi in scenario.pois]
+            named = (atom.place,) if isinstance(atom, At) else atom.ends
+            places = [ref.name for ref in named] or [poi.name for poi in scenario.pois]
             yield from ((agent, place) for agent in domains.among(atom.who) for place in places)
 
 
@@ -91,7 +92,7 @@ def _moves(what: Union[Ref, Condition], scenario: Scenario, domains: Domains) ->
 def _movements(atom: Union[At, OnWay], agent: str, ways: Iterable[Tuple[str, str]]) -> Iterator[Tuple[str, Change]]:
     """The agent's moves that can change whether it is there, or on its way."""
     for a, b in ways:
-        if isinstance(atom, OnWay) or atom.place.name == a:
+        if atom.includes(a, b) if isinstance(atom, OnWay) else atom.place.name == a:
             yield names.movement(agent, a, b), setting_off(agent, a, b)
-        if isinstance(atom, OnWay) or atom.place.name == b:
+        if atom.includes(a, b) if isinstance(atom, OnWay) else atom.place.name == b:
             yield names.arrival(agent, a, b), arriving(agent, a, b)

@@ -121,14 +121,14 @@ def spots_in_one(scenario: Scenario, distance: float) -> Tuple[Diagnostic, ...]:
 
 def _groups(scenario: Scenario, poi: Poi, present: Sequence[str]) -> List[List[str]]:
     """The robots without a pose of their own at the place, those together that may have one: no two of them are ever
-    there at one time. Only objectives that have to be met (`never_with`) are relied on: a new plan keeps them too.
+    there at one time. Only objectives that have to be met (`never_with`, `holds`) are relied on: a new plan keeps them
+    too.
     """
-    kept = (one.breaks for one in scenario.safety if not one.optional)
-    apart = {frozenset(one.pair) for one in kept if one.place in (None, poi.name)}
+    kept = [one for one in scenario.safety if not one.optional]
     groups: List[List[str]] = []
     for robot in _without_own(poi, present):
         for group in groups:
-            if all(frozenset((robot, other)) in apart for other in group):
+            if all(any(one.apart(robot, other, poi.name) for one in kept) for other in group):
                 group.append(robot)
                 break
         else:

@@ -8,6 +8,7 @@ from typing import Dict
 
 import pytest
 
+from pursue_gen.diagnostics import Span
 from pursue_gen.explanation import costs as costs_module
 from pursue_gen.explanation.cheaper import Form, cheaper
 from pursue_gen.explanation.costs import Costs, as_json, costs, in_words
@@ -97,12 +98,16 @@ def test_without_work_nothing_is_offered() -> None:
     assert forms(house(), work=1) == {}
 
 
+def _line(number: int) -> Span:
+    return Span("house.pur", number, 1, number, 2)
+
+
 def test_they_are_tried_where_something_is_not_decided(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(costs_module, "decided", lambda *_: Decided((), (12,), 13))
+    monkeypatch.setattr(costs_module, "decided", lambda *_: Decided((), (_line(12),), _line(13)))
     found = costs(house(), RULES)
     assert found.cheaper and found.cheaper[0].line == 13
     assert found.cheaper[0].in_words() in in_words(found).split("\n")
     assert json.loads(json.dumps(as_json(found)))["cheaper"][0]["text"] == found.cheaper[0].text
-    monkeypatch.setattr(costs_module, "decided", lambda *_: Decided((), (12, 13, 14, 15)))
+    monkeypatch.setattr(costs_module, "decided", lambda *_: Decided((), tuple(map(_line, (12, 13, 14, 15)))))
     assert costs(house(), RULES).cheaper == () and "cheaper" not in as_json(replace(found, cheaper=()))
     assert in_words(Costs((), ())) == ""

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from typing import List
 
 import pytest
 
+from pursue_gen.diagnostics import Span
 from pursue_gen.explanation import decided as decided_module
 from pursue_gen.explanation.costs import Cost, Costs, as_json, costs, in_words
 from pursue_gen.explanation.decided import Decided, Known, decided, texts
@@ -51,6 +53,14 @@ def found(scenario: Scenario, work: int = 100_000_000) -> Decided:
     return known
 
 
+def lines(known: Decided) -> List[int]:
+    return [span.line for span in known.together]
+
+
+def line(number: int, member: str = "") -> Span:
+    return Span("wards.pur", number, 1, number, 2, member)
+
+
 def is_won(scenario: Scenario) -> bool:
     return solve(played(translate(scenario), RULES), scenario_objective(scenario), RULES.reaction).won
 
@@ -58,7 +68,7 @@ def is_won(scenario: Scenario) -> bool:
 def test_each_objective_alone_is_decided_beside_its_line_and_its_text() -> None:
     scenario = wards(west=5)
     known = found(scenario)
-    assert [(one.line, one.text, one.won) for one in known.alone] == [
+    assert [(one.span.line, one.text, one.won) for one in known.alone] == [
         (14, "if ringEast then lookEast within 40", True),
         (15, "if ringWest then lookWest within 5", False),
         (16, "patrol desk, east every 200 by otto", True),
@@ -70,7 +80,7 @@ def test_each_objective_alone_is_decided_beside_its_line_and_its_text() -> None:
 def test_those_that_are_won_together_are_proven_to_be() -> None:
     scenario = wards()
     known = found(scenario)
-    assert known.together == (14, 15, 16) and known.next_line == 0
+    assert lines(known) == [14, 15, 16] and known.following is None
     assert promised_of(scenario, SolveRequest()).solution.strategy.blocks
     assert texts(known)[-1] == "Won together: lines 14, 15 and 16."
 
@@ -80,7 +90,7 @@ def test_what_is_lost_with_another_one_is_named() -> None:
     scenario = replace(scenario, safety=scenario.safety[:2])
     known = found(scenario)
     assert [one.won for one in known.alone] == [True, True]
-    assert known.lost and known.together == (14,) and known.next_line == 15
+    assert known.lost and lines(known) == [14] and known.following and known.following.line == 15
     assert not is_won(scenario)
     assert texts(known)[-1] == "Lost together with line 14: line 15."
 
@@ -108,7 +118,18 @@ def test_the_whole_text_is_never_listed(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def test_it_is_in_the_json_too() -> None:
-    known = Decided((Known("avoid e", 3, True, 17),), (3,), 4)
+    known = Decided((Known("avoid e", line(3), True, 17),), (line(3),), line(4))
     objectives = json.loads(json.dumps(as_json(Costs((), (), known))))["objectives"]
     assert objectives["alone"] == [{"text": "avoid e", "line": 3, "won": True, "states": 17}]
     assert (objectives["together"], objectives["next_line"], objectives["lost"]) == ([3], 4, False)
+
+
+def test_a_line_is_named_once_with_those_members_that_are_meant() -> None:
+    room1, room2 = line(3, "r is room1"), line(3, "r is room2")
+    alone = tuple(Known(f"avoid {n}", span, True, 5) for n, span in enumerate((room1, room2, line(7))))
+    whole = texts(Decided(alone, (room1, room2), line(7)))[-1]
+    assert whole == "Won together: line 3. Not decided together with these: line 7."
+    some = texts(Decided(alone, (room1, line(7)), room2, lost=True))[-1]
+    assert some == "Won together: lines 3 (r is room1) and 7. Lost together with these: line 3 (r is room2)."
+    found = as_json(Costs((), (), Decided(alone, (room1, room2), line(7))))["objectives"]
+    assert (found["together"], found["alone"][1]["member"]) == ([3], "r is room2") and "member" not in found["alone"][2]

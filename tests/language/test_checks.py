@@ -182,6 +182,27 @@ FAULTS: List[Tuple[Dict[str, str], List[Tuple[str, int, str, str]]]] = [
         [("PML174", 12, "both start in b", "somewhere else")],
     ),
     ({"objective": "objective: always bot at a or not bot at a"}, [("PML232", 12, "always holds", "delete it")]),
+    # room, and how many
+    ({"objective": "objective: place b holds 1 agent"}, []),
+    ({"objective": "objective: place a, b holds 1 agent"}, [("PML234", 12, "more than 1 agent is at a", "start")]),
+    ({"objective": "objective: place a holds 0 robots"}, [("PML234", 12, "more than 0 robots are at a", "start")]),
+    ({"objective": "objective: place a holds 1 robot"}, [("PML232", 12, "never are more than 1 at a", "delete it")]),
+    ({"objective": "objective: place a holds 1 of bot, man"}, [("PML230", 12, "man is never at a", "mobile")]),
+    ({"objective": "objective: place a holds 1 of bot, men"}, [("PML110", 12, "no agent men", "did you mean man?")]),
+    ({"objective": "objective: place c holds 1 robot"}, [("PML110", 12, "there is no POI c", "declare it")]),
+    ({"objective": "objective: place b holds 1.5 robots"}, [("PML014", 12, "a whole number", "without decimals")]),
+    ({"objective": "objective: way b to a holds 0 robots"}, []),
+    (
+        {"objective": "objective: way a to a holds 1 robot"},
+        [("PML230", 12, "no robot is ever between a and a", "connect a with a")],
+    ),
+    ({"event_rest": 'event "rest" only_if bot on_way from b to a and bot between a and b'}, []),
+    (
+        {"event_rest": 'event "rest" only_if man on_way from a to b'},
+        [("PML230", 6, "man is never on its way from a to b", "make it mobile")],
+    ),
+    ({"event_rest": 'event "rest" only_if at_most 1 agent at b and at_most 0 robots at a'}, []),
+    ({"event_rest": 'event "rest" only_if at_most 2 agents at b'}, [("PML232", 6, "always holds", "delete it")]),
     # rules and dependencies
     ({"rule": 'rule "order": (work before hand) before work'}, [("PML160", 7, "names work twice", "each event once")]),
     ({"rule": 'rule "order": work before hand\nrule "back": hand before work'}, [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import List
 
 import pytest
@@ -15,6 +16,7 @@ from pursue_gen.language.conditions import (
     AllOf,
     AnyOf,
     At,
+    AtMostOf,
     Condition,
     Doing,
     Holds,
@@ -34,6 +36,7 @@ from .texts import findings, text
 
 ANY, ROBOTS = Who(None), Who(None, robots=True)
 BOT = Who(ref("anna"))
+WAY = (ref("hall"), ref("shop"))
 
 
 def condition(words: str) -> Condition:
@@ -50,6 +53,27 @@ def condition(words: str) -> Condition:
         ("not anna at hall", Not(At(BOT, ref("hall"))), "anna is not at hall"),
         ("anna on_way", OnWay(BOT), "anna is on its way"),
         ("anna doing clean", Doing(BOT, ref("clean")), "anna is doing clean"),
+        ("anna on_way from hall to shop", OnWay(BOT, *WAY), "anna is on its way from hall to shop"),
+        ("any robot between hall and shop", OnWay(ROBOTS, *WAY, True), "any robot is between hall and shop"),
+        ("no robot on_way from hall to shop", Not(OnWay(ROBOTS, *WAY)), "no robot is on its way from hall to shop"),
+        ("at_most 1 robot at hall", AtMostOf(1, (At(ROBOTS, ref("hall")),)), "at most 1 robot is at hall"),
+        ("at_most 2 agents on_way", AtMostOf(2, (OnWay(ANY),)), "at most 2 agents are on their way"),
+        ("not at_most 0 robots on_way", Not(AtMostOf(0, (OnWay(ROBOTS),))), "more than 0 robots are on their way"),
+        (
+            "at_most 1 of anna, bert doing clean",
+            AtMostOf(1, (Doing(BOT, ref("clean")), Doing(Who(ref("bert")), ref("clean")))),
+            "at most 1 of anna and bert is doing clean",
+        ),
+        (
+            "at_most 1 of anna, bert at hall, shop",
+            AtMostOf(1, tuple(At(Who(ref(who)), poi) for who in ("anna", "bert") for poi in WAY)),
+            "at most 1 of anna and bert is at hall or at shop",
+        ),
+        (
+            "at_most 1 of light, dark is_false",
+            AtMostOf(1, (Holds(ref("light"), False), Holds(ref("dark"), False))),
+            "at most 1 of light and dark is false",
+        ),
         ("light is_true", Holds(ref("light"), True), "light is true"),
         ("not light is_false", Not(Holds(ref("light"), False)), "light is true"),
         ("any robot at hall", At(ROBOTS, ref("hall")), "any robot is at hall"),
@@ -140,12 +164,23 @@ def meaning(part: Condition, domains: Domains, at: "dict[str, Value]") -> bool:
         return all(parts) if isinstance(part, AllOf) else any(parts)
     if isinstance(part, Holds):
         return (at[part.state.name] == TRUE) is part.value
+    if isinstance(part, AtMostOf):
+        names = {name for each in part.parts for name in VARIABLES if meaning(_of(each, name, domains), domains, at)}
+        return len(names) <= part.most
     values = [at[name] for name in domains.among(part.who)]
     if isinstance(part, OnWay):
-        return any(value.kind == "way" for value in values)
+        ways = [value[1:] for value in values if value.kind == "way"]
+        ends = tuple(ref.name for ref in part.ends)
+        return any(not ends or way == ends or (part.either_way and way[::-1] == ends) for way in ways)
     if isinstance(part, At):
         return any(value.kind != "way" and value.where == part.place.name for value in values)
     return any(value.kind == "doing" and value.what == part.event.name for value in values)
+
+
+def _of(part: Condition, name: str, domains: Domains) -> Condition:
+    """The part said of one agent alone; what never holds where the part is not about it."""
+    assert not isinstance(part, (Not, AllOf, AnyOf, AtMostOf, Holds))
+    return replace(part, who=Who(ref(name))) if name in domains.among(part.who) else AnyOf(())
 
 
 VARIABLES: List[str] = ["anna", "bert", "cleo", "dora", "light"]

@@ -138,11 +138,24 @@ def test_robots_may_be_a_name() -> None:
         ("any of carts at door", "cart1 at door or cart2 at door"),
         ("all of carts on_way and guest at door", "(cart1 on_way and cart2 on_way) and guest at door"),
         ("not any of carts doing load", "not (cart1 doing load or cart2 doing load)"),
+        (
+            "none of carts between door and hall and guest at door",
+            "(not cart1 between door and hall and not cart2 between door and hall) and guest at door",
+        ),
+        ("any of carts on_way from hall to door", "cart1 on_way from hall to door or cart2 on_way from hall to door"),
+        ("at_most 1 of carts at door", "at_most 1 of cart1, cart2 at door"),
+        ("at_most 1 of carts at any of places", "at_most 1 of cart1, cart2 at hall, door"),
+        ("at_most 2 robots at any of places", "at_most 2 robots at hall, door"),
+        ("at_most 1 of carts at places", "at_most 1 of cart1, cart2 at hall, door"),
+        ("at_most 1 of carts, guest on_way", "at_most 1 of cart1, cart2, guest on_way"),
+        ("not at_most 2 robots at door", "not at_most 2 robots at door"),
+        ("at_most 1 of wet of rooms is_true", "at_most 1 of wet_a, wet_b is_true"),
         ("guest at door and all of wet of rooms is_true", "guest at door and (wet_a is_true and wet_b is_true)"),
     ],
 )
 def test_conditions_on_members(said: str, meant: str) -> None:
-    story = scenario('group "carts": cart1, cart2', 'group "rooms": a, b', f"objective: avoid {said}")
+    groups = ('group "carts": cart1, cart2', 'group "rooms": a, b', 'group "places": hall, door')
+    story = scenario(*groups, f"objective: avoid {said}")
     assert story.safety[0].conditions and condition_text(story.safety[0].conditions[0]) == meant
 
 
@@ -238,7 +251,7 @@ def changed(old: str, new: str) -> str:
         (HOTEL + "for each r in rooms:", "PML010", 13, 21, "but the statement ends here"),
         (HOTEL + "for each two a in rooms: connect hall and a distance 1", "PML010", 13, 16, "expected `,`"),
         (changed('room3\nfor', 'room3,\nfor'), "PML010", 5, 36, "but the statement ends here"),
-        (HOTEL + 'event "call_room1"', "PML103", 13, 7, "call_room1 is declared twice; line 7 declares it already"),
+        (HOTEL + 'event "call_room1"', "PML103", 13, 7, "call_room1 is declared twice; line 7 (r is room1) declares"),
         (HOTEL + "objective: avoid call of bob", "PML406", 13, 26, "bob is no group"),
     ],
 )  # fmt: skip
@@ -264,11 +277,12 @@ def test_else_the_member_is_named() -> None:
                    'agent "bob" controllable mobile 1 location hall can_do look_room1, look_room2')  # fmt: skip
     (only,) = found(text)
     assert only[1] == 9 and only[3].endswith("(r is room3)") and "look_room3" in only[3]
+    assert check_reading(read(text, "story.pur"))[0].hint.endswith("; the line is for each of its group")
 
 
 def test_of_alone_is_explained() -> None:
     ((code, line, column, _),) = found('poi "a"\nevent "call" of a\n')[:1]
-    assert (code, line, column) == ("PML010", 2, 14)
+    assert (code, line, column) == ("PML406", 2, 17)
 
 
 @pytest.mark.parametrize(
@@ -332,6 +346,7 @@ def names(text: str) -> Dict[str, List[int]]:
 def test_editors_know_the_names_that_stand_there() -> None:
     assert names(HOTEL) == {
         "hall": [1, 6, 11], "room1": [2, 5], "room2": [3, 5], "room3": [4, 5], "bob": [11],
+        "rooms": [5, 6, 7, 8, 10, 11, 12], "r": [6, 6, 7, 7, 7, 8, 9, 9, 10, 10, 10, 10, 12, 12, 12],
     }  # fmt: skip
 
 

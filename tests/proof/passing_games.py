@@ -43,7 +43,11 @@ def passing_texts(draw: st.DrawFn) -> str:
     for k, place in enumerate(starts):
         more = ", done" if ordered and k == 0 else ""
         lines.append(f'agent "bot{k}" controllable mobile 1 location {place} can_do work{k}{more}')
-    lines += [f"objective: bot{a} never_with bot{b}{where}" for a, b in _pairs(robots)]
+    if draw(st.booleans()):
+        lines += [f"objective: bot{a} never_with bot{b}{where}" for a, b in _pairs(robots)]
+    else:
+        lines += [f"objective: place {place} holds 1 robot" for place in places if where in ("", f" at {place}")]
+        lines += [f"objective: way p{a} to p{b} holds 1 robot" for a, b in sorted(ways) if not where]
     lines += ["reach_objective: do done"] if ordered else [f"reach_objective: do work{k}" for k in range(robots)]
     return "\n".join(lines)
 

@@ -21,7 +21,7 @@ AGAIN = "run: python -m docs.scenarios.make"
 LOST = {
     "blocked_watch", "closed_gate", "cornered_robot", "early_breakfast", "extinguisher", "fleeting_guest",
     "hasty_parcel", "lift_ride", "long_night", "own_load", "quiet_corridor", "restless", "room_service",
-    "roundabout", "staff_door", "two_errands", "two_hasty_bells", "two_officers", "two_rolling_bins",
+    "roundabout", "rush_hour", "staff_door", "two_errands", "two_hasty_bells", "two_officers", "two_rolling_bins",
     "weak_charger", "wrong_way_round",
 }  # fmt: skip
 """Kept on purpose."""

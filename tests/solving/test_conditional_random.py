@@ -13,7 +13,19 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError, Severity
 from pursue_gen.language import check, parse
-from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Doing, Holds, Not, OnWay, Who, condition_text
+from pursue_gen.language.conditions import (
+    AllOf,
+    AnyOf,
+    At,
+    AtMostOf,
+    Condition,
+    Doing,
+    Holds,
+    Not,
+    OnWay,
+    Who,
+    condition_text,
+)
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import DEFAULT
@@ -42,6 +54,8 @@ WHO = st.sampled_from([Who(ref("bot")), Who(ref("guest")), Who(None), Who(None, 
 ATOMS: st.SearchStrategy[Condition] = (
     st.builds(At, WHO, st.sampled_from("ab").map(ref))
     | st.builds(OnWay, WHO)
+    | st.builds(lambda who, either: OnWay(who, ref("b"), ref("a"), either), WHO, st.booleans())
+    | st.builds(AtMostOf, st.integers(0, 1), st.just((At(Who(None), ref("a")),)))
     | st.builds(Doing, st.just(Who(ref("bot"))), st.just(ref("work")))
     | st.builds(Holds, st.just(ref("noisy")), st.booleans())
 )

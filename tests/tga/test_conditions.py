@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Dict, Set
+from typing import Dict, Set, Tuple
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -72,6 +72,37 @@ def test_an_objective_can_be_lost_exactly_where_its_condition_is_broken(conditio
             assert ("" in sent) >= told
             moves = Arena(network, 1, idle_moves=True).situation((places, values)).moves
             assert any(move.moves[0].edge.target == "lose" and not move.controllable for move in moves) is told
+
+
+def _inside(location: str, places: Tuple[str, ...]) -> bool:
+    """At one of these places, or on a way between two of them, by the text of a location."""
+    at = location.split("_")
+    named = at[1::2] if at[0] == "going" else at[-1:]
+    return set(named) <= set(places)
+
+
+@given(
+    st.sampled_from([("place hall", ("hall",)), ("place shop", ("shop",)), ("place shop, yard", ("shop", "yard")),
+                     ("place yard, hall, shop", ("yard", "hall", "shop")), ("way shop to hall", ("hall", "shop"))]),
+    st.integers(0, 3),
+    st.sampled_from([("robot", "anna bert"), ("agent", "anna bert cleo dora"), ("of bert, dora", "bert dora")]),
+)  # fmt: skip
+@settings(max_examples=40)
+def test_room_is_exceeded_exactly_where_too_many_are_there(
+    where: Tuple[str, Tuple[str, ...]], most: int, who: Tuple[str, str]
+) -> None:
+    of = who[0] if most == 1 or "of" in who[0] else who[0] + "s"
+    network = translate(parse(SCENARIO + f"objective: {where[0]} holds {most} {of}\n", "x.pur"))
+    names = [a.name for a in network.automata]
+    for places, values in states_of(network):
+        locations = dict(zip(names, places))
+        if locations["obj"] == "idle":
+            there = [name for name in who[1].split() if _inside(str(locations[name]), where[1])]
+            if where[0].startswith("way"):
+                there = [name for name in there if str(locations[name]).startswith("going")]
+            moves = Arena(network, 1, idle_moves=True).situation((places, values)).moves
+            lost = any(move.moves[0].edge.target == "lose" and not move.controllable for move in moves)
+            assert lost is (len(there) > most)
 
 
 def test_a_place_of_never_with_is_the_only_one_that_counts() -> None:

@@ -124,6 +124,11 @@ def test_a_given_pose_is_forwarded_to_robots_that_are_never_there_together() -> 
     assert points(at_one, 0.8, "a") == [(0, 0), (0, 0.8)] and points(at_one, 0.8, "b") == [(9, 0), (9, 0)]
 
 
+def test_a_given_pose_is_forwarded_to_robots_of_which_its_place_holds_one() -> None:
+    made = kept_apart("objective: place b holds 1 robot", robots=3)
+    assert points(made, 0.8, "a") == [(0, 0), (0, 0.8), (0, -0.8)] and points(made, 0.8, "b") == [(9, 0)] * 3
+
+
 def test_what_is_optional_keeps_nobody_apart() -> None:
     assert points(kept_apart("optional 1 objective: bot1 never_with bot2"), 0.8, "b") == [(9, 0), (9, 0.8)]
 

@@ -9,11 +9,11 @@ syntax iskeyword @,48-57,_
 syntax keyword pursueStatement agent assume battery connect event for group objective optional poi reach_objective rule
 syntax keyword pursueStatement state stateDependency travel
 syntax keyword pursueConstant false is_false is_true true
-syntax keyword pursueKeyword after all always and any at at_most avoid before between by can_do capacity collaborative
-syntax keyword pursueKeyword controllable distance do does doing duration each every false_if from human if in inflation
-syntax keyword pursueKeyword initially label leaves location mobile never never_with no not of on_way one_way only_if or
-syntax keyword pursueKeyword order patrol per radius reacts_to recharges robot takes then times to together tolerance
-syntax keyword pursueKeyword true_if two unit uses waits within
+syntax keyword pursueKeyword after agents all always and any at at_most avoid before between by can_do capacity
+syntax keyword pursueKeyword collaborative controllable distance do does doing duration each every false_if from holds
+syntax keyword pursueKeyword human if in inflation initially label leaves location mobile never never_with no none not
+syntax keyword pursueKeyword of on_way one_way only_if or order patrol per place radius reacts_to recharges robot robots
+syntax keyword pursueKeyword takes then times to together tolerance true_if two unit uses waits way within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

@@ -68,9 +68,9 @@ class Assumption(Written):
         """True if it says of this agent that it does not do all that it could."""
         raise NotImplementedError
 
-    def again(self, line: int) -> Diagnostic:
-        """The finding that a line assumes the same already."""
-        return error("PML253", f"line {line} assumes this already", self.span, "delete one of the two")
+    def again(self, first: Span) -> Diagnostic:
+        """The finding that another statement assumes the same already."""
+        return error("PML253", f"{first.in_words} assumes this already", self.span, "delete one of the two")
 
     def check_in(self, setting: Setting) -> Iterator[Diagnostic]:
         """What is wrong with it in its scenario; its names are declared."""
@@ -119,8 +119,8 @@ class AboutOne(Assumption):
     def binds(self, agent: Agent) -> bool:
         return agent.name == self.agent.name
 
-    def again(self, line: int) -> Diagnostic:
-        message = f"line {line} assumes this of {self.agent.name} already"
+    def again(self, first: Span) -> Diagnostic:
+        message = f"{first.in_words} assumes this of {self.agent.name} already"
         return error("PML253", message, self.span, "keep the one that is meant")
 
     def check_in(self, setting: Setting) -> Iterator[Diagnostic]:

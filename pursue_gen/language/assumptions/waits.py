@@ -25,7 +25,6 @@ class Waits(NotSooner):
     template: ClassVar[Template] = Template("{agent=guest} waits {time:number=5} between {event=call}")
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("waits", "How many units of time it waits at least.", True),
-        Word("between", "The event: from the end of one to the beginning of the next.", True),
     )
     forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody waits in between", template.to_fill_in),)
     numbers: ClassVar[Numbers] = {"waits": "The next one begins {} of time after the end of the last, or later.".format}

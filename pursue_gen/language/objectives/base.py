@@ -102,6 +102,11 @@ class StatedObjective(Written):
         assert self.limit is not None, "there is no limit, or it has to be found first"
         return self.limit
 
+    @property
+    def limit_word(self) -> str:
+        """The word before its limit."""
+        return next(hole.behind for hole in self.template.holes if self.limited_by in hole.fields)
+
     def with_limit(self: Stated, limit: int) -> Stated:
         """The same with another limit."""
         return cast(Stated, replace(cast(Any, self), **{self.limited_by: limit}))
@@ -143,6 +148,10 @@ class Safety(StatedObjective):
     def breaks(self) -> Breaks:
         """How it is broken."""
         raise NotImplementedError
+
+    def apart(self, one: str, other: str, place: str) -> bool:
+        """True where these two agents are never both at this place as long as it is kept."""
+        return False
 
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         broken = self.breaks.condition

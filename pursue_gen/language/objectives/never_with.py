@@ -52,6 +52,9 @@ class NeverWith(Safety):
         stands = (At(Who(self.first), self.place), At(Who(self.second), self.place))
         return Breaks(pair=pair, place=self.place.name, stands=stands)
 
+    def apart(self, one: str, other: str, place: str) -> bool:
+        return {one, other} == {self.first.name, self.second.name} and (self.place is None or self.place.name == place)
+
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if kind == "agent" and name in (self.first.name, self.second.name):
             other = self.second.name if self.first.name == name else self.first.name

@@ -50,7 +50,7 @@ class Event(Labelled):
             "How long it takes, in the unit of time that you chose: 3 is up to 4. Without it, it takes no time.",
         ),
         Word("to", "Where the agent arrives; or, behind a number, the latest time.", True),
-        Word("at_most", "How many times it happens in the whole mission, and no more.", True),
+        Word("at_most", "So many and no more: how often it happens in all, or of how many something holds.", True),
         Word("times", "In the whole mission.", True),
     )
     template: ClassVar[Template] = Template(

@@ -43,17 +43,22 @@ class ForEach(_WrittenOut):
         Word("two", "Every pair of a group once.", True),
         Word("of", "The one that belongs to a member: call of room1 is call_room1.", True),
         Word("all", "Every member: all of a group.", True),
+        Word("none", "Not one member: none of a group.", True),
+        Word("robots", "All agents that are controllable and not human: a group that needs no declaration.", True),
     )
     template: ClassVar[Template] = Template(
         'for each {ranges:ranges=r in rooms}: {statement:statement=event "call" of r}',
-        ranges=Filling('(TWO WORD "," WORD "in" ref | _range ("," _range)*)', _nothing, rules='_range: WORD "in" ref'),
+        ranges=Filling(
+            '(TWO (ROBOTS WORD "," WORD | WORD "," WORD "in" ref) | _range ("," _range)*)',
+            _nothing,
+            rules='_range: WORD "in" ref | ROBOT WORD',
+        ),
         statement=Filling("_each", _nothing),
     )
-    note: ClassVar[str] = "or any other statement; for each two a, b in rooms: every pair"
+    note: ClassVar[str] = (
+        "or any other statement; for each two a, b in rooms: every pair; for each robot r, for each two robots a, b"
+    )
     forms: ClassVar[Tuple[Form, ...]] = (
-        Form("an event for each of a group", 'for each {=r} in {=rooms}: event "{=call}" of {=r} location {=r}'),
-        Form(
-            "an objective for each pair of a group",
-            "for each two {=x}, {=y} in {=robots}: objective: {=x} never_with {=y}",
-        ),
+        Form("an event for each of a group", 'for each {=r} in {group}: event "{=call}" of {=r} location {=r}'),
+        Form("an objective for each two robots", "for each two robots {=x}, {=y}: objective: {=x} never_with {=y}"),
     )

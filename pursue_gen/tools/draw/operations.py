@@ -15,6 +15,7 @@ from pursue_gen.language.formatter import format_text, formatted
 from pursue_gen.language.kinds import DECLARED, RESERVED, STATEMENTS
 from pursue_gen.language.names import KINDS
 from pursue_gen.language.navigation import rename
+from pursue_gen.language.occurrences import GROUP
 from pursue_gen.language.poses import read_poses
 from pursue_gen.language.rewriting import parts_in, parts_of
 from pursue_gen.language.syntax import Statement
@@ -23,6 +24,7 @@ from pursue_gen.language.usable import reserved
 from pursue_gen.language.word import HOLE, Form
 from pursue_gen.tools.draw import fields
 from pursue_gen.tools.draw.fields import Values, refused
+from pursue_gen.tools.draw.made import names, not_there, number_at
 from pursue_gen.tools.draw.places import lengths_per_metre, positions, with_all_positions
 from pursue_gen.tools.draw.poses import metres, with_position, with_spot
 from pursue_gen.tools.draw.statement_edits import added, restated, with_part, without, without_remark
@@ -107,13 +109,16 @@ def _connect(document: Draft, values: Values) -> Done:
     """{a, b, distance?, one_way?}: a way; without a distance it has the length of the line, in the scenario's unit."""
     a, b = fields.name_of(values, "a"), fields.name_of(values, "b")
     for name in (a, b):
-        _declared(document, "POI", name)
+        _check_place(document, name)
     if a == b:
         raise refused(f"a way from {a} to itself", "choose another place")
     one_way = bool(values.get("one_way"))
     for number, statement in enumerate(document.statements):
         if statement.kind == "CONNECT" and _joins(statement, a, b, one_way):
             return document, number
+    for way in document.scenario.connections:
+        if way.span.member and ((a, b) in way.directions and (one_way or not way.one_way)):
+            return document, number_at(document, way.span)
     distance = fields.number_of(values, "distance") if values.get("distance") else _length(document, a, b)
     return added(document, f"connect {a} and {b} distance {distance}{' one_way' if one_way else ''}")
 
@@ -141,7 +146,7 @@ def _length(document: Draft, a: str, b: str) -> str:
 def _add_agent(document: Draft, values: Values) -> Done:
     """{location, name?}: a robot there."""
     location = fields.name_of(values, "location")
-    _declared(document, "POI", location)
+    _check_place(document, location)
     name = _new_name(document, values, "bot")
     return added(document, f'agent "{name}" controllable mobile 1 location {location}')
 
@@ -156,10 +161,10 @@ def _add_event(document: Draft, values: Values) -> Done:
 def _rename(document: Draft, values: Values) -> Done:
     """{kind, name, new}: another name, wherever it is used."""
     kind, name, new = (fields.text_of(values, field) for field in ("kind", "name", "new"))
-    if kind not in KINDS or name not in document.declared[kind]:
+    if kind not in KINDS:
         raise refused(f"there is no {kind} {name}", "choose it again")
-    here = document.declared[kind][name]
-    return document.changed(*rename(document, here.start, new)), here.statement
+    number = _declared(document, kind, name)
+    return document.changed(*rename(document, document.declared[kind][name].start, new)), number
 
 
 def _set(document: Draft, values: Values) -> Done:
@@ -292,7 +297,7 @@ def _delete(document: Draft, values: Values) -> Done:
     goes_along = {"POI": ("CONNECT", "TRAVEL"), "AGENT": ("TRAVEL", "BATTERY")}.get(statement.kind, ())
     using = [use for use in _users(document, number) if document.statements[use].kind not in goes_along]
     if using:
-        name = bare(statement.name)
+        name = _declares(statement)[1]
         lines = [str(document.lines.of(document.statements[use].start) + 1) for use in using]
         where = f"line{'s' if len(lines) > 1 else ''} {', '.join(lines)}"
         raise refused(f"{name} is used in {where}", "change or delete what uses it first")
@@ -305,10 +310,16 @@ def _delete(document: Draft, values: Values) -> Done:
 
 def _users(document: Draft, number: int) -> List[int]:
     """The other statements that use the name which a statement declares."""
-    statement = document.statements[number]
-    kind, name = DECLARED.get(statement.kind), bare(statement.name)
+    kind, name = _declares(document.statements[number])
     others = (use for use in document.occurrences if use.name == name and use.kind == kind and not use.declares)
     return sorted({use.statement for use in others} - {number}) if name else []
+
+
+def _declares(statement: Statement) -> Tuple[Optional[str], str]:
+    """The kind of thing that a statement declares, and its name; "" where it declares nothing."""
+    if statement.kind == "GROUP":
+        return GROUP, bare(statement.first("NAME"))
+    return DECLARED.get(statement.kind), bare(statement.name)
 
 
 def _format(document: Draft, _: Values) -> Done:
@@ -320,13 +331,19 @@ def _declared(document: Draft, kind: str, name: str) -> int:
     """The number of the statement that declares a name. Raises PursueError where none does."""
     found = document.declared[kind].get(name)
     if found is None:
-        raise refused(f"there is no {'place' if kind == 'POI' else kind} {name}", "choose it again")
+        raise not_there(document, kind, name)
     return found.statement
+
+
+def _check_place(document: Draft, name: str) -> None:
+    """Raises PursueError where there is no place of this name."""
+    if name not in names(document, "POI"):
+        raise not_there(document, "POI", name)
 
 
 def _new_name(document: Draft, values: Values, stem: str) -> str:
     """The name that was typed, or else one that is free."""
-    taken = {name for kind in KINDS for name in document.declared[kind]}
+    taken = {name for kind in (*KINDS, GROUP) for name in names(document, kind)}
     if not values.get("name"):
         return next(f"{stem}{number}" for number in count(1) if f"{stem}{number}" not in taken)
     name = fields.name_of(values, "name")

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from typing import Any, Collection, Dict, List, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, Severity, as_json, in_order
+from pursue_gen.diagnostics import Diagnostic, Severity, Span, as_json, in_order
 from pursue_gen.drawing.ground import Ground
 from pursue_gen.drawing.layout import drawable
 from pursue_gen.drawing.look import agent_looks, mark
+from pursue_gen.language.conditions import Condition, condition_text
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.names import KINDS
+from pursue_gen.language.occurrences import GROUP
 from pursue_gen.language.rewriting import parts_in, parts_of
 from pursue_gen.language.sentences import objective_words
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.word import HOLE
 from pursue_gen.solving.inputs import findings_of
+from pursue_gen.tools.draw.made import names, number_at
 from pursue_gen.tools.draw.places import positions
 from pursue_gen.tools.draw.poses import heading
 from pursue_gen.tools.draw.statement_edits import names_behind, words_behind
@@ -35,7 +38,8 @@ def view(
     `ground`: whether robots have room where they stand on it is looked at, too; `told`: of their sizes.
 
     Distances and times are texts as they are written, positions metres, headings degrees; `statement` is the number by
-    which `operations.change` knows a part, `from` and `to` are its first and last line, counted from 1.
+    which `operations.change` knows a part, `from` and `to` are its first and last line, counted from 1. Of what comes
+    of a statement that is for each of a group, `made` is the member; it is changed in its statement only.
     """
     document = Draft.of(text, file)
     found = _findings(document, ground, told)
@@ -47,7 +51,7 @@ def view(
         "agents": _agents(document),
         "events": _events(document),
         "others": [_other(document, k) for k, one in enumerate(document.statements) if not parts_in(one.kind)],
-        "names": {kind: list(document.declared[kind]) for kind in KINDS},
+        "names": {kind: names(document, kind) for kind in (*KINDS, GROUP)},
         "findings": [_finding(document, one) for one in found[:_MOST_FINDINGS]],
         "errors": sum(one.severity is Severity.ERROR for one in found),
         "warnings": sum(one.severity is Severity.WARNING for one in found),
@@ -59,7 +63,7 @@ def forms() -> List[Dict[str, Any]]:
     """The statements that can be chosen from lists: their words cut at their holes, and what belongs into each hole."""
     found = []
     for kind, statement in STATEMENTS.items():
-        for number, form in enumerate(() if statement.parts or kind == "FOR" else statement.forms):  # a group is needed
+        for number, form in enumerate(() if statement.parts else statement.forms):
             kinds = {"=": "example", "": "name"}
             holes = [{"kind": kinds[example], "of": what} for example, what in HOLE.findall(form.words)]
             words = HOLE.split(form.words)[::3]
@@ -104,6 +108,15 @@ def _placed(document: Draft, number: int) -> Dict[str, Any]:
     return {"statement": number, "from": first, "to": last}
 
 
+def _made(document: Draft, span: Span) -> Dict[str, Any]:
+    """The lines of a statement that is for each of a group, and the member."""
+    return {**_placed(document, number_at(document, span)), "made": span.member}
+
+
+def _condition(condition: Optional[Condition]) -> str:
+    return "" if condition is None else condition_text(condition)
+
+
 def _whole(document: Draft, kind: str) -> List[Tuple[int, Statement]]:
     """The statements of a kind whose parts can be shown: those that name something begin with its name."""
     found = []
@@ -126,11 +139,12 @@ def _places(document: Draft) -> List[Dict[str, Any]]:
     for poi in drawable(document.scenario).pois:
         here = document.declared["POI"].get(poi.name)
         pose = where.get(poi.name)
-        if here is None or pose is None:
+        if pose is None or (here is None and not poi.span.member):
             continue
         place = {"name": poi.name, "label": poi.label or "", "x": pose.x, "y": pose.y, "yaw": heading(pose)}
         spots = [{"robot": spot.robot.name, "x": spot.pose.x, "y": spot.pose.y} for spot in poi.spots]
-        found.append({**place, "given": poi.pose is not None, "spots": spots, **_placed(document, here.statement)})
+        origin = _made(document, poi.span) if here is None else _placed(document, here.statement)
+        found.append({**place, "given": poi.pose is not None, "spots": spots, **origin})
     return found
 
 
@@ -143,12 +157,18 @@ def _ways(document: Draft, known: Collection[str]) -> List[Dict[str, Any]]:
             way = {"a": a, "b": b, "distance": words_behind(statement, "DISTANCE")}
             way["only_if"] = words_behind(statement, "ONLY_IF")
             found.append({**way, "one_way": statement.first("ONE_WAY") is not None, **_placed(document, number)})
+    for one in document.scenario.connections:
+        if one.span.member and {one.a, one.b} <= {*known} and one.a != one.b:
+            way = {"a": one.a, "b": one.b, "distance": str(one.distance), "only_if": _condition(one.only_if)}
+            found.append({**way, "one_way": one.one_way, **_made(document, one.span)})
     return found
 
 
 def _agents(document: Draft) -> List[Dict[str, Any]]:
     statements = [(k, one) for k, one in _whole(document, "AGENT") if one.name is not None]
-    looks = agent_looks([bare(one.name) for _, one in statements])
+    known = {one.name: one for one in reversed(document.scenario.agents)}
+    made = [one for one in document.scenario.agents if one.span.member]
+    looks = agent_looks([*(bare(one.name) for _, one in statements), *(one.name for one in made)])
     found = []
     for number, one in statements:
         name, parts = bare(one.name), parts_of(one)
@@ -157,7 +177,15 @@ def _agents(document: Draft) -> List[Dict[str, Any]]:
         agent.update(mobile=words_behind(one, "MOBILE"), location=words_behind(one, "LOCATION"))
         agent["mark"] = mark(looks[name], 0, 0, 6.0)
         lists = {key: names_behind(one, key.upper()) for key in ("can_do", "reacts_to")}
+        if name in known:  # groups are lists of their members
+            lists = {key: [ref.name for ref in getattr(known[name], key)] for key in lists}
         found.append({**agent, **lists, **_placed(document, number)})
+    for each in made:
+        kind = "free" if not each.controllable else "person" if each.human else "robot"
+        agent = {"name": each.name, "label": each.label or "", "kind": kind, "location": each.location.name}
+        agent.update(mobile=str(each.mobile or ""), mark=mark(looks[each.name], 0, 0, 6.0))
+        lists = {key: [ref.name for ref in getattr(each, key)] for key in ("can_do", "reacts_to")}
+        found.append({**agent, **lists, **_made(document, each.span)})
     return found
 
 
@@ -172,6 +200,13 @@ def _events(document: Draft) -> List[Dict[str, Any]]:
         at_most = words_behind(one, "AT_MOST").partition(" ")[0]
         ticks = {key: key.upper() in parts for key in ("collaborative", "together")}
         found.append({**event, **texts, "at_most": at_most, **ticks, **_placed(document, number)})
+    for each in document.scenario.events:
+        if each.span.member:
+            event = {"name": each.name, "label": each.label or "", "at_most": str(each.at_most or "")}
+            event.update(location=each.location.name if each.location else "", only_if=_condition(each.only_if))
+            event["duration"] = " to ".join(str(end) for end in (each.duration, each.latest) if end is not None)
+            ticks = {key: getattr(each, key) for key in ("collaborative", "together")}
+            found.append({**event, **ticks, **_made(document, each.span)})
     return found
 
 

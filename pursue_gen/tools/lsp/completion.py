@@ -9,11 +9,12 @@ from typing import Dict, FrozenSet, Iterator, List, Optional, Tuple
 from lark import Token
 
 from pursue_gen.language.draft import Draft
+from pursue_gen.language.for_each import Range, body_of, ranges_of
 from pursue_gen.language.kinds import DECLARED, KEYWORDS, MAY_BE_NAMES, MEANINGS, STATEMENTS
-from pursue_gen.language.occurrences import SUBJECTS, are_names, condition_start, kinds_behind
+from pursue_gen.language.occurrences import GROUP, MEMBERS, SUBJECTS, VARIABLE, are_names, condition_start, kinds_behind
 from pursue_gen.language.poses import robots_in
 from pursue_gen.language.syntax import accepts, statements_of, tokens_of
-from pursue_gen.language.tokens import start_of
+from pursue_gen.language.tokens import bare, start_of
 from pursue_gen.language.word import HOLE
 
 _SIGNS = {"COLON": ":", "COMMA": ",", "LPAR": "(", "RPAR": ")"}
@@ -23,7 +24,8 @@ _BEHIND_POSE = re.compile(r"\][ \t]*,?[ \t]*(\w*)\Z")
 _WORD_AFTER = re.compile(r"\w*")
 _SPECIAL = re.compile(r"[$},|\\]")
 _MOST_CHOICES = 50
-_EXAMPLES = {kind.declares: kind.form().split('"')[1] for kind in STATEMENTS.values() if kind.declares}
+_DECLARING = {GROUP: STATEMENTS["GROUP"], **{kind.declares: kind for kind in STATEMENTS.values() if kind.declares}}
+_EXAMPLES = {thing: kind.form().split('"')[1] for thing, kind in _DECLARING.items()}
 
 
 @dataclass(frozen=True)
@@ -54,7 +56,8 @@ def complete(document: Draft, offset: int) -> Tuple[Completion, ...]:
     if place.quoted is not None:
         return tuple(_missing(document, place, place.quoted))
     expected = accepts(place.behind)
-    items = list(_names(document, place, expected)) + list(_words(place, expected))
+    grouped = bool(document.syntax.groups)
+    items = list(_names(document, place, expected)) + list(_words(place, expected, grouped))
     if not place.behind or "$END" in expected or place.opens_line:
         items += _statements(document, place)
     return tuple(items)
@@ -116,8 +119,38 @@ def _names(document: Draft, place: _Place, expected: FrozenSet[str]) -> Iterator
     """Declared names that fit here."""
     kinds = kinds_behind(place.behind) if "WORD" in expected else ()
     in_condition = condition_start(place.behind) is not None
+    yield from _of_groups(document, place, kinds)
     for kind in kinds:
-        yield from _names_of(document, place, kind, repeated=in_condition)
+        if kind in document.declared and kind != GROUP:
+            yield from _names_of(document, place, kind, repeated=in_condition)
+
+
+def _of_groups(document: Draft, place: _Place, kinds: Tuple[str, ...]) -> Iterator[Completion]:
+    """Variables of the statement, and groups, whose members fit here, and what is of them; groups where a list may
+    stand."""
+    lists = GROUP in kinds or (kinds and "COMMA" in accepts((*place.behind, Token("WORD", "x"))))
+    owners = [(str(variable), _group_of(one)) for one in ranges_of(place.behind) for variable in one.variables]
+    groups = [(name, name) for name in document.declared[GROUP]] if lists else []
+    some = [(VARIABLE, *one) for one in owners if {VARIABLE, _kind_of(document, one[1])} & {*kinds}]
+    some += [(GROUP, *one) for one in groups if {GROUP, _kind_of(document, one[1])} & {*kinds}]
+    for part in document.statements:
+        name = next(iter(part.body.tokens[1:2]), None)
+        if part.kind == "FOR" and name is not None and DECLARED.get(part.body.kind) in kinds:
+            own, kind = {_group_of(one) for one in ranges_of(part.tokens)}, DECLARED[part.body.kind]
+            some += [(kind, f"{bare(name)} of {one}", group) for one, group in owners + groups if group in own]
+    for kind, text, group in dict.fromkeys(some):
+        about = ", ".join(document.syntax.groups.get(group, ()))
+        yield Completion(text, text, "WORD", "name", place.start, place.end, kind, about, of=kind)
+
+
+def _group_of(chosen: Range) -> str:
+    return "" if chosen.robots else str(chosen.group)
+
+
+def _kind_of(document: Draft, group: str) -> str:
+    """What the members of a group are."""
+    members = document.syntax.groups.get(group, ())
+    return next((kind for kind in MEMBERS if members and members[0] in document.declared[kind]), "")
 
 
 def _names_of(document: Draft, place: _Place, kind: str, repeated: bool) -> Iterator[Completion]:
@@ -157,18 +190,28 @@ def _last_word(place: _Place) -> str:
     return next((token.type for token in reversed(place.behind) if token.type in KEYWORDS), "")
 
 
-def _words(place: _Place, expected: FrozenSet[str]) -> Iterator[Completion]:
-    """Words and signs of the language, and values, that may come next within the statement."""
+def _words(place: _Place, expected: FrozenSet[str], grouped: bool) -> Iterator[Completion]:
+    """Words and signs of the language, and values, that may come next within the statement. `grouped`: the text has
+    groups, or speaks of them."""
     if not place.behind:
         return
     span = (place.start, place.end)
     names_hide = set(MAY_BE_NAMES) if "WORD" in expected else set()
-    if set(SUBJECTS) <= set(kinds_behind(place.behind)):
-        names_hide -= {"ANY", "NO"}
+    kinds = kinds_behind(place.behind)
+    if set(SUBJECTS) <= set(kinds) and place.behind[-1].type not in ("COMMA", "OF"):
+        names_hide -= {"ANY", "NO", "AT_MOST", *(("ALL", "NONE") if grouped else ())}
+    elif grouped and condition_start(place.behind) is not None and place.behind[-1].type in ("AT", "DOING"):
+        names_hide.discard("ANY")
+    elif GROUP in kinds or [token.type for token in place.behind[-2:]] == ["NUMBER", "OF"]:
+        names_hide.discard("ROBOTS")
+    elif place.behind[0].type == "FOR" and not body_of(place.behind):
+        names_hide = set()
     if [token.type for token in place.behind[-2:]] == ["OBJECTIVE", "COLON"]:
-        names_hide -= {"ALWAYS", "PATROL"}
+        names_hide -= {"ALWAYS", "PATROL", "PLACE", "WAY"}
     if "BY" in (token.type for token in place.behind):
         names_hide.discard("ANY")
+    if grouped and condition_start(place.behind) is not None and place.behind[-1].type in ("ANY", "ALL", "NONE"):
+        yield Completion("of", "of", "OF", "word", *span, about=MEANINGS["OF"])
     for token, word in KEYWORDS.items():
         if token == "TOGETHER" and "COLLABORATIVE" in expected:
             continue  # it says something behind collaborative only

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Iterable, List, Optional, Sequence
+from typing import Dict, Iterable, List, Optional, Sequence
 
 from lsprotocol import types as lsp
 
@@ -125,7 +125,10 @@ def folding_ranges(folds: Iterable[Fold]) -> List[lsp.FoldingRange]:
 
 def inlay_hints(document: OpenDocument, start: int, end: int) -> List[lsp.InlayHint]:
     """What the objectives between these offsets cost, behind their statements."""
-    ends = ((document.lines.of_span(size.span)[1], size.in_words()) for size in document.sizes)
+    said: Dict[int, List[str]] = {}  # of what is for each of a group there are several in one place
+    for size in document.sizes:
+        said.setdefault(document.lines.of_span(size.span)[1], []).append(size.in_words())
+    ends = ((at, " or ".join(dict.fromkeys(some)) + " each" * (len(some) > 1)) for at, some in said.items())
     places = ((lsp.Position(*document.positions.position(at)), words) for at, words in ends if start <= at <= end)
     return [lsp.InlayHint(place, words, tooltip=_COSTS, padding_left=True) for place, words in places]
 

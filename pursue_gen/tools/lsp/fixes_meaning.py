@@ -171,7 +171,8 @@ def without_together(document: Draft, finding: Diagnostic, part: Statement, at: 
         return
     if part.first("COLLABORATIVE") is not None:
         yield "Delete together", (document.cut(together, together),)
-        last = next((k for k, token in enumerate(part.tokens) if token.type == "AT_MOST"), len(part.tokens)) - 1
+        behind_it = (k for k, token in enumerate(part.tokens) if token.type in ("AT_MOST", "ONLY_IF"))
+        last = next(behind_it, len(part.tokens)) - 1
         yield "Add a duration", (behind(part.tokens[last], " duration 1"),)
     else:
         yield "Delete together", (document.cut(together, together),)

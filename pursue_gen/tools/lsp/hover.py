@@ -6,13 +6,15 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Callable, Dict, List, Optional, Tuple
 
-from pursue_gen.diagnostics import units
+from pursue_gen.diagnostics import listed, units
 from pursue_gen.language.batteries import levels
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.draft import Draft
+from pursue_gen.language.for_each import ranges_of
 from pursue_gen.language.kinds import KEYWORDS, MEANINGS, STATEMENTS
 from pursue_gen.language.labels import in_markdown, markdown
 from pursue_gen.language.numbers import Number, exact, read_number
+from pursue_gen.language.occurrences import GROUP, MEMBERS, VARIABLE, Occurrence
 from pursue_gen.language.scenario import (
     Agent,
     Both,
@@ -34,6 +36,7 @@ from pursue_gen.language.tokens import start_of
 from pursue_gen.language.tree_reader import MOST
 
 _MOST_LINES = 12
+_PLURALS = {"POI": "places", "agent": "agents", "event": "events", "state": "states"}
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,7 @@ def hover(document: Draft, offset: int) -> Optional[Hover]:
     """The explanation of what stands at an offset; None where there is none."""
     occurrence = document.occurrence_at(offset)
     if occurrence is not None:
-        text = _about(document.scenario, occurrence.kind, occurrence.name)
+        text = _about_members(document, occurrence) or _about(document.scenario, occurrence.kind, occurrence.name)
         if text is None:
             text = f"There is no {occurrence.kind} `{occurrence.name}`."
         return Hover(text, occurrence.start, occurrence.end)
@@ -63,7 +66,7 @@ def hover(document: Draft, offset: int) -> Optional[Hover]:
         return Hover(f"**{token}**: {MEANINGS[token.type]}{form}", start, start + len(token))
     number = read_number(token) if token.type == "NUMBER" else None
     if number is not None and part is not None and number <= MOST:
-        text = _number(document.scenario, part, start, number)
+        text = _number(document.scenario, part.body, start, number)
         return Hover(text, start, start + len(token)) if text else None
     return None
 
@@ -71,6 +74,26 @@ def hover(document: Draft, offset: int) -> Optional[Hover]:
 def lasts(window: Window) -> str:
     """How long something takes."""
     return f"{window[0]} to {window[1]} units of time"
+
+
+def _about_members(document: Draft, here: Occurrence) -> str:
+    """What a group, or a variable that stands for each of one, stands for; "" of other names."""
+    groups, kinds = document.syntax.groups, document.declared
+    if here.kind == GROUP:
+        members = groups.get(here.name, ())
+        kind = next((_PLURALS[kind] for kind in MEMBERS if members[:1] and members[0] in kinds[kind]), "things")
+        return f"**{here.name}**: a group of {kind}\n\n- {listed(members) if members else 'nothing is in it'}"
+    if here.kind != VARIABLE:
+        return ""
+    ranges = ranges_of(document.statements[here.statement].tokens)
+    found = next((one for one in ranges if here.name in one.variables), None)
+    if found is None:
+        return f"**{here.name}**: a variable"
+    members = groups.get("" if found.robots else str(found.group), ())
+    others = [name for name in found.variables if name != here.name]
+    group = "robots" if found.robots else found.group
+    words = f"each of {group} in turn" if not others else f"one of {group}, beside {others[0]}: every pair once"
+    return f"**{here.name}**: {words}\n\n- {listed(members) if members else 'nothing is in it'}"
 
 
 def _about(scenario: Scenario, kind: str, name: str) -> Optional[str]:
@@ -112,7 +135,7 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
         lines.append(f"- on the robot's map at x = {poi.pose.x:g} m, y = {poi.pose.y:g} m")
     for spot in poi.spots:
         lines.append(f"- {spot.robot.name} stands at x = {spot.pose.x:g} m, y = {spot.pose.y:g} m")
-    return lines
+    return lines + _said(scenario, "POI", poi.name)
 
 
 def _event(scenario: Scenario, event: Event) -> List[str]:
@@ -208,6 +231,9 @@ def _number(scenario: Scenario, part: Statement, start: int, number: Number) -> 
         written = (t for t in part.tokens if t.type == "NUMBER" and start_of(t) > begins)
         numbers = [value for value in map(read_number, written) if value is not None]
         return f"It takes {lasts((numbers[0], numbers[1] if len(numbers) > 1 else exact(numbers[0] + 1)))}."
+    behind = next((t.type for t in part.tokens if start_of(t) > start), "")
+    if word in ("AT_MOST", "HOLDS") and behind != "TIMES":
+        return f"No more than {number} at one time."
     if word == "MOBILE":
         lines = [f"It needs {units(number)} of time for a unit of distance; a larger number is slower.", ""]
         times = [(f"{way.a} to {way.b}", exact(way.distance * number)) for way in scenario.connections]

@@ -61,7 +61,7 @@ def section(
 def _change(change: Change) -> str:
     """A change that helps, where it is made, and what alone is not enough."""
     notes = [f"{change.next_lost} is not enough"] if change.next_lost != change.before else []
-    notes += [f"line {change.span.line}"] if change.span else []
+    notes += [change.span.in_words] if change.span else []
     return change.sentence + (f" ({'; '.join(notes)})" if notes else "")
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Mapping
+from typing import Mapping, Set
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.conditions import AllOf, AnyOf, At, Condition, Holds, Not, OnWay
+from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Atom, Condition, Holds, Not, OnWay
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, role_of
 
@@ -21,19 +21,31 @@ def holds(condition: Condition, scenario: Scenario, locations: Mapping[str, str]
         return all(holds(part, scenario, locations, values) for part in condition.parts)
     if isinstance(condition, AnyOf):
         return any(holds(part, scenario, locations, values) for part in condition.parts)
-    if isinstance(condition, Holds):
-        return bool(values[names.state_value(condition.state.name)]) is condition.value
-    who = condition.who
+    if isinstance(condition, AtMostOf):
+        found = {name for part in condition.parts for name in _found(part, scenario, locations, values)}
+        return len(found) <= condition.most
+    return bool(_found(condition, scenario, locations, values))
+
+
+def _found(atom: Atom, scenario: Scenario, locations: Mapping[str, str], values: Mapping[str, int]) -> Set[str]:
+    """The agents, or the state, of which it is so."""
+    if isinstance(atom, Holds):
+        name = atom.state.name
+        return {name} if bool(values[names.state_value(name)]) is atom.value else set()
+    who = atom.who
     if who.agent is not None:
         meant = [who.agent.name]
     else:
         meant = [agent.name for agent in scenario.agents if agent.is_robot or not who.robots]
-    places = [locations[name] for name in meant]
-    if isinstance(condition, OnWay):
-        return any(role_of(place) is Role.WAY for place in places)
-    if isinstance(condition, At):
-        poi = condition.place.name
+    if isinstance(atom, OnWay) and not atom.ends:
+        return {name for name in meant if role_of(locations[name]) is Role.WAY}
+    if isinstance(atom, OnWay):
+        a, b = (ref.name for ref in atom.ends)
+        ways = ((a, b), (b, a)) if atom.either_way else ((a, b),)
+        here: Set[str] = {names.going(*way) for way in ways}
+    elif isinstance(atom, At):
+        poi = atom.place.name
         here = {poi, *(names.doing(event.name, poi) for event in scenario.events)}
     else:
-        here = {names.doing(condition.event.name, poi.name) for poi in scenario.pois}
-    return any(place in here for place in places)
+        here = {names.doing(atom.event.name, poi.name) for poi in scenario.pois}
+    return {name for name in meant if locations[name] in here}

@@ -20,6 +20,7 @@ from pursue_gen.tools.draw.jobs import Jobs
 from pursue_gen.tools.draw.page import DrawPage
 from pursue_gen.tools.draw.server import DrawServer
 from tests.conftest import ROOT
+from tests.tools.draw.test_draw_groups import HOTEL
 
 pytest.importorskip("tornado", reason="tornado drives the browser")
 sys.path.append(str(ROOT / "tests" / "ros"))
@@ -351,3 +352,24 @@ def test_fingers_move_places_and_the_ground(there: Browser, tmp_path: Path) -> N
             f"document.querySelector('.place[data-key=b] .dot').getBoundingClientRect().x) > {3 * before}"
         )
         assert there.complaints == []
+
+
+def test_who_drags_or_deletes_one_is_told_why_it_stays(there: Browser, tmp_path: Path) -> None:
+    file = tmp_path / "hotel.pur"
+    file.write_text(HOTEL, encoding="utf-8")
+    words = "It comes of the statement in line 7, which is for each"
+    said = f"document.getElementById('status').textContent.startsWith({words!r})"
+    with drawn(there, file):
+        place = at(there, "door_room1")
+        there.press(*place, *point(there, 0.5, 0.25))
+        there.wait(said)
+        assert text(there) == HOTEL and at(there, "door_room1") == place
+        there.value("document.getElementById('item-place-door_room1').click()")
+        there.wait("document.querySelector('#inspector p').textContent.includes('(here r is room1)')")
+        assert there.value("document.querySelector('#inspector input')") is None
+        there.value("document.querySelector('.place[data-key=door_room2]').focus()")
+        there.key("Delete", DELETE)
+        there.wait(said)
+        there.click("#its-statement")
+        there.wait("document.getElementById('field-words').value === 'for each r in rooms: poi \"door\" of r'")
+        assert text(there) == HOTEL and there.complaints == []

@@ -19,6 +19,7 @@ from pursue_gen.language.syntax import COMMENTS
 from pursue_gen.tools.draw.operations import change
 from pursue_gen.tools.draw.view import view
 from tests.conftest import thesis_scenario
+from tests.tools.draw.test_draw_groups import HOTEL
 
 COMMENTED = """// the ward at night
 poi "pharmacy" // where the medicine is
@@ -232,15 +233,16 @@ def test_what_makes_no_sense_is_refused_with_a_reason(operation: Any) -> None:
 
 @pytest.mark.parametrize(
     ("kind", "form"),
-    [(token, k) for token, kind in STATEMENTS.items() if token != "FOR" for k in range(len(kind.forms))],
+    [(token, k) for token, kind in STATEMENTS.items() for k in range(len(kind.forms))],
 )
 def test_every_form_can_be_filled(kind: str, form: int) -> None:
-    given_ = {"POI": "room", "event": "fetch", "agent": "nurse", "state": "dark"}
+    given_ = {"POI": "room", "event": "fetch", "agent": "nurse", "state": "dark", "group": "rooms"}
     holes = re.findall(r"\{(=?)([^}]*)\}", STATEMENTS[kind].forms[form].words)
     values = [(what if what.isdigit() else f"{what}9") if example else given_[what] for example, what in holes]
-    text = done(COMMENTED, "add form", kind=kind, form=form, values=values)
-    assert len(Draft(text).statements) == len(Draft(COMMENTED).statements) + 1
-    assert comments(text) == comments(COMMENTED)
+    before = HOTEL if kind == "FOR" else COMMENTED
+    text = done(before, "add form", kind=kind, form=form, values=values)
+    assert len(Draft(text).statements) == len(Draft(before).statements) + 1
+    assert comments(text) == comments(before)
 
 
 # Any changes, one after the other -------------------------------------------------------------------------------------
@@ -276,7 +278,10 @@ OPERATION = st.one_of(
 )
 
 
-@given(st.sampled_from([COMMENTED, "", "// none", thesis_scenario("3").read_text()]), st.lists(OPERATION, max_size=8))
+TEXTS = [COMMENTED, "", "// none", thesis_scenario("3").read_text(), HOTEL]
+
+
+@given(st.sampled_from(TEXTS), st.lists(OPERATION, max_size=8))
 def test_any_changes_leave_a_text_as_fmt_writes_it_with_all_comments(text: str, operations: List[Any]) -> None:
     before = comments(text)
     for operation in operations:

@@ -116,7 +116,7 @@ def test_a_robots_pose_begins_with_that_of_the_place() -> None:
         ('agent "new" label |', []),
         ('agent "new" location a |', ["can_do", "reacts_to"]),
         ('state "new": initially |', ["true", "false"]),
-        ("objective: |", ["if", "avoid", "always", "patrol"]),
+        ("objective: |", ["if", "avoid", "always", "patrol", "place", "way"]),
         ("objective: patrol a, b |", ["in", "every", "by"]),
         ("objective: patrol a, b in |", ["order"]),
         ('rule "new": work |', ["and", "before", "or"]),
@@ -165,16 +165,28 @@ def test_a_place_may_be_called_together() -> None:
 @pytest.mark.parametrize(
     ("condition", "names", "words"),
     [
-        ("|", ["bot", "man", "tired"], ["not", "any", "no"]),
-        ("b|", ["bot", "man", "tired"], ["not", "any", "no"]),
-        ("bot |", [], ["is_true", "is_false", "at", "on_way", "doing"]),
+        ("|", ["bot", "man", "tired"], ["at_most", "not", "any", "no"]),
+        ("b|", ["bot", "man", "tired"], ["at_most", "not", "any", "no"]),
+        ("bot |", [], ["is_true", "is_false", "at", "on_way", "between", "doing"]),
+        ("bot on_way |", [], ["and", "or", "from"]),
+        ("bot on_way from |", ["a", "b"], []),
+        ("bot on_way from a to |", ["a", "b"], []),
+        ("bot between |", ["a", "b"], []),
+        ("bot between a and |", ["a", "b"], []),
+        ("bot between a and b and |", ["bot", "man", "tired"], ["at_most", "not", "any", "no"]),
+        ("at_most 2 |", [], ["of", "robots", "robot", "agents"]),
+        ("at_most 2 robots |", [], ["at", "on_way", "between", "doing"]),
+        ("at_most 2 of |", ["bot", "man", "tired"], ["robots"]),
+        ("at_most 2 of bot, |", ["bot", "man", "tired"], []),
+        ("at_most 2 of bot, man at |", ["a", "b"], ["any"]),
+        ("at_most 2 of bot, man at a, |", ["a", "b"], []),
         ("bot at |", ["a", "b"], []),
         ("not bot doing |", ["work", "hand", "rest", "new"], []),
-        ("bot at a and (|", ["bot", "man", "tired"], ["not", "any", "no"]),
+        ("bot at a and (|", ["bot", "man", "tired"], ["at_most", "not", "any", "no"]),
         ("bot at a and bot at |", ["a", "b"], []),
         ("no robot at |", ["a", "b"], []),
-        ("any |", [], ["is_true", "is_false", "at", "on_way", "doing", "robot"]),
-        ("tired |", [], ["is_true", "is_false", "at", "on_way", "doing"]),
+        ("any |", [], ["is_true", "is_false", "at", "on_way", "between", "doing", "robot"]),
+        ("tired |", [], ["is_true", "is_false", "at", "on_way", "between", "doing"]),
     ],
 )
 def test_what_comes_next_in_a_condition(condition: str, names: List[str], words: List[str]) -> None:
@@ -238,7 +250,8 @@ def expanded(snippet: str) -> str:
 
 
 def test_statements_to_fill_in_are_well_formed() -> None:
-    groups = '\npoi "a"\npoi "b"\ngroup "rooms": a\ngroup "robots": a, b'
+    robots = "".join(f'\nagent "robot{number}" controllable location a' for number in (1, 2))
+    groups = '\npoi "a"\npoi "b"\ngroup "rooms": a' + robots
     needed = {"GROUP": '\npoi "a"', "FOR": groups}
     names = {kind: list(names) for kind, names in Draft.of(SMALL, "x.pur").declared.items()}
     for token, statement in STATEMENTS.items():

@@ -115,6 +115,18 @@ def test_what_must_never_be() -> None:
     assert "must never be at a while man is there" in told('agent "b', apart)
 
 
+def test_for_how_many_there_is_room() -> None:
+    room = SMALL.replace("if work then hand within 20", "place b holds 2 agents")
+    assert "- holds 2 agents" in told("place ", room)
+    assert "No more than 2 at one time." in told("holds ", room)
+    way = SMALL.replace("if work then hand within 20", "way a to b holds 1 robot")
+    assert "- the way to b holds 1 robot, in both directions together" in told("way ", way)
+    few = SMALL.replace("if work then hand within 20", "avoid at_most 1 of bot, man between a and b")
+    assert "No more than 1 at one time." in told("at_most ", few)
+    assert "**man**" in told("of bot, ", few) and "**a**: a place" in told("between ", few)
+    assert "**b**: a place" in told("between a and ", few)
+
+
 def test_who_is_busy_while_an_event_of_two_lasts() -> None:
     lasting = SMALL.replace('"hand" collaborative', '"hand" collaborative duration 2')
     assert "the partner may leave as soon as it has begun" in told('event "ha', lasting)

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from lark import Token
 
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.groups import body_of
+from pursue_gen.language.for_each import body_of
 from pursue_gen.language.kinds import DECLARED
 from pursue_gen.language.names import KINDS
-from pursue_gen.language.occurrences import kinds_behind
+from pursue_gen.language.occurrences import VARIABLE, kinds_behind
 from pursue_gen.language.parser import parse
 from pursue_gen.language.scenario import Ref, Scenario
 from pursue_gen.language.syntax import accepts
@@ -42,7 +42,7 @@ def parsed(scenario: Scenario) -> Set[Tuple[str, int, int, bool]]:
     return found
 
 
-@pytest.mark.parametrize("text", [*(text for text in SCENARIOS.values() if "for each r in" not in text), SMALL])
+@pytest.mark.parametrize("text", [*(text for text in SCENARIOS.values() if 'group "' not in text), SMALL])
 def test_the_names_are_those_that_the_parser_finds(text: str) -> None:
     document = Draft.of(text, "x.pur")
     ours = set()
@@ -60,7 +60,7 @@ def test_the_names_are_those_that_the_parser_finds(text: str) -> None:
 @pytest.mark.parametrize("text", [*SCENARIOS.values(), SMALL])
 def test_every_use_has_a_declaration_of_its_kind(text: str) -> None:
     document = Draft.of(text, "x.pur")
-    assert all(o.name in document.declared[o.kind] for o in document.occurrences)
+    assert all(o.name in document.declared[o.kind] for o in document.occurrences if o.kind != VARIABLE)
 
 
 def token_of(kind: str) -> Token:

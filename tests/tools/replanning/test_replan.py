@@ -27,7 +27,7 @@ from pursue_runtime.zones import holds
 from tests.tools.replanning.plays import asked, beginning, busy, ended, game_of, solved, walk
 
 THESIS = [f"thesis/{name}" for name in ("scenario_1", "scenario_2", "scenario_3", "scenario_4", "catch_the_thief")]
-WON = [*THESIS, "work_cell/work_cell"]
+WON = [*THESIS, "work_cell/work_cell", "warehouse/goods_lift", "warehouse/traffic_light"]
 
 
 def won(request: Dict[str, Any]) -> Dict[str, Any]:

@@ -51,6 +51,8 @@ LOAD, WAVE, FALL = "loadDONE", "wave", "fall"
 ONE = "reach_objective: do load"
 BOTH = "reach_objective: do load and wave after 2 within 9"
 DUTY = "objective: if fall then wave within 4"
+ROOM = "objective: place lab holds 1 agent"
+WAY = "objective: way lab to hall holds 1 agent"
 APART = "objective: bot never_with kid"
 
 
@@ -74,6 +76,7 @@ def test_how_often_an_objective_is_called_upon_is_counted_with_its_latest_answer
         (BOTH, [(3, WAVE, "lab", "lab"), (8.5, LOAD, "hall", "lab")]),
         (f"{DUTY}\n{ONE}", [(1, FALL, "hall", "lab"), (5, WAVE, "lab", "lab"), (9, LOAD, "hall", "lab")]),
         (f"{APART}\n{ONE}", [(1, "bot_hall2lab", "going_hall_to_lab", "lab"), (3, LOAD, "hall", "lab")]),
+        (f"{ROOM}\n{WAY}\n{ONE}", [(1, "bot_hall2lab", "going_hall_to_lab", "lab"), (3, LOAD, "hall", "lab")]),
     ],
 )  # fmt: skip
 def test_a_mission_that_keeps_its_promises_is_won_and_not_lost(objectives: str, steps: List[Step]) -> None:
@@ -90,6 +93,12 @@ def test_a_mission_that_keeps_its_promises_is_won_and_not_lost(objectives: str, 
         (f"{DUTY}\n{ONE}", [(1, FALL, "hall", "lab"), (6, LOAD, "hall", "lab")], "wave within 4' was"),
         (f"objective: avoid fall\n{ONE}", [(1, FALL, "hall", "lab"), (2, LOAD, "hall", "lab")], "avoid"),
         (f"{APART}\n{ONE}", [(1, "x", "lab", "lab"), (2, LOAD, "hall", "lab")], "never_with kid' was"),
+        (f"{ROOM}\n{ONE}", [(1, "x", "lab", "lab"), (2, LOAD, "hall", "lab")], "holds 1 agent' was"),
+        (
+            f"{WAY}\n{ONE}",
+            [(1, "x", "going_hall_to_lab", "going_lab_to_hall"), (2, LOAD, "hall", "hall")],
+            "holds 1 agent' was",
+        ),
         (
             f"{APART}\n{ONE}",
             [(1, "x", "going_hall_to_lab", "going_lab_to_hall"), (2, LOAD, "hall", "lab")],

@@ -1,6 +1,6 @@
 // What is selected, as a form: each field that is changed changes the text.
 import { button, byId, field, html, shown, tick } from "./elements.js";
-import { change, selected, state } from "./state.js";
+import { atStatement, change, fixed, select, selected, state } from "./state.js";
 
 const KINDS = [["robot", "a robot"], ["person", "a person who follows instructions"], ["free", "does as it likes"]];
 const form = byId("inspector");
@@ -11,11 +11,19 @@ export function inspect() {
   const focused = form.contains(document.activeElement) ? document.activeElement.id : null;
   form.replaceChildren();
   if (!one) return;
+  if (one.thing.made) return inspectFixed(one);
   const { title, fields, more } = { place, way, agent, event, other }[one.kind](one.thing);
   const away = button("Delete", () => change({ do: "delete", statement: one.thing.statement }), { class: "danger", id: "delete" });
   form.append(html("h2", {}, title), html("div", { class: "fields" }, ...fields), html("p", { class: "row" }, ...more, away));
   const again = focused && byId(focused);
   if (again) again.focus({ preventScroll: true });
+}
+
+// What comes of a statement that is for each of a group: that is shown, and chosen with a button.
+function inspectFixed({ kind, thing }) {
+  const title = kind === "way" ? `Way between ${thing.a} and ${thing.b}` : `${shown(thing)} (${kind})`;
+  const there = button("Choose that statement", () => select(atStatement(thing.statement)), { id: "its-statement" });
+  form.append(html("h2", {}, title), html("p", { class: "quiet" }, `${fixed(thing)}.`), html("p", { class: "row" }, there));
 }
 
 function set(thing, name) {

@@ -5,7 +5,7 @@ import { all, change, isSelected, say, select, state } from "./state.js";
 
 const TITLES = { place: "Places", way: "Ways", agent: "Agents", event: "Events", other: "Rules, objectives and more" };
 const GROUPS = {
-  RULE: "Rules", STATE: "States", STATEDEPENDENCY: "States", TRAVEL: "Travel times", BATTERY: "Batteries",
+  GROUP: "Groups", FOR: "For each of a group", RULE: "Rules", STATE: "States", STATEDEPENDENCY: "States", TRAVEL: "Travel times", BATTERY: "Batteries",
   ASSUME: "Assumptions", OBJECTIVE: "What must always hold", REACH_OBJECTIVE: "What is to be achieved",
   OPTIONAL: "Optional",
 };

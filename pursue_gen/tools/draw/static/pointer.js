@@ -2,7 +2,7 @@
 import { pan, size, toMap, zoom } from "./camera.js";
 import { byId } from "./elements.js";
 import { draw, fitAll, movable, pending } from "./plan.js";
-import { all, change, look, say, select, selected, state } from "./state.js";
+import { all, change, isFixed, look, say, select, selected, state } from "./state.js";
 
 const plan = byId("plan");
 const STILL = 6; // pixels that a click may move
@@ -98,6 +98,7 @@ function down(event) {
 function begin(drag) {
   const thing = drag.hit && movable(drag.hit);
   drag.kind = thing && tool() === "way" ? "way" : thing && tool() === "select" ? "drag" : "pan";
+  if (drag.kind === "drag" && isFixed(thing)) drag.kind = "done";
   if (drag.kind !== "drag") return;
   const grasped = toMap(drag.x, drag.y);
   drag.beside = { x: thing.x - grasped.x, y: thing.y - grasped.y };
@@ -171,7 +172,7 @@ let moved = null; // a place or a spot that arrows have moved, and the timer aft
 
 function moveBy(hit, [dx, dy], step) {
   const thing = movable(hit);
-  if (!thing) return;
+  if (!thing || isFixed(thing)) return;
   if (moved && moved.hit.key !== hit.key) writeMove();
   thing.x = rounded(thing.x + dx * step);
   thing.y = rounded(thing.y + dy * step);
@@ -201,7 +202,7 @@ function pressed(event) {
     if (hit && tool() === "select") typeName(false)();
   } else if (event.key === "Delete" || event.key === "Backspace") {
     const one = hit ? all(state.view).find((each) => each.kind === hit.kind && each.key === hit.key) : selected();
-    if (one) change({ do: "delete", statement: one.thing.statement }, () => plan.focus({ preventScroll: true }));
+    if (one && !isFixed(one.thing)) change({ do: "delete", statement: one.thing.statement }, () => plan.focus({ preventScroll: true }));
   } else if (event.key === "Escape") {
     pending.from = null;
     pending.to = null;

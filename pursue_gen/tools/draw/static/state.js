@@ -67,7 +67,17 @@ export function select(one) {
 }
 
 export function atStatement(number) {
-  return all(state.view).find((one) => one.thing.statement === number) || null;
+  return all(state.view).find((one) => one.thing.statement === number && !one.thing.made) || null;
+}
+
+// What comes of a statement that is for each of a group is changed there only: says so, and is true.
+export function isFixed(thing) {
+  if (thing.made) say(`${fixed(thing)}: change that.`, true);
+  return Boolean(thing.made);
+}
+
+export function fixed(thing) {
+  return `It comes of the statement in line ${thing.from}, which is for each of a group (here ${thing.made})`;
 }
 
 // Changes ----------------------------------------------------------------------------------------------------------
