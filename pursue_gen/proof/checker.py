@@ -1,9 +1,9 @@
 """A second opinion on strategies: does every play that agrees with this one meet the objective?
 
 The closed loop of network and strategy is explored symbolically from the start. Nothing here is shared with the solver
-but the zone library: network and strategy are read anew (`moves`: joint moves; `delays`: waiting and acting;
-`closed_loop`: the two together; `extrapolation`: of zones; `search`: plays; `invariant`: all that a strategy covers, at
-once). `native` has the same in C++. See the design of the game for the rules.
+but the zone library: network and strategy are read anew (`closed_loop`), and plays are followed in C++ (in `native`
+arena.hpp: joint moves; delays.hpp: waiting and acting; closed_loop.hpp: the two together; extrapolation.hpp: of zones;
+search.hpp: plays). See the design of the game for the rules.
 """
 
 from __future__ import annotations
@@ -14,22 +14,21 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from itertools import count, groupby
-from typing import Callable, Dict, FrozenSet, Mapping, Optional, Sequence, Set, Tuple
+from typing import Callable, Dict, FrozenSet, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.proof import reasons
-from pursue_gen.proof.closed_loop import ClosedLoop, in_words, sample
+from pursue_gen.proof.closed_loop import ClosedLoop, Depth, Found
 from pursue_gen.proof.independence import proven_part
-from pursue_gen.proof.moves import Arena
-from pursue_gen.proof.native.search import searches_of
+from pursue_gen.proof.moves import Arena, in_words
 from pursue_gen.proof.passage_times import latest
 from pursue_gen.proof.passages import Fault, played
-from pursue_gen.proof.search import Depth, Found, Searches
 from pursue_gen.proof.shares import shares_of
 from pursue_gen.proof.stages import StagePart, parts_of
 from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits, Listener
 from pursue_gen.synthesis.strategy import Command, Strategy, Zone, ZoneKey, with_automata_of
 from pursue_gen.tga.network import Network, Objective
+from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict
 
 LIMIT = 1_000_000
 """So many symbolic states are explored unless the caller says otherwise. Measured on the published plans, up to some
@@ -69,7 +68,6 @@ def verify(
     ranks: Optional[Mapping[ZoneKey, int]] = None,
     limits: Limits = NO_LIMITS,
     progress: Optional[Listener] = None,
-    arenas: Optional[Callable[[int], Arena]] = None,
     closed: bool = False,
 ) -> ProofReport:
     """Check that the strategy wins when each command takes effect up to `reaction` time units after its decision.
@@ -85,8 +83,8 @@ def verify(
     one automaton at its bound that can move by itself; in a safety game all that are at their bounds must be able to.
     A strategy that names a part of the network is checked for that part, once nothing else can matter there
     (`independence`). Raises PursueError for a network or strategy that it cannot read; with exit status 5 at a limit on
-    time or memory. `progress` is called a few times a second; `arenas` as for `ClosedLoop`. `closed`: no play may leave
-    what the strategy covers (safety): that is looked at first.
+    time or memory, and where it cannot hold the times or clocks. `progress` is called a few times a second. `closed`:
+    no play may leave what the strategy covers (safety): that is looked at first.
     """
     if strategy.counter:
         return _refused("counter-strategy: it shows why the controller loses")
@@ -106,15 +104,14 @@ def verify(
         return _refused(f"left out: the strategy does not speak of what matters: {matters}")
     if not _names_all(part, strategy):
         return _refused(reasons.OTHER_NAMES)
-    loop = ClosedLoop(part, objective, strategy, reaction, ranks, arenas=arenas)
-    searches = searches_of(loop)
+    loop = ClosedLoop(part, objective, strategy, reaction, ranks)
     start = loop.arena.situation(loop.arena.initial).invariant
     if start is None or not start.includes(loop.arena.start):
         return _refused("no start: an invariant of the initial state does not hold")
     monitor = LimitMonitor(limits, progress, PROVING)
     try:
         with monitor:
-            return _walked(searches, prompt, closed, limit, monitor)
+            return _walked(loop, prompt, closed, limit, monitor)
     except MemoryError:
         raise monitor.stopped("memory") from None
 
@@ -124,17 +121,15 @@ def _refused(reason: str, states: int = 0) -> ProofReport:
     return ProofReport(False, reason, (), frozenset(), states)
 
 
-def _walked(searches: Searches, prompt: bool, closed: bool, limit: int, monitor: LimitMonitor) -> ProofReport:
+def _walked(loop: ClosedLoop, prompt: bool, closed: bool, limit: int, monitor: LimitMonitor) -> ProofReport:
     """What becomes of all plays; where the strategy fails only because zones are extrapolated, a play that is real."""
-    if searches.loop.rules.must_end:
-        report = _played(searches, False, False, limit, monitor)
-    else:
-        report = _safe(searches, closed, limit, monitor)
+    ends = loop.rules.must_end
+    report = _played(loop, False, False, limit, monitor) if ends else _safe(loop, closed, limit, monitor)
     if prompt and not report.ok:
-        report = _played(searches, True, False, limit, monitor)
-    if report.ok or searches.loop.ranks is not None:
+        report = _played(loop, True, False, limit, monitor)
+    if report.ok or loop.ranks is not None:
         return report
-    exact = _played(searches, prompt, True, min(limit, 4 * report.states + _EXACT), monitor)
+    exact = _played(loop, prompt, True, min(limit, 4 * report.states + _EXACT), monitor)
     return report if exact.reason.startswith("limit") else exact
 
 
@@ -231,31 +226,31 @@ def pruned_ranks(strategy: Strategy, report: ProofReport, ranks: Mapping[ZoneKey
     return found
 
 
-def _played(searches: Searches, prompt: bool, exact: bool, limit: int, monitor: LimitMonitor) -> ProofReport:
+def _played(loop: ClosedLoop, prompt: bool, exact: bool, limit: int, monitor: LimitMonitor) -> ProofReport:
     """What becomes of all plays when the strategy is played so; `exact`: zones are not extrapolated."""
     depth = Depth(prompt, exact, limit, _MANY_ZONES)
-    if searches.loop.rules.must_end and searches.loop.ranks is None:
-        return _report(searches.loop.arena, searches.ends(depth, monitor))
-    return _report(searches.loop.arena, searches.everything(depth, monitor))
+    if loop.rules.must_end and loop.ranks is None:
+        return _report(loop.arena, loop.ends(depth, monitor))
+    return _report(loop.arena, loop.everything(depth, monitor))
 
 
-def _safe(searches: Searches, closed: bool, limit: int, monitor: LimitMonitor) -> ProofReport:
+def _safe(loop: ClosedLoop, closed: bool, limit: int, monitor: LimitMonitor) -> ProofReport:
     """The same for a safety game, where it may be quicker to see that no play leaves what a strategy covers.
 
     Nor does extrapolation lead out of it then, as it may on a walk.
     """
-    size, walked = sum(1 for block in searches.loop.strategy.blocks for _ in block.zones), None
+    size, walked = sum(1 for block in loop.strategy.blocks for _ in block.zones), None
     if not closed and size <= _LARGE:
-        walked = _played(searches, False, False, min(limit, _SOON), monitor)
+        walked = _played(loop, False, False, min(limit, _SOON), monitor)
         if walked.ok or (limit <= _SOON and walked.reason.startswith("limit")):
             return walked
     if size <= limit:
-        found = searches.covered(monitor)
+        found = loop.covered(monitor)
         if found is not None:
-            return _report(searches.loop.arena, found)
+            return _report(loop.arena, found)
     if walked is not None and not walked.reason.startswith("limit"):
         return walked
-    return _played(searches, False, False, limit, monitor)
+    return _played(loop, False, False, limit, monitor)
 
 
 def _report(arena: Arena, found: Found) -> ProofReport:
@@ -269,3 +264,17 @@ def _report(arena: Arena, found: Found) -> ProofReport:
     places += [f"{name}={point[x - 1] / arena.scale}" for name, x in arena.clock.items()]
     play = (*map(in_words, failure.play), "then: " + " ".join(places))
     return ProofReport(False, failure.reason, play, found.used, found.states)
+
+
+def sample(zone: Dbm) -> Tuple[Fraction, ...]:
+    """A valuation in the zone, small and with small denominators."""
+    values: List[Fraction] = [Fraction(0)]
+    for i in range(1, zone.dim):
+        below = [(values[j], zone.m[j * zone.dim + i]) for j in range(i)]
+        above = [(values[j], zone.m[i * zone.dim + j]) for j in range(i)]
+        low, strict = max((value - constant(b), is_strict(b)) for value, b in below if b < INF)
+        tops = [value + constant(b) for value, b in above if b < INF]
+        if strict:
+            low = (low + min(tops)) / 2 if tops and min(tops) < low + 2 else low + 1
+        values.append(low)
+    return tuple(values[1:])

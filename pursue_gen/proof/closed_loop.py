@@ -1,32 +1,102 @@
-"""Network and strategy put together: from the points at which a discrete state is entered, all that may follow."""
+"""Network and strategy put together, and the searches through their plays, which are done in C++ (search.hpp)."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import Any, Dict, FrozenSet, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import error
 from pursue_gen.outcomes import Invalid
 from pursue_gen.proof import reasons
-from pursue_gen.proof.delays import Act, Advice, Broken, Passage, Rules, pass_time
-from pursue_gen.proof.extrapolation import Described, MaxConstants
-from pursue_gen.proof.moves import Arena, JointMove, Situation, State
-from pursue_gen.proof.zones import without
-from pursue_gen.synthesis.strategy import Command, Move, Strategy, Zone, ZoneKey
+from pursue_gen.proof.moves import Arena, State, in_words
+from pursue_gen.proof.native.tables import Tables, tables_of
+from pursue_gen.synthesis.limits import LimitMonitor
+from pursue_gen.synthesis.native import not_held
+from pursue_gen.synthesis.strategy import Move, Strategy, ZoneKey
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.scale import common_denominator, least_common_multiple
-from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict, raw
+from pursue_gen.zones.dbm import INF, Dbm
 
 INSTANTS = 4
-"""Into so many parts a time unit is cut when instants just after another are explored (see `delays`). Not measured."""
+"""Into so many parts a time unit is cut when instants just after another are explored (see `Rules`). Not measured."""
+
+_UNBOUNDED = 1 << 62
+"""How module.cpp writes no bound."""
 
 Entry = Tuple[State, Dbm]
 """A discrete state and the clocks' values just after the step into it."""
 
+Left = Tuple[int, str]
+"""The number of an automaton, and the location that it leaves."""
+
+
+@dataclass(frozen=True)
+class Rules:
+    """How the strategy is played, in scaled time units.
+
+    `reaction`: the longest delay of a command. `must_end`: waiting has to come to an end (reach), otherwise it may last
+    for ever (safety). `instant`: how long after it came into a zone without a first instant a prompt controller (see
+    Depth) acts at the latest; 0: before the environment can do anything new.
+    """
+
+    reaction: int
+    must_end: bool
+    instant: int = 0
+
+
+@dataclass(frozen=True)
+class Depth:
+    """How a search is done.
+
+    `prompt`: the controller acts before anything that the environment could not do when the command's zone was entered
+    becomes possible; otherwise it may act anywhere in the zone on its way. `exact`: zones are not extrapolated; at most
+    `limit` symbolic states; so `many` zones of a discrete state become one (0: never).
+    """
+
+    prompt: bool
+    exact: bool
+    limit: int
+    many: int = 0
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why a strategy fails, the moves of the play that leads there, the discrete state, and the points of it."""
+
+    reason: str
+    play: Tuple[Tuple[Move, ...], ...]
+    state: State
+    zone: Dbm
+
+
+@dataclass(frozen=True)
+class Found:
+    """The outcome of a search: so many symbolic states, the zones of the strategy that plays reach, the failure."""
+
+    states: int
+    used: FrozenSet[ZoneKey]
+    failure: Optional[Failure]
+
+
+@dataclass(frozen=True)
+class Latest:
+    """The largest (scaled) value of a clock at the goal, or where a location is left; None: nothing bounds it, it was
+    not found out within the limit, or the strategy `fails` when it is played so. `states`: so many symbolic states
+    before the goal were looked at."""
+
+    value: Optional[int]
+    fails: bool = False
+    states: int = 0
+
 
 class ClosedLoop:
-    """Network and strategy in one time scale; it records which zones of the strategy are used."""
+    """Network and strategy in one time scale, and the searches through them: what one works out serves the next ones.
+
+    Each search raises what the monitor does, PursueError for a strategy that speaks of clocks that the network does not
+    have, and LimitHit where clocks or times are too many or too large.
+    """
 
     def __init__(
         self,
@@ -36,188 +106,123 @@ class ClosedLoop:
         reaction: Fraction,
         ranks: Optional[Mapping[ZoneKey, int]],
         instant: Fraction = Fraction(0),
-        arenas: Optional[Callable[[int], Arena]] = None,
     ) -> None:
-        """`instant`, in time units: the strategy is played promptly, as `delays.Rules` has it.
-
-        `arenas`: those of the network by their scale (`Arena.kept`), where several loops share them.
-        """
-        scale = _scale(network, strategy, reaction)
+        """`reaction` and `instant` are in time units; with an instant `latest` is of a prompt controller."""
+        scale = least_common_multiple([strategy.scale, common_denominator([reaction, *network.times])])
         scale = least_common_multiple((scale, instant.denominator)) if instant else scale * INSTANTS
-        self.arena, self.strategy = (arenas or Arena.kept(network))(scale), strategy
-        self.rules = Rules(int(reaction * scale), instant > 0, objective.reaches, int(instant * scale))
+        self.arena, self.strategy = Arena(network, scale), strategy
+        self.rules = Rules(int(reaction * scale), objective.reaches, int(instant * scale))
         self.goal = _places(network, objective.goal) if objective.reaches else ()
         self.bad = _places(network, objective.bad) if objective.avoids else ()
-        self.used: Set[ZoneKey] = set()
         self.ranks = ranks if objective.reaches else None
-        self._advice: Dict[State, Advice] = {}
+
+    @property
+    def start(self) -> Entry:
+        """Where plays begin."""
+        return self.arena.initial, self.arena.start
+
+    def everything(self, depth: Depth, monitor: LimitMonitor) -> Found:
+        """All that is reachable."""
+        return self._found("all", depth, monitor)
+
+    def ends(self, depth: Depth, monitor: LimitMonitor) -> Found:
+        """Every play to its end, which has to be the goal."""
+        return self._found("ends", depth, monitor)
+
+    def covered(self, monitor: LimitMonitor) -> Optional[Found]:
+        """All that a safety strategy covers, at once; None where plays may leave it.
+
+        The strategy is its own certificate then: plays are not followed, but each discrete state is looked at once, as
+        if every point for which the strategy says something could be entered.
+        """
+        result = self._searched("invariant", self.start, Depth(False, False, 0), monitor)
+        return None if result["number"] is None else Found(result["number"], self._used(result), None)
+
+    def latest(
+        self,
+        clock: int,
+        limit: int,
+        monitor: LimitMonitor,
+        left: Optional[Left] = None,
+        many: int = 0,
+        start: Optional[Entry] = None,
+    ) -> Latest:
+        """When the goal is reached at the latest, or `left` is, with at most so many symbolic states; `many` as in
+        Depth. `start`: from there on."""
+        depth = Depth(self.rules.instant > 0, False, limit, many)
+        result = self._searched("latest", start or self.start, depth, monitor, clock, left)
+        return Latest(result["number"], result["fault"] >= 0, result["states"])
 
     @cached_property
-    def _blocks(self) -> Dict[State, List[int]]:
-        """The blocks of each discrete state."""
-        found: Dict[State, List[int]] = {}
-        for b, block in enumerate(self.strategy.blocks):
-            state = self.arena.state_of(block.state)
-            if state is not None:
-                found.setdefault(state, []).append(b)
-        return found
+    def _tables(self) -> Tables:
+        return tables_of(self.arena.network, self.strategy)
 
     @cached_property
-    def max_constants(self) -> MaxConstants:
-        """The constants by which zones are extrapolated."""
-        return MaxConstants(self.arena, self._described, self.rules.reaction)
+    def _native(self) -> Any:
+        """The loop in C++."""
+        tables, rules = self._tables, self.rules
+        settings: Dict[str, Any] = {
+            "factor": tables.factor(self.arena.scale, max(rules.reaction, rules.instant)),
+            "reaction": rules.reaction,
+            "must_end": rules.must_end,
+            "instant": rules.instant,
+            "goal": tables.places(self.goal),
+            "bad": tables.places(self.bad),
+            "ranks": None if self.ranks is None else tables.numbers(self.ranks, 0),
+        }
+        return tables.loop(settings)
 
-    def won(self, state: State) -> bool:
-        """True in the goal: in all of its locations at once."""
-        return bool(self.goal) and all(state[0][k] == location for k, location in self.goal)
+    def _searched(
+        self,
+        search: str,
+        start: Entry,
+        depth: Depth,
+        monitor: LimitMonitor,
+        clock: int = 0,
+        left: Optional[Left] = None,
+    ) -> Dict[str, Any]:
+        """The result of a search in C++."""
+        (locations, values), zone = start
+        if any(_UNBOUNDED <= abs(bound) < INF for bound in zone.m):
+            raise not_held("checker")
+        task = {
+            "search": search,
+            "state": [n for _, n in self._tables.places(enumerate(locations))] + list(values),
+            "zone": [min(bound, _UNBOUNDED) for bound in zone.m],
+            "prompt": depth.prompt,
+            "exact": depth.exact,
+            "limit": depth.limit,
+            "many": depth.many,
+            "clock": clock,
+            "left": self._tables.places(() if left is None else (left,)),
+        }
+        try:
+            result: Dict[str, Any] = self._native.search(task, monitor.check)
+        except OverflowError:
+            raise not_held("checker") from None
+        return result
 
-    def lost(self, state: State) -> bool:
-        """True in a bad location."""
-        return any(state[0][k] == location for k, location in self.bad)
+    def _found(self, search: str, depth: Depth, monitor: LimitMonitor) -> Found:
+        """The outcome of a search in C++, with names."""
+        result = self._searched(search, self.start, depth, monitor)
+        failure = None
+        if result["fault"] >= 0:
+            step, reason = self._moves(result["step"]), reasons.IN_ORDER[result["fault"]]
+            reason = reason.format(in_words(step) if step else depth.limit)
+            zone = Dbm(self.arena.dim, tuple(INF if b >= _UNBOUNDED else b for b in result["zone"]))
+            failure = Failure(reason, tuple(map(self._moves, result["steps"])), self._state(result["state"]), zone)
+        return Found(result["states"], self._used(result), failure)
 
-    def successors(self, entry: Entry) -> List[Tuple[JointMove, Entry]]:
-        """All next entries. Raises Broken where the strategy fails on the way to them."""
-        state, zone = entry
-        if self.won(state):
-            return []
-        if self.lost(state):
-            raise Broken(reasons.BAD, zone)
-        if state not in self._blocks:
-            raise Broken(reasons.NO_BLOCK, zone)
-        if self.ranks is None:
-            return self._steps(state, zone)
-        steps: List[Tuple[JointMove, Entry]] = []
-        for rank, part in self._ranked(state, zone):
-            for move, (target, after) in self._steps(state, part):
-                if not self.won(target) and not self._is_lower(target, after, rank):
-                    raise Broken(reasons.NO_PROGRESS.format(in_words(move.moves)), part)
-                steps.append((move, (target, after)))
-        return steps
+    def _used(self, result: Mapping[str, Any]) -> FrozenSet[ZoneKey]:
+        return frozenset(self._tables.keys(result["used"]))
 
-    def _ranked(self, state: State, zone: Dbm) -> Iterator[Tuple[int, Dbm]]:
-        """The parts of the zone with their ranks; what the strategy does not cover fails when time passes there."""
-        assert self.ranks is not None
-        rest = [zone]
-        for other, key in self._advice_in(state, self.arena.situation(state)).zones():
-            common = zone.intersect(other)
-            if common is not None:
-                yield self.ranks.get(key, 0), common
-                rest = without(rest, other)
-        for part in rest:
-            yield 0, part
+    def _moves(self, edges: Sequence[int]) -> Tuple[Move, ...]:
+        return tuple(self._tables.edges[k] for k in edges)
 
-    def _is_lower(self, state: State, zone: Dbm, rank: int) -> bool:
-        assert self.ranks is not None
-        rest = [zone]
-        if state in self._blocks:
-            for other, key in self._advice_in(state, self.arena.situation(state)).zones():
-                if self.ranks.get(key, 0) < rank:
-                    rest = [] if other.includes(zone) else without(rest, other)
-                    if not rest:
-                        return True
-        return False
-
-    def covered(self, state: State) -> Tuple[Dbm, ...]:
-        """The points of the discrete state for which there is advice; none where the game is lost."""
-        if self.lost(state) or state not in self._blocks:
-            return ()
-        return self._advice_in(state, self.arena.situation(state)).covered
-
-    def steps_from_all(self, state: State) -> List[Tuple[JointMove, Entry]]:
-        """All that may follow if each of the covered points may be entered. Raises Broken where the strategy fails."""
-        situation, covered = self.arena.situation(state), self.covered(state)
-        passage = self._passage(state, covered, self._advice_in(state, situation).waits)
-        # Nobody waits or decides elsewhere.
-        flights = (part for _, part in passage.taken if not any(zone.includes(part) for zone in covered))
-        return self._entries(situation, passage, (*covered, *flights))
-
-    def _steps(self, state: State, zone: Dbm) -> List[Tuple[JointMove, Entry]]:
-        passage = self._passage(state, (zone,), (zone,))
-        return self._entries(self.arena.situation(state), passage, passage.active)
-
-    def _passage(self, state: State, entries: Sequence[Dbm], pieces: Sequence[Dbm]) -> Passage:
-        situation = self.arena.situation(state)
-        passage = pass_time(entries, pieces, situation, self._advice_in(state, situation), self.rules)
-        self.used.update(passage.used)
-        return passage
-
-    @staticmethod
-    def _entries(
-        situation: Situation, passage: Passage, active: Sequence[Dbm]
-    ) -> List[Tuple[JointMove, Entry]]:
-        """Where commands lead that take effect, and what the environment may do at the active points."""
-        steps = list(passage.taken)
-        for move in situation.moves:
-            if not move.controllable and move.enabled is not None:
-                common = (part.intersect(move.enabled) for part in active)
-                steps += [(move, part) for part in common if part is not None]
-        return [(move, (move.target, part.reset(move.resets))) for move, part in steps]
-
-    def _advice_in(self, state: State, situation: Situation) -> Advice:
-        found = self._advice.get(state)
-        if found is None:
-            wait: List[Tuple[Dbm, ZoneKey]] = []
-            acts: List[Act] = []
-            for b in self._blocks[state]:
-                block = self.strategy.blocks[b]
-                wait += [(zone, (b, "wait", n)) for n, zone in self._zones(block.wait, situation)]
-                for k, command in enumerate(block.commands):
-                    move, fault = joint_move(command, situation)
-                    acts += [Act(zone, (b, k, n), move, fault) for n, zone in self._zones(command.zones, situation)]
-            found = self._advice[state] = Advice.of(wait, acts, self.rules.reaction)
-        return found
-
-    def _zones(self, zones: Sequence[Zone], situation: Situation) -> Iterator[Tuple[int, Dbm]]:
-        """The zones within the invariant, those without a point left out, with their numbers."""
-        for n, zone in enumerate(zones):
-            dbm = situation.invariant
-            for c in zone:
-                if dbm is not None:
-                    bound = raw(self._scaled(c.bound), c.strict)
-                    dbm = dbm.constrained(self._index(c.left), self._index(c.right), bound)
-            if dbm is not None:
-                yield n, dbm
-
-    def _index(self, clock: Optional[str]) -> int:
-        if clock is None:
-            return 0
-        if clock not in self.arena.clock:
-            hint = f"the clocks are {', '.join(self.arena.clock)}"
-            raise Invalid([error("SYN104", f"the strategy speaks of a clock {clock}", hint=hint)])
-        return self.arena.clock[clock]
-
-    def _scaled(self, bound: Fraction) -> int:
-        return bound.numerator * (self.arena.scale // bound.denominator)
-
-    def _described(self, state: State) -> Described:
-        """What may happen in a state, and which constants the strategy compares clocks with there."""
-        if self.won(state) or self.lost(state) or state not in self._blocks:
-            return (), ()
-        situation = self.arena.situation(state)
-        moves = {id(move): move for move in situation.moves if not move.controllable and move.enabled is not None}
-        compared: List[Tuple[int, int]] = []
-        for b in self._blocks[state]:
-            block = self.strategy.blocks[b]
-            commanded = (joint_move(command, situation)[0] for command in block.commands)
-            moves.update((id(move), move) for move in commanded if move is not None and move.enabled is not None)
-            for c in (c for zone in block.zones for c in zone):
-                size = abs(self._scaled(c.bound))
-                compared += [(x, size) for x in (self._index(c.left), self._index(c.right)) if x]
-        return tuple(moves.values()), compared
-
-
-def joint_move(command: Command, situation: Situation) -> Tuple[Optional[JointMove], str]:
-    """The joint move that a command names, or None and why there is none."""
-    for move in situation.moves:
-        if move.moves[:1] == command.moves[:1] and _same(move.moves[1:], command.moves[1:]):
-            if move.controllable:
-                return move, ""
-            return None, reasons.NOT_CONTROLLABLE
-    return None, reasons.NO_JOINT_MOVE
-
-
-def _same(some: Sequence[object], others: Sequence[object]) -> bool:
-    return len(some) == len(others) and all(one in others for one in some)
+    def _state(self, numbers: List[int]) -> State:
+        automata = self.arena.network.automata
+        places = tuple(automaton.locations[n].name for automaton, n in zip(automata, numbers))
+        return places, tuple(numbers[len(automata) :])
 
 
 def _places(network: Network, places: Sequence[Tuple[str, str]]) -> Tuple[Tuple[int, str], ...]:
@@ -229,31 +234,3 @@ def _places(network: Network, places: Sequence[Tuple[str, str]]) -> Tuple[Tuple[
         raise Invalid([error("SYN105", f"the objective speaks of {unknown[0]}, which the network does not have")])
     numbers = {automaton.name: k for k, automaton in enumerate(network.automata)}
     return tuple((numbers[name], location) for name, location in places)
-
-
-def _scale(network: Network, strategy: Strategy, reaction: Fraction) -> int:
-    """What all bounds have to be multiplied by to be integers."""
-    return least_common_multiple([strategy.scale, common_denominator([reaction, *network.times])])
-
-
-def in_words(moves: Sequence[Move]) -> str:
-    """The moves that are made together, as a step of a play: who, the event, the edges."""
-    who = "controller" if all(move.edge.controllable for move in moves) else "environment"
-    sync = moves[0].edge.sync
-    event = "tau" if sync is None else sync.channel
-    edges = (f"{m.automaton}.{m.edge.source} -> {m.automaton}.{m.edge.target}" for m in moves)
-    return f"{who}: {event} ({', '.join(edges)})"
-
-
-def sample(zone: Dbm) -> Tuple[Fraction, ...]:
-    """A valuation in the zone, small and with small denominators."""
-    values: List[Fraction] = [Fraction(0)]
-    for i in range(1, zone.dim):
-        below = [(values[j], zone.m[j * zone.dim + i]) for j in range(i)]
-        above = [(values[j], zone.m[i * zone.dim + j]) for j in range(i)]
-        low, strict = max((value - constant(b), is_strict(b)) for value, b in below if b < INF)
-        tops = [value + constant(b) for value, b in above if b < INF]
-        if strict:
-            low = (low + min(tops)) / 2 if tops and min(tops) < low + 2 else low + 1
-        values.append(low)
-    return tuple(values[1:])

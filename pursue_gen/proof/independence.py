@@ -18,7 +18,6 @@ from typing import AbstractSet, List, Optional, Sequence, Set, Tuple
 
 from pursue_gen.proof.moves import Arena, Bound
 from pursue_gen.proof.relaxed_reachability import Places, commanded, live
-from pursue_gen.proof.zones import without
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.hidden import is_loosened, why_not_hidden
 from pursue_gen.tga.network import Automaton, Edge, Network, Objective
@@ -248,7 +247,7 @@ def _left_at(arena: Arena, stay: Dbm, bounds: Sequence[Bound], ways: Sequence[Ed
         rest += [] if last is None else [last]
     for edge in ways:
         free: Optional[Dbm] = stay.constrained_all(arena.limits(edge.guard.clocks))
-        rest = rest if free is None else without(rest, free)
+        rest = rest if free is None else [part for piece in rest for part in piece.minus(free)]
     return rest
 
 

@@ -17,7 +17,6 @@ from typing import Any, Callable, Dict, Optional
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.proof.checker import LIMIT, verify
 from pursue_gen.proof.independence import named_part
-from pursue_gen.proof.moves import Arena
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
@@ -65,15 +64,13 @@ def strategy_margin(
     if len(strategy.blocks) > states:  # each takes a state where plays come to it
         return Margin(reaction, None)
     part = named_part(network, strategy)
-    left, arenas = states, None if strategy.in_parts else Arena.kept(part)
-    start = limits.now()
+    left, start = states, limits.now()
 
     def wins(delay: Fraction) -> Optional[bool]:
         nonlocal left
         if left <= 0:
             return None
-        how = limits.since(start)
-        report = verify(part, objective, strategy, delay, limit=left, prompt=True, limits=how, arenas=arenas)
+        report = verify(part, objective, strategy, delay, limit=left, prompt=True, limits=limits.since(start))
         left -= report.states
         return None if report.reason.startswith("limit") else report.ok
 

@@ -6,13 +6,13 @@ Written from the rules of the game, not from the solver: the two must not share 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache, partial
 from itertools import product
-from typing import Callable, Dict, Iterable, List, Optional, Set, Tuple
+from typing import Dict, Iterable, List, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import error
 from pursue_gen.outcomes import Invalid
-from pursue_gen.synthesis.strategy import DiscreteState, Move
+from pursue_gen.proof import reasons
+from pursue_gen.synthesis.strategy import Command, DiscreteState, Move
 from pursue_gen.tga.network import ClockBound, Constraint, Edge, Guard, Location, Network
 from pursue_gen.zones.dbm import Dbm, raw
 
@@ -73,12 +73,6 @@ class Arena:
                 self._edges.setdefault((k, edge.source), []).append(edge)
         self._situations: Dict[State, Situation] = {}
         self._refuse()
-
-    @staticmethod
-    def kept(network: Network) -> Callable[[int], Arena]:
-        """A function from a scale to the arena of the network in it, the same one each time: what several searches
-        need to know of a discrete state is worked out once."""
-        return lru_cache(maxsize=None)(partial(Arena, network))
 
     def _start(self) -> Dbm:
         """The clocks at the start: 0, or what the network says."""
@@ -204,3 +198,26 @@ class Arena:
             tuple(sorted(resets)),
             enabled,
         )
+
+
+def joint_move(command: Command, situation: Situation) -> Tuple[Optional[JointMove], str]:
+    """The joint move that a command names, or None and why there is none."""
+    for move in situation.moves:
+        if move.moves[:1] == command.moves[:1] and _same(move.moves[1:], command.moves[1:]):
+            if move.controllable:
+                return move, ""
+            return None, reasons.NOT_CONTROLLABLE
+    return None, reasons.NO_JOINT_MOVE
+
+
+def _same(some: Sequence[object], others: Sequence[object]) -> bool:
+    return len(some) == len(others) and all(one in others for one in some)
+
+
+def in_words(moves: Sequence[Move]) -> str:
+    """The moves that are made together, as a step of a play: who, the event, the edges."""
+    who = "controller" if all(move.edge.controllable for move in moves) else "environment"
+    sync = moves[0].edge.sync
+    event = "tau" if sync is None else sync.channel
+    edges = (f"{m.automaton}.{m.edge.source} -> {m.automaton}.{m.edge.target}" for m in moves)
+    return f"{who}: {event} ({', '.join(edges)})"

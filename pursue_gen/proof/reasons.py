@@ -17,3 +17,21 @@ NO_JOINT_MOVE = (
 FOR_EVER = "for ever: a play comes back to where it was and need not reach the goal"
 NO_PROGRESS = "no progress: {} leads no nearer to the goal"
 LIMIT = "limit: not decided within {} symbolic states"
+
+IN_ORDER = (
+    BAD,
+    NO_BLOCK,
+    NO_PROGRESS,
+    NOT_COVERED,
+    BLOCKED,
+    NO_END,
+    WAITS_FOR_EVER,
+    NOT_ENABLED,
+    TOO_LATE,
+    CONTRADICTION,
+    NOT_CONTROLLABLE,
+    NO_JOINT_MOVE,
+    FOR_EVER,
+    LIMIT,
+)
+"""As delays.hpp numbers them."""

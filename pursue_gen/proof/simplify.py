@@ -17,7 +17,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
-from pursue_gen.proof.native.tables import MOST_DELAY, MOST_FACTOR, MOST_RANK, Bound, NotHeld, tables_of
+from pursue_gen.proof.native.tables import Bound, tables_of
 from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Network
@@ -35,34 +35,18 @@ def simplified(
     ranks: Optional[Mapping[ZoneKey, int]] = None,
     limits: Limits = NO_LIMITS,
 ) -> Strategy:
-    """The strategy, proven for the network and the reaction, in fewer zones and bounds; as it is where the native
-    checker, which does this, cannot hold it.
+    """The strategy, proven for the network and the reaction, in fewer zones and bounds (simplify.hpp).
 
     `ranks` (see `verify`) allow more: a play may stay in a command's zone where that leads to no higher rank. Raises
-    PursueError with exit status 5 at a limit.
+    PursueError with exit status 5 at a limit, and where times or clocks are too large or too many.
     """
-    try:
-        return _natively(network, strategy, reaction, ranks, LimitMonitor(limits, phase=PROVING))
-    except (NotHeld, OverflowError):
-        return strategy
-
-
-def _natively(
-    network: Network,
-    strategy: Strategy,
-    reaction: Fraction,
-    ranks: Optional[Mapping[ZoneKey, int]],
-    monitor: LimitMonitor,
-) -> Strategy:
-    """The same (simplify.hpp). Raises NotHeld where the tables cannot hold it, OverflowError for too large times."""
     tables = tables_of(network, strategy)
+    if not tables.whole:
+        return strategy
     scale = least_common_multiple([tables.scale, reaction.denominator])
-    factor, late = scale // tables.scale, int(reaction * scale)
-    held = factor <= MOST_FACTOR and late <= MOST_DELAY and all(abs(r) < MOST_RANK for r in (ranks or {}).values())
-    if not tables.whole or not held:
-        raise NotHeld
+    late, monitor = int(reaction * scale), LimitMonitor(limits, phase=PROVING)
     numbers = tables.numbers(ranks, _UNKNOWN) if ranks else None
-    found = tables.simplify(factor, late, numbers, monitor)
+    found = tables.simplify(tables.factor(scale, late), late, numbers, monitor)
     names = (None, *network.clocks)
     known: Dict[Bound, Constraint] = {}
 

@@ -14,9 +14,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import AbstractSet, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
-from pursue_gen.proof.closed_loop import joint_move
 from pursue_gen.proof.independence import why_it_matters
-from pursue_gen.proof.moves import Arena, Situation
+from pursue_gen.proof.moves import Arena, Situation, joint_move
 from pursue_gen.proof.relaxed_reachability import Extent, commanded, live
 from pursue_gen.proof.stage_entry import Known, State, after_part, at_start, moved
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Place, Strategy, with_edges

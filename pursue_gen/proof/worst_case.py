@@ -15,7 +15,6 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.network_names import AT_RISK
 from pursue_gen.proof.closed_loop import ClosedLoop
 from pursue_gen.proof.independence import named_part
-from pursue_gen.proof.native.search import searches_of
 from pursue_gen.proof.passage_times import INSTANT, latest
 from pursue_gen.proof.passages import Fault, played
 from pursue_gen.proof.shares import shares_of
@@ -118,7 +117,7 @@ def worst_case(
         loop = ClosedLoop(game, objective, strategy, reaction, None, INSTANT)
         try:
             with monitor:
-                latest = searches_of(loop).latest(loop.arena.clock[counting_clock(game) or ""], limit, monitor)
+                latest = loop.latest(loop.arena.clock[counting_clock(game) or ""], limit, monitor)
         except PursueError:
             return None
         if not latest.fails:
@@ -145,18 +144,18 @@ def answer_times(
         if len(own.blocks) > _BLOCKS * limit:
             continue
         game = named_part(whole, own)
-        searches = searches_of(ClosedLoop(game, wanted, own, reaction, None, INSTANT))
+        loop = ClosedLoop(game, wanted, own, reaction, None, INSTANT)
         for k, automaton in enumerate(game.automata):
             if AT_RISK not in automaton.stays or automaton.name not in dict(wanted.bad):
                 continue
-            clock, took = searches.loop.arena.clock[automaton.stays[AT_RISK][0].clock], None
+            clock, took = loop.arena.clock[automaton.stays[AT_RISK][0].clock], None
             for many in (0, _MANY):
                 try:
-                    took = took or searches.latest(clock, limit, LimitMonitor(limits), (k, AT_RISK), many).value
+                    took = took or loop.latest(clock, limit, LimitMonitor(limits), (k, AT_RISK), many).value
                 except PursueError:
                     return found
             if took:
-                found[watched.get(automaton.name, automaton.name)] = Fraction(took, searches.loop.arena.scale)
+                found[watched.get(automaton.name, automaton.name)] = Fraction(took, loop.arena.scale)
     return found
 
 

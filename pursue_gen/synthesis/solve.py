@@ -15,6 +15,7 @@ from pursue_gen.synthesis.engine import Engine
 from pursue_gen.synthesis.engine import Stats as Stats
 from pursue_gen.synthesis.game import Game, RawBlock
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
+from pursue_gen.synthesis.native import not_held
 from pursue_gen.synthesis.native.engine import NativeEngine
 from pursue_gen.synthesis.overtaking import ended_earlier, without_overtaking
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
@@ -142,9 +143,7 @@ def _compiled(
         part = without_clocks(part, gone)
         game = compile_game(without_clocks(network, gone) if whole else part, objective, reaction, part)
     if not engine.holds(game):
-        hint = "choose a larger unit of time, or times with fewer decimals, so that the numbers become smaller"
-        message = "the solver cannot hold the game: its times are too large, or it has too many clocks"
-        raise LimitHit([error("SYN012", message, hint=hint)])
+        raise not_held("solver")
     return game, gone
 
 

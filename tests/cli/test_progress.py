@@ -34,7 +34,6 @@ def slow(self, states, waiting):
     time.sleep(300 if self._phase == PROVING else 0)
 LimitMonitor.check = slow
 """
-CHECKERS = {"native": "", "python": "from pursue_gen.proof.native import tables; tables._CLOCKS = -1"}
 
 
 class Screen(io.StringIO):
@@ -167,10 +166,9 @@ def test_ctrl_c_ends_the_solver(large: Path) -> None:
     assert "Traceback" not in told.err
 
 
-@pytest.mark.parametrize("checker", CHECKERS)
-def test_ctrl_c_ends_the_checker(tmp_path: Path, checker: str) -> None:
+def test_ctrl_c_ends_the_checker(tmp_path: Path) -> None:
     plan = tmp_path / "plan.txt"
-    changed = "\n".join((IMPATIENT, SLOW_CHECKER, CHECKERS[checker]))
+    changed = "\n".join((IMPATIENT, SLOW_CHECKER))
     told = on_terminal("solve", FIRST, "-o", plan, changed=changed, until="\rproving: ")
     assert told.status == 130
     assert told.err.endswith(f"{ERASE}interrupted\n")

@@ -1,34 +1,39 @@
-"""Which of the two checkers is used: the native one, or its readable twin, which the product has for large numbers."""
+"""Which of the two checkers is used: the native one, or its readable twin."""
 
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import Any, Iterator
+from typing import Any, Iterator, Mapping
 from unittest import mock
 
 from pursue_gen.proof import simplify
-from pursue_gen.proof.native import search
-from pursue_gen.proof.native.tables import NotHeld, tables_of
+from pursue_gen.proof.closed_loop import ClosedLoop
+from pursue_gen.solving import proving
+from tests.oracle import search
 from tests.oracle.simplify import simplified
 
-_NATIVELY = simplify._natively
+_SEARCHES = "everything", "ends", "covered", "latest"
+_NATIVE = {name: getattr(ClosedLoop, name) for name in _SEARCHES}
+_PYTHON = {name: getattr(search, name) for name in _SEARCHES}
+_SIMPLIFIED = simplify.simplified
 
 
 @contextmanager
 def in_python() -> Iterator[None]:
-    """The checker in Python, as for networks that the native one does not hold."""
-    with _making(mock.Mock(side_effect=NotHeld), simplified):
+    """The checker in Python."""
+    with _making(_PYTHON, simplified):
         yield
 
 
 @contextmanager
 def natively() -> Iterator[None]:
     """The native checker, also within `in_python`."""
-    with _making(tables_of, _NATIVELY):
+    with _making(_NATIVE, _SIMPLIFIED):
         yield
 
 
 @contextmanager
-def _making(tables: Any, fewer: Any) -> Iterator[None]:
-    with mock.patch.object(search, "tables_of", tables), mock.patch.object(simplify, "_natively", fewer):
+def _making(searches: Mapping[str, Any], fewer: Any) -> Iterator[None]:
+    patches = mock.patch.multiple(ClosedLoop, **searches), mock.patch.object(simplify, "simplified", fewer)
+    with patches[0], patches[1], mock.patch.object(proving, "simplified", fewer):
         yield

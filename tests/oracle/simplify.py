@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
-from pursue_gen.proof.zones import outside
-from pursue_gen.synthesis.limits import LimitMonitor
+from pursue_gen.synthesis.limits import NO_LIMITS, PROVING, LimitMonitor, Limits
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, Strategy, Zone, ZoneKey
 from pursue_gen.synthesis.strategy_from import minimal
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.scale import common_denominator
 from pursue_gen.zones.dbm import Dbm, constant, is_strict, raw
+from tests.oracle.unions import outside
 
 Bound = Tuple[int, int, int]
 
@@ -121,11 +121,11 @@ def simplified(
     network: Network,
     strategy: Strategy,
     reaction: Fraction,
-    ranks: Optional[Mapping[ZoneKey, int]],
-    monitor: LimitMonitor,
+    ranks: Optional[Mapping[ZoneKey, int]] = None,
+    limits: Limits = NO_LIMITS,
 ) -> Strategy:
-    """What the native checker finds; for any network."""
-    units = _Units(network, strategy, reaction)
+    """What the native checker finds."""
+    units, monitor = _Units(network, strategy, reaction), LimitMonitor(limits, phase=PROVING)
     blocks: List[Block] = []
     with monitor:
         for b, block in enumerate(strategy.blocks):

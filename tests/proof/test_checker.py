@@ -16,9 +16,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.proof import checker
 from pursue_gen.proof.checker import ProofReport, pruned, verify
-from pursue_gen.proof.closed_loop import ClosedLoop
-from pursue_gen.proof.native.search import searches_of
-from pursue_gen.proof.search import Depth
+from pursue_gen.proof.closed_loop import ClosedLoop, Depth
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.plan import read_plan
@@ -358,9 +356,9 @@ def test_where_the_hull_of_many_zones_fails_they_are_checked_one_by_one() -> Non
     reaction = Fraction(1, 10)
     strategy = solve(net, objective, reaction).strategy
     assert strategy is not None
-    searches = searches_of(ClosedLoop(net, objective, strategy, reaction, None))
+    loop = ClosedLoop(net, objective, strategy, reaction, None)
     at_once, one_by_one = (
-        searches.everything(Depth(False, False, checker.LIMIT, many), LimitMonitor()) for many in (1, 0)
+        loop.everything(Depth(False, False, checker.LIMIT, many), LimitMonitor()) for many in (1, 0)
     )
     assert one_by_one.states > len({b for b, _, _ in one_by_one.used}), "some discrete state has several zones"
     assert at_once == one_by_one and at_once.failure is None

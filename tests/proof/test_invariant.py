@@ -16,7 +16,6 @@ from pursue_gen.proof import checker
 from pursue_gen.proof.checker import pruned, verify
 from pursue_gen.proof.closed_loop import ClosedLoop
 from pursue_gen.proof.independence import named_part
-from pursue_gen.proof.native.search import searches_of
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.policies import won_by_policy
 from pursue_gen.solving.rules import Rules, played
@@ -38,7 +37,7 @@ DELAYS = (Fraction(0), Fraction(1, 2), Fraction(1))
 
 def covered(network: Network, objective: Objective, strategy: Strategy, reaction: Fraction) -> bool:
     loop = ClosedLoop(named_part(network, strategy), objective, strategy, reaction, None)
-    return searches_of(loop).covered(LimitMonitor()) is not None
+    return loop.covered(LimitMonitor()) is not None
 
 
 @given(st.data(), networks(), random_games.objectives(Kind.SAFETY), st.sampled_from(DELAYS), st.integers(0, 2))

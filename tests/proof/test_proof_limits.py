@@ -10,11 +10,9 @@ import pytest
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.outcomes import LimitHit
+from pursue_gen.proof import simplify
 from pursue_gen.proof.checker import verify
-from pursue_gen.proof.closed_loop import ClosedLoop
-from pursue_gen.proof.native.search import searches_of
-from pursue_gen.proof.search import Depth, Searches
-from pursue_gen.proof.simplify import simplified
+from pursue_gen.proof.closed_loop import ClosedLoop, Depth
 from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.synthesis.limits import LimitMonitor, Limits
 from pursue_gen.synthesis.strategy import Strategy
@@ -27,15 +25,15 @@ LONG = Strategy((block(NET, "a", [f"x<1,y<{10**9}"], (f"x>=1,y<{10**9}", AGAIN),
 """Who acts at once wins after 10⁹ moves."""
 
 
-def searches() -> Searches:
-    return searches_of(ClosedLoop(NET, REACH, LONG, NOW, None))
+def loop() -> ClosedLoop:
+    return ClosedLoop(NET, REACH, LONG, NOW, None)
 
 
 USES: Dict[str, Callable[[LimitMonitor], object]] = {
-    "everything": lambda monitor: searches().everything(Depth(True, True, 10**9), monitor),
-    "ends": lambda monitor: searches().ends(Depth(True, True, 10**9), monitor),
-    "covered": lambda monitor: searches().covered(monitor),
-    "latest": lambda monitor: searches().latest(1, 10**9, monitor),
+    "everything": lambda monitor: loop().everything(Depth(True, True, 10**9), monitor),
+    "ends": lambda monitor: loop().ends(Depth(True, True, 10**9), monitor),
+    "covered": lambda monitor: loop().covered(monitor),
+    "latest": lambda monitor: loop().latest(1, 10**9, monitor),
 }
 
 
@@ -50,9 +48,9 @@ def test_what_ends_the_monitor_ends_every_search(use: str) -> None:
 
 def test_what_ends_the_monitor_ends_the_search_for_fewer_zones() -> None:
     with mock.patch.object(LimitMonitor, "check", side_effect=KeyboardInterrupt), pytest.raises(KeyboardInterrupt):
-        simplified(NET, LONG, NOW)
+        simplify.simplified(NET, LONG, NOW)
     with pytest.raises(PursueError) as failure:
-        simplified(NET, LONG, NOW, limits=Limits(seconds=1e-9))
+        simplify.simplified(NET, LONG, NOW, limits=Limits(seconds=1e-9))
     assert failure.value.exit_status == 5
 
 

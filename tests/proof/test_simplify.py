@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.language import load
+from pursue_gen.proof import simplify
 from pursue_gen.proof.checker import ProofReport, pruned, pruned_ranks, verify
 from pursue_gen.proof.margin import strategy_margin
-from pursue_gen.proof.simplify import simplified
 from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.solution import solution
 from pursue_gen.synthesis.solve import solve
@@ -54,7 +54,7 @@ GO = moves(NET, ("bot", 0))
 
 
 def small(*blocks: Block) -> Strategy:
-    return simplified(NET, Strategy(blocks), NOW)
+    return simplify.simplified(NET, Strategy(blocks), NOW)
 
 
 def test_waiting_is_said_in_one_zone_where_no_command_lies_between() -> None:
@@ -75,10 +75,10 @@ def test_a_command_keeps_the_end_of_its_window_and_loses_what_tells_nothing_apar
 
 def test_zones_of_a_command_that_time_leads_from_one_to_the_other_become_one_only_if_the_rank_allows_it() -> None:
     two = Strategy((block(NET, "a", ["x<=1"], ("x>1,x<=2|x>2", GO)),))
-    assert len(simplified(NET, two, NOW).blocks[0].commands[0].zones) == 2
+    assert len(simplify.simplified(NET, two, NOW).blocks[0].commands[0].zones) == 2
     for early, late, count in ((1, 2, 2), (2, 1, 1), (1, 1, 1)):
         ranks = {(0, "wait", 0): 3, (0, 0, 0): early, (0, 0, 1): late}
-        assert len(simplified(NET, two, NOW, ranks).blocks[0].commands[0].zones) == count
+        assert len(simplify.simplified(NET, two, NOW, ranks).blocks[0].commands[0].zones) == count
 
 
 @given(networks(), OBJECTIVES, st.sampled_from((NOW, HALF)), st.booleans())
@@ -89,7 +89,7 @@ def test_in_fewer_zones_it_still_wins(net: Network, objective: Objective, reacti
     report = verify(net, objective, verdict.strategy, reaction, prompt=False)
     kept = pruned(verdict.strategy, report)
     ranks = pruned_ranks(verdict.strategy, report, verdict.ranks) if ranked and verdict.ranks else None
-    few = simplified(net, kept, reaction, ranks)
+    few = simplify.simplified(net, kept, reaction, ranks)
     assert verify(net, objective, few, reaction, prompt=False).ok
     assert PlayByPlay(net, objective, few, reaction).broken() is None
     assert all(one <= other for one, other in zip(size(few), size(kept)))
@@ -106,7 +106,7 @@ def test_no_zone_shrinks_and_no_point_gets_a_second_action(
     strategy = solve(net, objective, NOW).strategy
     if strategy is None:
         return
-    for before, after in zip(strategy.blocks, simplified(net, strategy, NOW).blocks):
+    for before, after in zip(strategy.blocks, simplify.simplified(net, strategy, NOW).blocks):
         at = before.state.locations
         places = [place for a in net.automata for place in a.locations if (a.name, place.name) in at]
         invariant = [bound for place in places for bound in place.invariant]
@@ -156,7 +156,8 @@ def test_the_thesis_s_strategies_get_fewer_zones_and_stand_no_less_delay(number:
     assert verdict.strategy is not None
     report = verify(network, objective, verdict.strategy, rules.reaction, ranks=verdict.ranks)
     kept = pruned(verdict.strategy, report)
-    few = simplified(network, kept, rules.reaction, pruned_ranks(verdict.strategy, report, verdict.ranks or {}))
+    ranks = pruned_ranks(verdict.strategy, report, verdict.ranks or {})
+    few = simplify.simplified(network, kept, rules.reaction, ranks)
     assert size(few)[0] <= size(kept)[0] and size(few)[1] * 2 < size(kept)[1]
     margins = [strategy_margin(network, objective, one, rules.reaction) for one in (kept, few)]
     assert margins[0].wins <= margins[1].wins

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
-from contextlib import contextmanager
 from dataclasses import replace
 from fractions import Fraction
-from typing import Callable, Iterator, Optional, Tuple, TypeVar
+from itertools import count
+from typing import Callable, Optional, Tuple, TypeVar
 from unittest import mock
 
 import pytest
@@ -15,21 +16,23 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load
-from pursue_gen.proof import checker, search
+from pursue_gen.outcomes import LimitHit
+from pursue_gen.proof import checker, simplify
 from pursue_gen.proof.checker import ProofReport, pruned, pruned_ranks, verify
-from pursue_gen.proof.closed_loop import ClosedLoop
+from pursue_gen.proof.closed_loop import ClosedLoop, Latest
+from pursue_gen.proof.independence import named_part
 from pursue_gen.proof.margin import strategy_margin
-from pursue_gen.proof.native.search import searches_of
-from pursue_gen.proof.simplify import simplified
 from pursue_gen.proof.worst_case import INSTANT, worst_case
 from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.synthesis.limits import NO_LIMITS, LimitMonitor
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Constraint, Strategy
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tga.network import Automaton, ClockBound, Kind, Network, Objective
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Kind, Network, Objective
 from tests.conftest import thesis_scenario
 from tests.oracle.checker import in_python
+from tests.oracle.closed_loop import LoopInPython
+from tests.oracle.delays import Broken
 from tests.proof.test_checker import REACH, STRAIGHT, automaton, block, edge, moves, network
 from tests.proof.test_checker_random import NEVER_L2, OBJECTIVES, _all_keys, _changed, networks
 from tests.synthesis import random_games
@@ -40,7 +43,6 @@ Look = Tuple[Network, Objective, Strategy, Fraction, Optional[bool], bool]
 KINDS = (Kind.REACH, Kind.REACH_WHILE_SAFE, Kind.SAFETY)
 REACTIONS = st.sampled_from((Fraction(0), Fraction(1, 3), Fraction(1, 2), Fraction(1)))
 RANDOM = settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
-SEARCHES = ("_everything", "_ends", "is_invariant", "_latest")
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -48,19 +50,11 @@ def twin() -> None:
     """Each test uses both."""
 
 
-@contextmanager
-def natively() -> Iterator[None]:
-    """The searches in Python may not step in."""
-    with mock.patch.multiple(search, **dict.fromkeys(SEARCHES, mock.Mock(side_effect=AssertionError("in Python")))):
-        yield
-
-
 def both(look: Callable[[], T]) -> T:
     """What both say."""
     with in_python():
         expected = look()
-    with natively():
-        assert look() == expected
+    assert look() == expected
     return expected
 
 
@@ -101,7 +95,7 @@ def test_they_agree_with_the_solver_s_ranks_and_on_fewer_zones(
     report = both(lambda: verify(net, objective, strategy, reaction, prompt=False, ranks=ranks))
     assert report.ok
     kept, left = pruned(strategy, report), None if ranks is None else pruned_ranks(strategy, report, ranks)
-    both(lambda: simplified(net, kept, reaction, left))
+    both(lambda: simplify.simplified(net, kept, reaction, left))
 
 
 @RANDOM
@@ -120,14 +114,26 @@ def test_they_agree_on_the_worst_time(look: Look) -> None:
 
 
 @RANDOM
+@given(st.data(), looks(), st.sampled_from((2, 1_000)))
+def test_they_agree_on_the_worst_time_from_the_middle_of_a_play(data: st.DataObject, look: Look, limit: int) -> None:
+    net, objective, strategy, reaction, _, _ = look
+    loop = ClosedLoop(net, objective, strategy, reaction, None, INSTANT)
+    played_in_python, entry = LoopInPython(loop), loop.start
+    with contextlib.suppress(Broken):
+        for _ in range(data.draw(st.integers(0, 4))):
+            entry = data.draw(st.sampled_from([after for _, after in played_in_python.successors(entry)] or [entry]))
+    both(lambda: loop.latest(1, limit, LimitMonitor(), start=entry))
+
+
+@RANDOM
 @given(looks(), st.sampled_from((0, 1, 4)))
 def test_they_agree_on_how_long_a_location_is_not_left(look: Look, many: int) -> None:
     net, objective, strategy, reaction, _, _ = look
     left = 0, net.automata[0].locations[0].name
 
-    def latest() -> search.Latest:
+    def latest() -> Latest:
         loop = ClosedLoop(net, objective, strategy, reaction, None, INSTANT)
-        return searches_of(loop).latest(1, 1_000, LimitMonitor(NO_LIMITS), left, many)
+        return loop.latest(1, 1_000, LimitMonitor(NO_LIMITS), left, many)
 
     both(latest)
 
@@ -181,11 +187,15 @@ def slower(net: Network, strategy: Strategy, factor: int) -> Tuple[Network, Stra
 @RANDOM
 @given(looks(), st.sampled_from([10**3, 10**4, 10**5, 10**6, 2**25, 2**27, 10**9, 2**40, 2**48, 2**55, 10**30]))
 def test_times_of_any_size_change_nothing(look: Look, factor: int) -> None:
-    """32 bits hold the first, 64 bits more; Python takes the rest."""
+    """32 bits hold the first, 64 bits more; the rest is refused."""
     net, objective, strategy, reaction, prompt, _ = look
     longer, plan = slower(net, strategy, factor)
     late = reaction * factor
-    found = verify(longer, objective, plan, late, prompt=prompt)
+    try:
+        found = verify(longer, objective, plan, late, prompt=prompt)
+    except LimitHit as problem:
+        assert problem.diagnostics[0].code == "SYN012" and factor > 10**6
+        return
     with in_python():
         assert verify(longer, objective, plan, late, prompt=prompt) == found
     if prompt is False:  # the instants after another do not grow with the times
@@ -203,7 +213,7 @@ def test_they_agree_on_the_thesis_s_scenarios(number: str, rules: Rules) -> None
     strategy, ranks = verdict.strategy, verdict.ranks
     report = both(lambda: verify(net, objective, strategy, rules.reaction, ranks=ranks))
     assert report.ok
-    few = both(lambda: simplified(net, pruned(strategy, report), rules.reaction))
+    few = both(lambda: simplify.simplified(net, pruned(strategy, report), rules.reaction))
     assert both(lambda: worst_case(net, objective, few, rules.reaction)) is not None
     assert both(lambda: strategy_margin(net, objective, few, rules.reaction, 3_000)).wins > 0
 
@@ -247,13 +257,45 @@ def test_what_does_not_fit_together_is_refused_by_both_with_the_same_words(one: 
     assert found == expected and not (isinstance(found, ProofReport) and found.ok)
 
 
-def test_where_the_native_searches_cannot_be_done_python_does_them() -> None:
-    plan = Strategy((block(STRAIGHT, "a", ["x<=1"], ("x>1", GO)),))
-    many = replace(STRAIGHT, clocks=(*STRAIGHT.clocks, *(f"z{k}" for k in range(38))))
-    with in_python():
-        expected = verify(many, REACH, plan)
-    with pytest.raises(AssertionError, match="in Python"), natively():
-        verify(many, REACH, plan)
-    assert verify(many, REACH, plan) == expected and expected.ok
-    most = replace(STRAIGHT, clocks=(*STRAIGHT.clocks, *(f"z{k}" for k in range(37))))
-    assert both(lambda: verify(most, REACH, plan)).ok
+@st.composite
+def crowded(draw: st.DrawFn) -> Network:
+    """A game with many clocks more, which edges reset, in between."""
+    net, more = draw(networks()), [f"z{k}" for k in range(draw(st.sampled_from((37, 38, 62, 94, 125))))]
+    numbers = count()
+
+    def resetting(one: Edge) -> Edge:
+        return replace(one, resets=(*one.resets, *more[next(numbers) :: 7]))
+
+    clocks = draw(st.permutations((*net.clocks, *more)))
+    return replace(net.with_each(lambda a: a.with_edges(map(resetting, a.edges))), clocks=tuple(clocks))
+
+
+@settings(RANDOM, max_examples=8)
+@given(st.data(), crowded(), OBJECTIVES, REACTIONS)
+def test_they_agree_however_many_clocks_there_are(
+    data: st.DataObject, net: Network, objective: Objective, reaction: Fraction
+) -> None:
+    strategy = solve(net, objective, reaction).strategy
+    if strategy is None:
+        return
+    report = both(lambda: verify(net, objective, strategy, reaction, prompt=False))
+    assert report.ok
+    both(lambda: simplify.simplified(named_part(net, strategy), pruned(strategy, report), reaction))
+    both(lambda: worst_case(net, objective, strategy, reaction))
+    if _all_keys(strategy):
+        changed = _changed(data.draw, strategy)
+        both(lambda: verify(net, objective, changed, reaction))
+
+
+@pytest.mark.parametrize(("clocks", "time"), [(136, 1), (2, 10**30)])
+def test_what_the_checker_cannot_hold_it_refuses(clocks: int, time: int) -> None:
+    many = replace(STRAIGHT, clocks=(*STRAIGHT.clocks, *(f"z{k}" for k in range(clocks - len(STRAIGHT.clocks)))))
+    net, plan = slower(many, Strategy((block(STRAIGHT, "a", ["x<=1"], ("x>1", GO)),)), time)
+    uses: Tuple[Callable[[], object], ...] = (
+        lambda: verify(net, REACH, plan),
+        lambda: simplify.simplified(net, plan, Fraction(0)),
+    )
+    for use in uses:
+        with pytest.raises(LimitHit, match="the checker cannot hold the game"):
+            use()
+    assert worst_case(net, REACH, plan) is None

@@ -13,10 +13,8 @@ from benchmarks.lab_scenarios import lab_scenario
 from benchmarks.ordinary_families import buildings_apart
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Respond, Scenario
-from pursue_gen.proof.closed_loop import ClosedLoop
+from pursue_gen.proof.closed_loop import ClosedLoop, Depth
 from pursue_gen.proof.independence import named_part
-from pursue_gen.proof.native.search import searches_of
-from pursue_gen.proof.search import Depth
 from pursue_gen.proof.worst_case import INSTANT
 from pursue_gen.solving.answers import Answer, answers
 from pursue_gen.solving.request import SolveRequest
@@ -69,7 +67,7 @@ def keeps(solution: Solution, deadline: Fraction) -> bool:
     """Whether the strategy, played promptly, keeps a deadline for all objectives."""
     game = with_deadlines(named_part(solution.network, solution.strategy), deadline)
     loop = ClosedLoop(game, solution.objective, solution.strategy, solution.reaction, None, INSTANT)
-    return searches_of(loop).everything(Depth(True, False, 100_000), LimitMonitor()).failure is None
+    return loop.everything(Depth(True, False, 100_000), LimitMonitor()).failure is None
 
 
 @pytest.mark.parametrize("text", [DESK, WATCH, WATCH.replace("every", "in order every")], ids=range(3))

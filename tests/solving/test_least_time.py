@@ -218,7 +218,7 @@ def test_far_more_blocks_than_states_to_spend_are_not_played(monkeypatch: pytest
     network, objective = _thesis("1")
     won = solution(network, objective, DEFAULT)
     large = replace(won.strategy, blocks=(2 * LIMIT // len(won.strategy.blocks) + 1) * won.strategy.blocks)
-    monkeypatch.setattr("pursue_gen.proof.worst_case.searches_of", played)
+    monkeypatch.setattr("pursue_gen.proof.worst_case.ClosedLoop", played)
     assert worst_case(won.network, objective, large, won.reaction) is None
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -110,6 +111,16 @@ def test_a_command_ends_with_a_verdict_or_a_code(tmp_path: Path, mobile: int, st
     file.write_text(SCENARIO.format(distance=1_000_000, mobile=mobile, deadline=1_000_000))
     done = pursue("solve", file, "--no-explain")
     assert done.status == status and code in done.err, done.err
+
+
+def test_a_plan_for_a_game_beyond_the_checker_is_not_decided(tmp_path: Path) -> None:
+    file, game, query, plan = (tmp_path / name for name in ("small.pur", "TGA.xml", "TCTL.q", "plan.txt"))
+    file.write_text(SCENARIO.format(distance=1, mobile=1, deadline=9))
+    assert pursue("tga", file, "-o", tmp_path).status == 0
+    assert pursue("solve", game, query, "-o", plan).status == 0
+    game.write_text(re.sub(r'(kind="invariant".*;= [1-9])', r"\g<1>" + 16 * "0", game.read_text()))
+    done = pursue("verify", game, query, plan)
+    assert done.status == 5 and "SYN012: the checker cannot hold the game" in done.err, done.err
 
 
 def test_numbers_without_end_are_an_error_with_a_code() -> None:

@@ -6,10 +6,10 @@ from typing import Any, Callable, List
 
 import pytest
 
-from pursue_gen.proof.zones import merged, outside, with_neighbours, without
 from pursue_gen.zones.dbm import Dbm
 from pursue_gen.zones.effort import look_after
 from pursue_gen.zones.federation import Federation, predt
+from tests.oracle.unions import merged, outside, with_neighbours, without
 from tests.zones.test_few_zones import OPERATIONS, unit_squares
 from tests.zones.twins import native_zones, natives
 

@@ -1,4 +1,4 @@
-// Discrete states with their joint moves, worked out when they are asked for (the twin of proof/moves.py).
+// Discrete states with their joint moves, worked out when they are asked for (as in proof/moves.py).
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Network and strategy put together: from the points at which a discrete state is entered, all that may follow (the twin
-// of proof/closed_loop.py).
+// of tests/oracle/closed_loop.py).
 #pragma once
 
 #include "proof/native/delays.hpp"

@@ -1,12 +1,12 @@
 // What one discrete state's part of a strategy means while time passes: where it waits, where it acts, where it breaks
-// (the twin of proof/delays.py, step by step: what comes first there comes first here).
+// (the twin of tests/oracle/delays.py, step by step: what comes first there comes first here).
 #pragma once
 
 #include "proof/native/arena.hpp"
 
 namespace pursue::proof {
 
-// Why a strategy fails; the texts are in loop.py, in this order.
+// Why a strategy fails; the texts are in reasons.py, in this order.
 enum class Fault {
     bad,
     no_block,

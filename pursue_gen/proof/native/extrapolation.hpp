@@ -1,4 +1,7 @@
-// The largest constants that the rest of a play compares each clock with (the twin of proof/extrapolation.py).
+// The largest constants that the rest of a play compares each clock with (the twin of tests/oracle/extrapolation.py).
+//
+// Per discrete state the largest constant that a clock is compared with before its next reset (Behrmann, Bouyer, Fleury and
+// Larsen, TACAS 2003, with the strategy's zones as further guards). Extrapolation only adds points, so it hides no failure.
 #pragma once
 
 #include <stdexcept>
@@ -17,6 +20,11 @@ class MaxConstants {
     MaxConstants(ClosedLoop<Z>& loop, int start) : loop_(loop) {
         explore(start);
         spread();
+    }
+
+    // Whether moves lead to the state.
+    bool knows(int state) const {
+        return state < static_cast<int>(largest_.size()) && !largest_[state].empty();
     }
 
     // The zone and all points that the rest of the play cannot tell from it, within the state's invariant.

@@ -1,4 +1,5 @@
-// The Python face of the native checker: tables of a network and a strategy, and what is done with them (see loop.py).
+// The Python face of the native checker: tables of a network and a strategy, and what is done with them (see
+// closed_loop.py).
 #include <pybind11/functional.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -88,7 +89,8 @@ Watch::Poll polling(const py::function& poll) {
     };
 }
 
-// Calls f with a zone type that has room for the clocks, with 32-bit bounds, or 64-bit ones if `wide` is set.
+// Calls f with a zone type that has room for the clocks, with 32-bit bounds, or 64-bit ones if `wide` is set. The solver
+// holds up to 127 clocks; with one that counts from the start there are 128.
 template <class F>
 auto with_zones(int dim, bool wide, F f) {
 #ifndef PURSUE_ONE_SIZE  // as in the solver
@@ -102,7 +104,12 @@ auto with_zones(int dim, bool wide, F f) {
     if (dim <= 16) return f(Dbm<16, std::int64_t>{});
 #endif
     if (dim <= 40) return f(Dbm<40, std::int64_t>{});
-    throw std::overflow_error("more than 39 clocks");
+#ifndef PURSUE_ONE_SIZE
+    if (dim <= 64) return f(Dbm<64, std::int64_t>{});
+    if (dim <= 96) return f(Dbm<96, std::int64_t>{});
+#endif
+    if (dim <= 136) return f(Dbm<136, std::int64_t>{});
+    throw std::overflow_error("more than 135 clocks");
 }
 
 template <class Z>
@@ -142,7 +149,6 @@ struct Settings {
     std::int64_t factor;
     Rules rules;
     Places goal, bad;
-    std::vector<std::int64_t> start;
     std::optional<Ranks> ranks;
 };
 
@@ -151,13 +157,14 @@ Settings read_settings(const py::dict& in) {
             {in["reaction"].cast<int>(), false, in["must_end"].cast<bool>(), in["instant"].cast<int>()},
             read_places(in["goal"]),
             read_places(in["bad"]),
-            in["start"].cast<std::vector<std::int64_t>>(),
             in["ranks"].cast<std::optional<Ranks>>()};
 }
 
-// What a search has to do, and how.
+// What a search has to do, from where, and how.
 struct Task {
     std::string search;
+    Discrete state;
+    std::vector<std::int64_t> zone;
     bool prompt, exact;
     std::size_t limit, many;
     int clock;
@@ -167,6 +174,8 @@ struct Task {
 Task read_task(const py::dict& in) {
     const Places left = read_places(in["left"]);
     return {in["search"].cast<std::string>(),
+            in["state"].cast<Discrete>(),
+            in["zone"].cast<std::vector<std::int64_t>>(),
             in["prompt"].cast<bool>(),
             in["exact"].cast<bool>(),
             in["limit"].cast<std::size_t>(),
@@ -198,8 +207,7 @@ template <class Z>
 class LoopOf : public AnyLoop {
   public:
     LoopOf(const Tables& tables, const Settings& settings)
-        : start_(read_zone<Z>(settings.start, tables.network.dim)),
-          loop_(tables, settings.factor, settings.rules, settings.goal, settings.bad,
+        : loop_(tables, settings.factor, settings.rules, settings.goal, settings.bad,
                 settings.ranks ? &*settings.ranks : nullptr, watch_) {
         if (std::max(settings.rules.reaction, settings.rules.instant) > Arena<Z>::most / 2)
             throw std::overflow_error("the reaction is too long");
@@ -209,13 +217,14 @@ class LoopOf : public AnyLoop {
         watch_ = Watch(poll);
         const Watched watched(watch_);
         loop_.rules.prompt = task.prompt;
-        Search<Z> search(loop_, constants_, start_, task.exact, task.limit);
+        const Entry<Z> start{loop_.arena.number(task.state), read_zone<Z>(task.zone, loop_.arena.dim)};
+        Search<Z> search(loop_, constants_, start, task.exact, task.limit);
         Result out;
         if (task.search == "invariant") {
             if (const auto zones = search.invariant()) out.number = static_cast<std::int64_t>(*zones);
         } else if (task.search == "latest") {
             try {
-                out.number = search.latest(task.clock, task.left, task.many);
+                out.number = search.latest(task.clock, task.left, task.many, out.states);
             } catch (const Broken<Z>& broken) {
                 out.fault = static_cast<int>(broken.fault);
             }
@@ -239,7 +248,6 @@ class LoopOf : public AnyLoop {
     }
 
     Watch watch_;
-    const Z start_;
     ClosedLoop<Z> loop_;
     std::optional<MaxConstants<Z>> constants_;
 };
@@ -368,10 +376,10 @@ PYBIND11_MODULE(_proof, module) {
         .def(py::init([](const py::dict& network, const py::list& blocks, const py::list& constraints) {
             return Tables{read_network(network), read_strategy(blocks, constraints)};
         }));
-    py::class_<Loop>(module, "Loop", "A closed loop, played as search.py says.")
+    py::class_<Loop>(module, "Loop", "A closed loop, played as closed_loop.py says.")
         .def(py::init<const Tables&, const py::dict&>(), py::arg("tables"), py::arg("settings"), py::keep_alive<1, 2>())
         .def("search", &Loop::search, py::arg("task"), py::arg("poll"),
-             "Searches the loop. Raises OverflowError where the times do not fit, and what `poll` raises.");
+             "Searches the loop. Raises OverflowError where times or clocks do not fit, and what `poll` raises.");
     module.def("simplify", &simplify, py::arg("tables"), py::arg("factor"), py::arg("late"), py::arg("ranks"),
                py::arg("poll"), "The strategy's zones, simplified. Raises as a search does.");
 }

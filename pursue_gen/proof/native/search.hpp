@@ -1,7 +1,6 @@
-// The checker's searches through the closed loop (the twins of those in proof/search.py, invariant.py, worst_case.py).
+// The checker's searches through the closed loop (the twins of those in tests/oracle/search.py and invariant.py).
 #pragma once
 
-#include <list>
 #include <optional>
 
 #include "proof/native/extrapolation.hpp"
@@ -25,11 +24,12 @@ class Search {
   public:
     // With `exact` zones are not extrapolated; at most `limit` symbolic states are met. `constants` are those of the loop,
     // if an earlier search needed them.
-    Search(ClosedLoop<Z>& loop, std::optional<MaxConstants<Z>>& constants, const Z& start, bool exact, std::size_t limit)
-        : loop_(loop), constants_(constants), start_{loop.arena.number(loop.arena.network().initial), start},
-          exact_(exact), limit_(limit) {
+    Search(ClosedLoop<Z>& loop, std::optional<MaxConstants<Z>>& constants, const Entry<Z>& start, bool exact,
+           std::size_t limit)
+        : loop_(loop), constants_(constants), start_(start), exact_(exact), limit_(limit) {
         loop_.used.clear();
-        loop_.arena.check_width(start);
+        loop_.arena.check_width(start.zone);
+        if (constants_ && !constants_->knows(start.state)) constants_.reset();
     }
 
     // Everything that is reachable, breadth first; `many` zones of a discrete state (0: never) become one.
@@ -132,7 +132,9 @@ class Search {
         return out;
     }
 
-    // The number of zones of a safety strategy, if no play leaves the points that it covers; else none.
+    // The number of zones of a safety strategy, if no play leaves the points that it covers; else none. Each discrete state
+    // is looked at once, as if every covered point could be entered. The start is covered, and from all covered points the
+    // loop finds no failure and no step but to covered ones: so by induction no play leaves them, and none fails.
     std::optional<std::size_t> invariant() {
         if (!outside(start_.zone, loop_.covered(start_.state), loop_.watch).empty()) return std::nullopt;
         std::deque<int> pending{start_.state};
@@ -163,8 +165,8 @@ class Search {
 
     // The largest value of a clock at the goal, or if there is a place to leave, with the steps that leave it. Breadth
     // first; `many` zones of a discrete state (0: never) become one. None if nothing bounds it, or the limit was met.
-    // Throws Broken where the strategy fails.
-    std::optional<std::int64_t> latest(int clock, const std::optional<Place>& left, std::size_t many) {
+    // `looked`: so many symbolic states before the goal were looked at. Throws Broken where the strategy fails.
+    std::optional<std::int64_t> latest(int clock, const std::optional<Place>& left, std::size_t many, std::size_t& looked) {
         std::int64_t latest = 0;
         const auto noted = [&](const Z& zone) {
             const auto bound = zone.at(clock, 0);
@@ -181,13 +183,13 @@ class Search {
                 continue;
             }
             loop_.watch.reached(found.size(), found.size() - next - 1);
+            if (looked++ >= limit_) return std::nullopt;
             for (const auto& [move, step] : loop_.successors(entry)) {
                 const bool leaves = left && loop_.is_at(entry.state, *left) && !loop_.is_at(step.state, *left);
                 if (leaves && !noted(step.zone)) return std::nullopt;
                 Z after = constants().extrapolate(step.zone, step.state);
                 std::vector<int>& known = passed[step.state];
                 if (std::any_of(known.begin(), known.end(), [&](int k) { return includes(found[k].entry.zone, after); })) continue;
-                if (found.size() >= limit_) return std::nullopt;
                 if (many && known.size() >= many) {
                     for (int k : known) after = hull(after, found[k].entry.zone);
                 } else {

@@ -1,4 +1,5 @@
-// A strategy in fewer zones and bounds (the twin of proof/simplify.py, which says why the plays stay the same).
+// A strategy in fewer zones and bounds (the twin of tests/oracle/simplify.py; proof/simplify.py says why the plays stay the
+// same).
 #pragma once
 
 #include <array>

@@ -85,7 +85,7 @@ struct Tables {
     Strategy strategy;
 };
 
-// How a strategy is played, see delays.Rules; in scaled time units.
+// How a strategy is played, see closed_loop.py; in scaled time units.
 struct Rules {
     int reaction;
     bool prompt, must_end;

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
+from pursue_gen.diagnostics import error
 from pursue_gen.language.numbers import Number
+from pursue_gen.outcomes import Invalid
 from pursue_gen.synthesis.limits import LimitMonitor
-from pursue_gen.synthesis.native import not_built
+from pursue_gen.synthesis.native import not_built, not_held
 from pursue_gen.synthesis.strategy import Constraint, DiscreteState, Move, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import ClockBound, Edge, Network
 from pursue_gen.tga.scale import common_denominator, least_common_multiple
@@ -17,20 +19,16 @@ try:
 except ImportError:  # no compiler when the package was installed
     _proof = None  # type: ignore[assignment]
 
-_CLOCKS, _MOST, _VALUES = 39, 1 << 50, 1 << 31
-"""The bounds of the native checker: clocks, constants in the tables, values of variables."""
+_MOST, _VALUES = 1 << 50, 1 << 31
+"""The bounds of the tables: constants, values of variables."""
 
-MOST_FACTOR, MOST_DELAY, MOST_RANK = 1 << 40, (1 << 30) - 1, 1 << 62
-"""What the tables' constants may be multiplied by, and scaled delays and ranks, at most."""
+_MOST_FACTOR, _MOST_DELAY = 1 << 40, (1 << 30) - 1
+"""What the tables' constants may be multiplied by, and scaled delays, at most."""
 
 Bound = Tuple[int, int, int]
 """Two clocks (0: none) and the raw bound of their difference."""
 
 Smaller = List[List[List[List[Bound]]]]
-
-
-class NotHeld(Exception):
-    """The tables cannot hold this network or strategy."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +37,7 @@ class Tables:
 
     `firsts`: the number of the first zone of each block, in the order in which the tables number zones; then that of
     all zones. `whole`: every block is for a discrete state of the network. `edges`: the network's, by their numbers.
+    `locations`: the numbers of each automaton's.
     """
 
     native: Any
@@ -48,6 +47,14 @@ class Tables:
     firsts: Tuple[int, ...]
     whole: bool
     edges: Tuple[Move, ...]
+    locations: Sequence[Mapping[str, int]]
+
+    def factor(self, scale: int, delay: int) -> int:
+        """What makes the tables' times those of this scale. Raises LimitHit for one, or a scaled delay, too large."""
+        factor = scale // self.scale
+        if factor > _MOST_FACTOR or delay > _MOST_DELAY:
+            raise not_held("checker")
+        return factor
 
     def loop(self, settings: Dict[str, Any]) -> _proof.Loop:
         """The native closed loop."""
@@ -56,9 +63,16 @@ class Tables:
     def simplify(self, factor: int, late: int, ranks: Optional[Sequence[int]], monitor: LimitMonitor) -> Smaller:
         """Of each block the zones of each action, to wait first, as bounds in a scale that is `factor` times finer.
 
-        Empty where the block's invariant holds nowhere. Raises OverflowError for times that are too large.
+        Empty where the block's invariant holds nowhere. Raises LimitHit where times or clocks do not fit.
         """
-        return _proof.simplify(self.native, factor, late, ranks, monitor.check)
+        try:
+            return _proof.simplify(self.native, factor, late, ranks, monitor.check)
+        except OverflowError:
+            raise not_held("checker") from None
+
+    def places(self, places: Iterable[Tuple[int, str]]) -> List[Tuple[int, int]]:
+        """Locations of automata, by the numbers of both."""
+        return [(k, self.locations[k][name]) for k, name in places]
 
     def numbers(self, values: Mapping[ZoneKey, int], default: int) -> List[int]:
         """The values of all zones, in the tables' order."""
@@ -87,16 +101,14 @@ _KEPT = 50_000
 
 
 def tables_of(network: Network, strategy: Strategy) -> Tables:
-    """The tables. Raises NotHeld where they cannot hold it, Unavailable where the native checker was not built."""
+    """The tables. Raises LimitHit where they cannot hold it, Unavailable where the native checker was not built, and
+    Invalid for a strategy with clocks that the network does not have."""
     if _proof is None:
         raise not_built("checker")
     for tables in _latest:
         if tables.strategy is strategy and tables.network == network:
             return tables
-    try:
-        made = _Maker(network).tables(strategy)
-    except (KeyError, ValueError):  # names that the network does not have: Python says what is wrong, where it matters
-        raise NotHeld from None
+    made = _Maker(network).tables(strategy)
     _latest.append(made)
     while len(_latest) > 1 and sum(len(tables.strategy.blocks) for tables in _latest) > _KEPT:
         del _latest[0]
@@ -104,7 +116,7 @@ def tables_of(network: Network, strategy: Strategy) -> Tables:
 
 
 class _Maker:
-    """Names to numbers. Raises KeyError for unknown ones."""
+    """Names to numbers."""
 
     def __init__(self, network: Network) -> None:
         self.network = network
@@ -121,8 +133,6 @@ class _Maker:
     def tables(self, strategy: Strategy) -> Tables:
         """All tables."""
         network = self.network
-        if len(network.clocks) > _CLOCKS:
-            raise NotHeld
         # Most constraints and zones are met again and again, so they are known by their identity.
         numbers: Dict[int, int] = {}
         known: Dict[int, List[int]] = {}
@@ -158,7 +168,7 @@ class _Maker:
         native = _proof.Tables(self._network(edges, scale), blocks, bounds)
         whole = all(state is not None for state, _, _ in blocks)
         named = tuple(Move(network.automata[k].name, edge) for k, edge in edges)
-        return Tables(native, network, strategy, scale, tuple(firsts), whole, named)
+        return Tables(native, network, strategy, scale, tuple(firsts), whole, named, self.locations)
 
     def _state(self, state: DiscreteState) -> Optional[List[int]]:
         network = self.network
@@ -222,8 +232,6 @@ class _Maker:
         found: List[Bound] = []
         for bound in bounds:
             x, constant = self.clocks[bound.clock], bound.bound
-            if bound.op not in ("<", "<=", "==", ">", ">="):
-                raise NotHeld
             if bound.op in ("<", "<=", "=="):
                 found.append((x, 0, _raw(constant, scale, bound.op == "<")))
             if bound.op in (">", ">=", "=="):
@@ -231,16 +239,19 @@ class _Maker:
         return found
 
     def _constraint(self, constraint: Constraint, scale: int) -> Bound:
-        i, j = self.clocks[constraint.left], self.clocks[constraint.right]
-        if i == j:
-            raise NotHeld
+        sides = constraint.left, constraint.right
+        unknown = [clock for clock in sides if clock not in self.clocks]
+        if unknown:
+            hint = f"the clocks are {', '.join(self.network.clocks)}"
+            raise Invalid([error("SYN104", f"the strategy speaks of a clock {unknown[0]}", hint=hint)])
+        i, j = (self.clocks[clock] for clock in sides)
         return i, j, _raw(constraint.bound, scale, constraint.strict)
 
 
 def _raw(bound: Number, scale: int, strict: bool) -> int:
     constant = bound.numerator * (scale // bound.denominator)
     if abs(constant) >= _MOST:
-        raise NotHeld
+        raise not_held("checker")
     return 2 * constant + (not strict)
 
 
@@ -250,5 +261,5 @@ def _fits(value: int) -> bool:
 
 def _held(value: int) -> int:
     if not _fits(value):
-        raise NotHeld
+        raise not_held("checker")
     return value

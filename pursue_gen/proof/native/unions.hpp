@@ -1,4 +1,5 @@
-// Unions of zones, as vectors: what the checker does with them (the twin of proof/zones.py and of some of zones/dbm.py).
+// Unions of zones, as vectors: what the checker does with them (the twin of tests/oracle/unions.py and of some of
+// zones/dbm.py).
 //
 // Zones are as `dbm.hpp` has them. A zone type may have more clocks than the network: `dim` is the number of the network's
 // clocks plus one, and the clocks from there on are padding. Every zone here has a *free* padding, which nothing bounds:

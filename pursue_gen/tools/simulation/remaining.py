@@ -7,19 +7,17 @@ zone that opens with a strict bound) and take effect up to the reaction later.
 
 from __future__ import annotations
 
-from collections import deque
 from fractions import Fraction
-from typing import Deque, Dict, List, Optional, Tuple, Type
+from typing import Dict, Optional, Tuple, Type
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.proof.closed_loop import ClosedLoop, Entry
-from pursue_gen.proof.delays import Broken
 from pursue_gen.proof.moves import JointMove, State
 from pursue_gen.proof.worst_case import LONGEST, counting_clock, with_counter, with_deadline
-from pursue_gen.proof.zones import with_neighbours
 from pursue_gen.solving.solution import Solution
+from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.tga.network import Network
-from pursue_gen.zones.dbm import INF, Dbm, constant, raw
+from pursue_gen.zones.dbm import Dbm, raw
 
 STATES = 2_000
 """So many symbolic states are looked at from one point; a game with longer plays is too large. Not measured."""
@@ -55,10 +53,11 @@ class Remaining:
         instant = won.reaction / 4 or Fraction(1, 50)
         try:
             self._loop = ClosedLoop(game, won.objective, won.strategy, won.reaction, None, instant)
+            self._count = self._loop.arena.clock[counting_clock(game) or ""]
+            known = self.at(*self._project.start) is not None
         except PursueError:
-            return
-        self._count = self._loop.arena.clock[counting_clock(game) or ""]
-        if self.at(*self._project.start) is None:
+            known = False
+        if not known:
             self._loop = None
         self.ease = min(1.0, CHEAP / max(1, self._met))
 
@@ -95,42 +94,19 @@ class Remaining:
         if (state, ticks) not in self._known:
             if len(self._known) >= KNOWN:
                 self._known.clear()
-            try:
-                self._known[state, ticks] = self._latest(loop, (state, _point(ticks)))
-            except Broken:
-                self._known[state, ticks] = FOREVER
+            self._known[state, ticks] = self._latest(loop, (state, _point(ticks)))
         latest = self._known[state, ticks]
         if latest is None or latest == FOREVER:
             return latest
         return latest - ticks[self._count] / loop.arena.scale
 
     def _latest(self, loop: ClosedLoop, start: Entry) -> Optional[float]:
-        """The largest value of the counting clock at the goal, breadth first."""
-        latest, before = 0, self._met
-        passed: Dict[State, List[Dbm]] = {start[0]: [start[1]]}
-        pending: Deque[Entry] = deque([start])
-        while pending:
-            state, zone = pending.popleft()
-            if not any(other is zone for other in passed[state]):
-                continue
-            if loop.won(state):
-                bound = zone.m[self._count * zone.dim]
-                if bound >= INF:
-                    return None
-                latest = max(latest, constant(bound))
-                continue
-            self._met += 1
-            if self._met - before > self._states:
-                return None
-            for _, (target, entered) in loop.successors((state, zone)):
-                after = loop.max_constants.extrapolate(entered, target)
-                known = passed.setdefault(target, [])
-                if any(other.includes(after) for other in known):
-                    continue
-                after = with_neighbours(after, known)
-                known[:] = [other for other in known if not after.includes(other)] + [after]
-                pending.append((target, after))
-        return latest / loop.arena.scale
+        """The largest value of the counting clock at the goal; FOREVER where the strategy fails."""
+        found = loop.latest(self._count, self._states, LimitMonitor(), start=start)
+        self._met += found.states
+        if found.fails:
+            return FOREVER
+        return None if found.value is None else found.value / loop.arena.scale
 
 
 class _Projection:

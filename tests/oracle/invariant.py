@@ -15,15 +15,15 @@ from __future__ import annotations
 from collections import deque
 from typing import Deque, Dict, Optional, Set
 
-from pursue_gen.proof.closed_loop import ClosedLoop
-from pursue_gen.proof.delays import Broken
 from pursue_gen.proof.moves import State
-from pursue_gen.proof.zones import outside
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.zones.dbm import Dbm
+from tests.oracle.closed_loop import LoopInPython
+from tests.oracle.delays import Broken
+from tests.oracle.unions import outside
 
 
-def is_invariant(loop: ClosedLoop, monitor: LimitMonitor) -> Optional[int]:
+def is_invariant(loop: LoopInPython, monitor: LimitMonitor) -> Optional[int]:
     """The number of zones that were checked, if no play leaves what the strategy of a safety game covers.
 
     None where that is not so; then the strategy may win all the same. Only discrete states that steps lead to count,
