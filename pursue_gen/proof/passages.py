@@ -16,7 +16,7 @@ from typing import AbstractSet, Deque, Dict, List, Mapping, NamedTuple, Optional
 
 from pursue_gen.proof.course import Course, Event, Stay, Value
 from pursue_gen.proof.independence import why_it_matters
-from pursue_gen.proof.relaxed_reachability import commanded, is_controllers, live, taken_over
+from pursue_gen.proof.relaxed_reachability import commanded, is_controllers, live
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.strategy import Block, Command, Strategy
 from pursue_gen.tga.network import Edge, Kind, Network, Objective
@@ -64,7 +64,7 @@ def played(network: Network, objective: Objective, strategy: Strategy, monitor: 
     why = why_it_matters(alive, wanted, part, extent.places)
     if why:
         raise Fault(f"it does not speak of what matters: {why}")
-    search = _CommandedSearch(part, wanted, strategy, taken_over(network), monitor)
+    search = _CommandedSearch(part, wanted, strategy, network.taken_over, monitor)
     search.follow()
     search.check()
     found = Played(part, wanted, search.course)

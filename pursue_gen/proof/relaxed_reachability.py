@@ -44,7 +44,7 @@ def live(network: Network, commands: Commanded, begin: Optional[Extent] = None) 
 
     `begin`: what may be at first; None: the initial locations and values.
     """
-    taken = taken_over(network)
+    taken = network.taken_over
     free: Dict[str, Tuple[Edge, ...]] = {
         automaton.name: tuple(e for e in automaton.edges if _may_begin(automaton.name, e, commands, taken))
         for automaton in network.automata
@@ -95,13 +95,8 @@ def may_hold(guard: Guard, values: Values) -> bool:
     )
 
 
-def taken_over(network: Network) -> Set[str]:
-    """The channels whose moves are the environment's because of one who receives."""
-    return {edge.received for _, edge in network.edges if edge.received is not None and not edge.controllable}
-
-
 def is_controllers(edge: Edge, taken: AbstractSet[str]) -> bool:
-    """True for an edge that nobody but the controller can begin; `taken`: see `taken_over`."""
+    """True for an edge that nobody but the controller can begin; `taken`: see `Network.taken_over`."""
     return edge.is_command and edge.sent not in taken
 
 

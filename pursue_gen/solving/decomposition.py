@@ -13,7 +13,7 @@ from typing import Collection, Dict, FrozenSet, Iterator, List, Mapping, Optiona
 
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT, verify
-from pursue_gen.proof.relaxed_reachability import Extent, is_controllers, live, taken_over
+from pursue_gen.proof.relaxed_reachability import Extent, is_controllers, live
 from pursue_gen.proof.stage_entry import Known, at_start
 from pursue_gen.proof.stages import after_stage, is_sure, stage_objective
 from pursue_gen.solving.found import Found, stats_of_all
@@ -96,7 +96,7 @@ class _StagesSearch:
     ) -> None:
         self._network, self._objective, self._reaction = network, objective, reaction
         self._options, self._budget = options, budget
-        self._taken = taken_over(network)
+        self._taken = network.taken_over
         self._robots = commanded_agents(network)
         self._subgoals: List[Subgoal] = []
         self._variables = dict(network.variables)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import FrozenSet, Iterator, Sequence, Tuple
 
-from pursue_gen.proof.relaxed_reachability import Commanded, is_controllers, live, taken_over
+from pursue_gen.proof.relaxed_reachability import Commanded, is_controllers, live
 from pursue_gen.proof.shares import left_to_others
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.solving.useful import useful
@@ -37,7 +37,7 @@ class GroupGames:
 
     def __init__(self, network: Network, objective: Objective) -> None:
         self._network, self._objective = network, objective
-        self._robots, self._taken, self._setters = commanded_agents(network), taken_over(network), network.setters
+        self._robots, self._taken, self._setters = commanded_agents(network), network.taken_over, network.setters
 
     def game(
         self, group: Group, theirs: Commanded, shown: int = ALL, watchers: Tuple[Watcher, ...] = ()

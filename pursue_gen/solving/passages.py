@@ -14,7 +14,7 @@ from typing import Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optiona
 
 from pursue_gen.language.symbols import UNDER_WAY, Role
 from pursue_gen.proof.checker import verify
-from pursue_gen.proof.relaxed_reachability import is_controllers, taken_over
+from pursue_gen.proof.relaxed_reachability import is_controllers
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.passage_steps import Play, strategy_of
 from pursue_gen.solving.routes import Floor, routes
@@ -117,7 +117,7 @@ class _Rounds:
         self._game = compile_game(network, Objective(Kind.REACH, objective.goal))
         self._planner = RelaxedPlanner(self._game)
         self._goal = objective.goal
-        self._taken = taken_over(network)
+        self._taken = network.taken_over
         self._play = Play(network)
         self._legs = {robot.name: _legs(robot) for robot in robots}
         ways: Dict[str, Dict[str, Dict[str, int]]] = {}

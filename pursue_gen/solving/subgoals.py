@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Dict, FrozenSet, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
-from pursue_gen.proof.relaxed_reachability import is_controllers, taken_over
+from pursue_gen.proof.relaxed_reachability import is_controllers
 from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.ending import owner_of
 from pursue_gen.tga.ends import is_agent
@@ -39,7 +39,7 @@ def protections(network: Network, bad: Iterable[Place]) -> Tuple[Subgoal, ...]:
 
 def commanded_agents(network: Network) -> Tuple[str, ...]:
     """The agents with edges that only the controller takes."""
-    taken = taken_over(network)
+    taken = network.taken_over
     return tuple(a.name for a in network.automata if is_agent(a) and any(is_controllers(e, taken) for e in a.edges))
 
 

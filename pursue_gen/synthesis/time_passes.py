@@ -22,17 +22,11 @@ def lets_time_pass(automaton: Automaton, network: Network) -> bool:
     return all(may_be_left(automaton, name, network) for name in stays)
 
 
-def taken_over(network: Network) -> AbstractSet[str]:
-    """The channels whose moves are the environment's because of one who receives."""
-    return {edge.received for _, edge in network.edges if edge.received is not None and not edge.controllable}
-
-
 def _reached(automaton: Automaton, network: Network) -> Set[str]:
     """The locations that the automaton may come to if the controller leaves it alone."""
-    others = taken_over(network)
     onward: Dict[str, Set[str]] = {}
     for edge in automaton.edges:
-        if not edge.is_command or edge.sent in others:
+        if not edge.is_command or edge.sent in network.taken_over:
             onward.setdefault(edge.source, set()).add(edge.target)
     found, pending = {automaton.initial}, [automaton.initial]
     while pending:

@@ -291,6 +291,11 @@ class Network:
         return _by_channel((edge.received, name, edge) for name, edge in self.edges)
 
     @cached_property
+    def taken_over(self) -> AbstractSet[str]:
+        """The channels whose moves are the environment's because of one who receives."""
+        return {edge.received for _, edge in self.edges if edge.received is not None and not edge.controllable}
+
+    @cached_property
     def setters(self) -> Mapping[str, AbstractSet[str]]:
         """For each variable the automata that set it."""
         found: Dict[str, Set[str]] = {name: set() for name, _ in self.variables}

@@ -14,7 +14,7 @@ from typing import AbstractSet, Dict, List, Optional, Sequence, Set, Tuple
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.proof.relaxed_reachability import is_controllers, taken_over
+from pursue_gen.proof.relaxed_reachability import is_controllers
 from pursue_gen.proof.stage_entry import Known, at_start
 from pursue_gen.proof.stages import after_stage
 from pursue_gen.synthesis.cone import cone_of_influence
@@ -241,7 +241,7 @@ def _for_others(draw: st.DrawFn, place: Place, reached: Sequence[str]) -> Set[st
 
 def commanding(network: Network, team: AbstractSet[str], others: AbstractSet[str]) -> Network:
     """The network without what only the controller does, but for what this team does on other channels than these."""
-    taken = taken_over(network)
+    taken = network.taken_over
 
     def stays(automaton: Automaton, edge: Edge) -> bool:
         if automaton.name not in ROBOTS or not is_controllers(edge, taken):
