@@ -231,16 +231,22 @@ def edited(text: str, changes: str) -> str:
 
 def _only(parts: List[str], statement: str) -> List[int]:
     """The objective that another one takes the place of, where there is no other objective of the kind."""
-    word = statement.split()[0]
-    alone = [k for k, part in enumerate(parts) if part.startswith(word)]
+    head, (word, *_) = _of_each(statement)
+    alone = [k for k, part in enumerate(parts) if _of_each(part)[0] == head and _of_each(part)[1][:1] == [word]]
     return alone if len(alone) == 1 and word in ("objective:", "reach_objective:") else []
 
 
 def _same(part: str, statement: str) -> bool:
-    """True if both state something on the same thing."""
-    words = statement.split()
+    """True if both state something on the same thing, or on the same for each of a group."""
+    (head, some), (same_head, words) = _of_each(part), _of_each(statement)
     count = _SAME.get(words[0], 2)
-    return [word.rstrip(":") for word in part.split()[:count]] == [word.rstrip(":") for word in words[:count]]
+    return head == same_head and [w.rstrip(":") for w in some[:count]] == [w.rstrip(":") for w in words[:count]]
+
+
+def _of_each(statement: str) -> Tuple[List[str], List[str]]:
+    """The words of `for each …:`, none where it is not there, and those behind it."""
+    head = re.match(r"(for\s+each\s[^:]*:)?", statement)
+    return (head[0].split() if head else []), statement[head.end() if head else 0 :].split()
 
 
 # The index ------------------------------------------------------------------------------------------------------------

@@ -173,7 +173,7 @@ class Words:
         return [held], index
 
     def _no_condition(self, quantifier: Token) -> Diagnostic:
-        hint = "write what holds of them, as in any of carts at door"
+        hint = "write what holds of them, as in any of carts at door; elsewhere, for each … before the statement"
         return error("PML411", f"`{quantifier} of` stands in conditions only", self._at(quantifier), hint)
 
     # Limits and places ------------------------------------------------------------------------------------------------

@@ -51,7 +51,8 @@ class _Cone:
         self.automata.update(a.name for a in network.automata if not lets_time_pass(a, network))
         self.variables: Set[str] = set()
         self._clocks: Set[str] = set()
-        self._detours = detours(network, objective)
+        self._objective = objective
+        self._detours: Dict[str, Tuple[Detour, ...]] = {}
 
     def grow(self) -> bool:
         """Take in what the part depends on by one step more; False if that is nothing."""
@@ -84,10 +85,12 @@ class _Cone:
                 for name in {test.variable for test in clause}:
                     tests[name].add(frozenset(test.value for test in clause if test.variable == name))
         gone: Dict[str, FrozenSet[Edge]] = defaultdict(frozenset)
-        for name, some in self._detours.items():
-            if name in self.automata:
-                away = (one for one in some if one.is_unnoticed(self.variables, tests))
-                gone[name] = frozenset(e for one in away if not self._is_heard(one, name) for e in one.edges)
+        for automaton in kept:
+            if automaton.name not in self._detours:
+                self._detours[automaton.name] = tuple(detours(automaton, self._network, self._objective))
+            away = (one for one in self._detours[automaton.name] if one.is_unnoticed(self.variables, tests))
+            unheard = (one for one in away if not self._is_heard(one, automaton.name))
+            gone[automaton.name] = frozenset(edge for one in unheard for edge in one.edges)
         return gone
 
     def _is_heard(self, detour: Detour, robot: str) -> bool:

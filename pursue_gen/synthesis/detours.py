@@ -9,11 +9,11 @@ depends on, then need not matter.
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import defaultdict
 from dataclasses import dataclass
 from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Optional, Tuple
 
-from pursue_gen.synthesis.time_passes import may_be_left, taken_over
+from pursue_gen.synthesis.time_passes import may_be_left
 from pursue_gen.tga.network import Automaton, Edge, Network, Objective
 
 
@@ -43,25 +43,11 @@ class Detour:
         )
 
 
-def detours(network: Network, objective: Objective) -> Mapping[str, Tuple[Detour, ...]]:
-    """By automaton what may be a detour, as far as it depends on the automaton alone, and on who may take it out of the
-    controller's hands."""
+def detours(automaton: Automaton, network: Network, objective: Objective) -> Iterator[Detour]:
+    """What may be a detour of the automaton, as far as it depends on the automaton alone, and on who may take it out of
+    the controller's hands."""
     named = {*objective.goal, *objective.bad}
-    named_by = Counter(clock for automaton in network.automata for clock in automaton.clocks)
-    found, taken = {}, taken_over(network)
-    for automaton in network.automata:
-        own = frozenset(clock for clock in automaton.clocks if named_by[clock] == 1)
-        some = tuple(_of(automaton, own, network, named, taken))
-        if some:
-            found[automaton.name] = some
-    return found
-
-
-def _of(
-    automaton: Automaton, clocks: AbstractSet[str], network: Network, named: AbstractSet[Tuple[str, str]],
-    taken: AbstractSet[str],
-) -> Iterator[Detour]:  # fmt: skip
-    """The detours of one automaton, whose own clocks these are."""
+    clocks = automaton.clocks.difference(*(other.clocks for other in network.automata if other is not automaton))
     into: Dict[str, List[Edge]] = defaultdict(list)
     out: Dict[str, List[Edge]] = defaultdict(list)
     for edge in automaton.edges:
@@ -74,7 +60,7 @@ def _of(
             begins = tuple(edge for edge in ways if edge.target == there)
             ends = () if there == here else tuple(out[there])
             resets = {clock for edge in (*begins, *ends) for clock in edge.resets}
-            if not resets <= clocks or any(edge.sent in taken for edge in begins):
+            if not resets <= clocks or any(edge.sent in network.taken_over for edge in begins):
                 continue
             if any(_is_hindered(edge, resets) for edge in ways):
                 continue

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import AbstractSet, Dict, Iterable, Set
+from typing import Dict, Iterable, Set
 
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network
 

@@ -102,6 +102,29 @@ def test_every_picture_is_on_a_page() -> None:
 TEXT = 'poi "a"\nagent "bot" controllable location a\n      can_do go\nagent "man" location a\nobjective: avoid go\n'
 
 
+GROUPS = """group "rooms": a, b
+for each r in rooms: event "go" of r
+for each r in rooms:
+  event "do" of r duration 2
+for each r in rooms: objective: if go of r then do of r within 9
+for each robot r: objective: avoid r at a"""
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ('`for each r in rooms: event "do" of r duration 5`', GROUPS.replace("\n  event", " event").replace("2", "5")),
+        ("`for each r in rooms: objective: if go of r then do of r within 7`", GROUPS.replace("within 9", "within 7")),
+        ('`group "rooms": a`', GROUPS.replace("a, b", "a")),
+        ("without `for each robot r: objective: avoid r at a`", GROUPS[: GROUPS.rindex("for")]),
+        ("`for each robot r: objective: avoid r at b`", GROUPS.replace("avoid r at a", "avoid r at b")),
+        ("`objective: avoid go_a`", GROUPS + "\nobjective: avoid go_a"),
+    ],
+)
+def test_statements_for_each_take_the_place_of_their_like(changes: str, expected: str) -> None:
+    assert make.edited(GROUPS, changes) == expected
+
+
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
