@@ -75,7 +75,7 @@ ELSEWHERE = {
     ),
     ("zones/native/federation.hpp", "many"): "With more zones than these, a union is reduced at once. Not measured.",
     ("zones/native/memory.hpp", "much"): "MiB that are freed at least before the system gets them back. Not measured.",
-    ("synthesis/native/dispatch.hpp", "STEPS_AHEAD"): "So many commands of another robot are looked at. Not measured.",
+    ("synthesis/native/steps.hpp", "STEPS_AHEAD"): "So many commands of a robot are looked at. Not measured.",
     ("synthesis/native/duties.hpp", "ZONES_OF_A_LOOK"): (
         "A look ahead of a robot with a battery takes about as long as so many zones. Measured on a care home with a "
         "battery."

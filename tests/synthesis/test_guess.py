@@ -324,6 +324,40 @@ def test_who_has_least_to_do_keeps_out_of_the_way_of_others() -> None:
     assert verify(network, objective, strategy, DEFAULT.reaction, closed=True).ok
 
 
+WASTE = """
+poi "store"
+poi "lane1"
+poi "lane2"
+poi "mill"
+poi "saw"
+poi "exit"
+connect store and lane1 distance 4
+connect lane1 and lane2 distance 4
+connect lane2 and mill distance 2
+connect lane2 and saw distance 3
+connect lane2 and exit distance 5
+event "full" location saw
+event "clear" location saw duration 3
+event "dump" location exit duration 1
+rule "waste": clear before dump
+agent "cart1" controllable mobile 1 location store
+agent "cart2" controllable mobile 1 location lane2 can_do clear, dump
+agent "machine" location saw can_do full
+objective: if full then dump within 180
+objective: cart1 never_with cart2
+objective: patrol exit every 450 by any robot
+"""
+
+
+def test_who_waits_until_a_patrol_is_due_does_not_stand_in_the_way() -> None:
+    """Who patrols the exit without pause would keep from it the one who has to dump something there."""
+    network, objective = game_of(WASTE)
+    assert guess(network, objective, DEFAULT.reaction)[0] is None
+    strategy, _ = guess(network, objective, DEFAULT.reaction, late=patrols(network))
+    assert strategy is not None
+    assert verify(network, objective, strategy, DEFAULT.reaction, closed=True).ok
+
+
 @settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(started((Kind.SAFETY,)), st.sampled_from((Fraction(0), Fraction(1))))
 def test_what_a_policy_wins_in_a_random_game_wins_it(drawn: Tuple[Network, Objective], reaction: Fraction) -> None:

@@ -199,8 +199,7 @@ class Dispatch : private Steps {
             }
             if (duties_.is_open(now, a)) return out;
             const Bound& deadline = game_.automata[a].invariants[d[a]].front();
-            const std::int64_t period = deadline.raw >> 1;
-            const std::int64_t latest = period - std::max(period * guess_.reserve / 100, tasks_.longest(r)) - time;
+            const std::int64_t period = deadline.raw >> 1, latest = period - period * guess_.reserve / 100 - time;
             out.push_back({0, deadline.i, static_cast<wide_t>(2 * -std::max<std::int64_t>(latest, 0) + 1)});
             round.erase(round.begin());
         }

@@ -20,7 +20,7 @@ struct Guess {
     bool apart = true;       // but only those that the same agent's moves lead to: then its pause has just begun
     bool by_time = false;    // duties are shared out by how long they take; who has more to do has the right of way
     std::vector<int> patrols{};  // duties that wait until they are due
-    int reserve = 0;         // the part of their period, in hundredths, that is left then beside the way: or more, for its orders
+    int reserve = 0;         // the part of their period, in hundredths, that is left then beside the way
     bool sets_off = false;   // but the first one is begun at once
     bool relieved = false;   // a post is for a robot without duties; until it is there, another one sees to the post first
     bool alternates = false; // after a visit something else is done, if it is asked for, and the other way round
@@ -69,7 +69,6 @@ class Tasks {
         }
         for (const int robot : duties.robots()) duties.keep_out(robot, dangers(robot));
         if (guess.shared_out && duties.robots().size() > 1) share_out();
-        if (!guess.patrols.empty()) find_orders();
         if (guess.idle == Idle::goes_to_post) find_posts();
         if (guess.relieved) find_guards();
     }
@@ -79,9 +78,6 @@ class Tasks {
 
     // Whether the duty of automaton a is for robot r: it can do it, and it is not another's.
     bool is_for(std::size_t r, int a) const { return for_[r][a]; }
-
-    // About how long robot r takes for the longest of its duties that do not wait until they are due.
-    std::int64_t longest(std::size_t r) const { return longest_[r]; }
 
     // The fact that a robot is where it goes when it owes nothing; -1: it stays.
     int home(std::size_t r) const { return homes_[r]; }
@@ -155,16 +151,6 @@ class Tasks {
             const std::size_t least = *std::min_element(who.begin(), who.end(), [&](auto x, auto y) { return load_[x] < load_[y]; });
             load_[least] += time;
             for (const std::size_t r : who) for_[r][a] = r == least;
-        }
-    }
-
-    void find_orders() {
-        for (std::size_t r = 0; r < for_.size(); ++r) {
-            std::int64_t time = 0;
-            for (const int a : duties_.watching())
-                if (is_for(r, a) && std::find(guess_.patrols.begin(), guess_.patrols.end(), a) == guess_.patrols.end())
-                    time = std::max(time, time_for(duties_.robots()[r], a) % Duties::DETOUR);
-            longest_.push_back(time);
         }
     }
 
@@ -292,7 +278,7 @@ class Tasks {
     const Game& game_;
     Duties& duties_;
     const Guess guess_;
-    std::vector<std::int64_t> load_, longest_;
+    std::vector<std::int64_t> load_;
     std::vector<std::vector<bool>> for_;  // by robot and automaton
     std::vector<int> homes_;
     std::vector<Guard> guards_;
