@@ -143,7 +143,7 @@ def _hint(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     if token.type in ("AND", "OR") and expected & {"AND", "OR"} and statement != "RULE":
         return "put brackets around what belongs together: (bot1 at a and bot2 at b) or open is_true"
     if token.type in ("BEFORE", "OR", "AND") and statement == "RULE":
-        return "put brackets around what belongs together: (first before second) before third"
+        return "put brackets around what belongs together: (first or second) before third"
     if token.type == "RPAR":
         return "this `)` has no `(`"
     if token.type in ("TRUE_IF", "FALSE_IF") and "COMMA" in expected:

@@ -18,7 +18,6 @@ from pursue_gen.language.occurrences import GROUP, MEMBERS, VARIABLE, Occurrence
 from pursue_gen.language.scenario import (
     Agent,
     Both,
-    Choice,
     Event,
     Poi,
     Ref,
@@ -166,16 +165,16 @@ def _rule(scenario: Scenario, rule: Rule) -> List[str]:
 def _in_words(body: RuleBody) -> str:
     if isinstance(body, Ref):
         return body.name
-    if isinstance(body, Choice):
-        return " or ".join(_bracketed(side) for side in (body.first, body.second))
-    if isinstance(body, Both):
-        return " and ".join(_bracketed(side) for side in (body.first, body.second)) + ", in any order"
-    return ", then ".join(_bracketed(side) for side in _steps(body))
+    word = ", then " if isinstance(body, Sequence) else f" {body.word} "
+    sides = word.join(_bracketed(side) for side in _sides(body, type(body)))
+    return sides + (", in any order" if isinstance(body, Both) else "")
 
 
-def _steps(body: RuleBody) -> List[RuleBody]:
-    """What follows one another in a sequence, however it is bracketed."""
-    return _steps(body.first) + _steps(body.second) if isinstance(body, Sequence) else [body]
+def _sides(body: RuleBody, kind: type) -> List[RuleBody]:
+    """What one kind of word stands between, however it is bracketed."""
+    if isinstance(body, Ref) or not isinstance(body, kind):
+        return [body]
+    return _sides(body.first, kind) + _sides(body.second, kind)
 
 
 def _bracketed(body: RuleBody) -> str:
