@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import takewhile
 from typing import FrozenSet, List, Optional, Sequence, Tuple
 
 from lark import Token
@@ -168,7 +169,7 @@ def name_meant(chunk: Sequence[Token], index: int) -> Tuple[str, Token]:
     """
     words = [chunk[index]]
     if chunk[0].type == "POI":
-        words += [word for word in chunk[index + 1 :] if word.type == "WORD" and word.line == words[0].line]
+        words += takewhile(lambda word: word.type == "WORD" and word.line == words[0].line, chunk[index + 1 :])
     text = " ".join(words)
     return (text if chunk[index - 1].type == "LABEL" else proposal(text, RESERVED)), words[-1]
 

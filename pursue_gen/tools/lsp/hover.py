@@ -123,10 +123,12 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
         movers = [(agent.name, scenario.movements(agent).get(direction)) for agent in scenario.agents]
         times = ", ".join(f"{name} {lasts(window)}" for name, window in movers if window is not None)
         only = f", only while {in_markdown(scenario, condition_words(way.only_if))}" if way.only_if is not None else ""
-        lines.append(f"- {words}: distance {way.distance}" + (f" ({times})" if times else "") + only)
+        whom = f", {in_markdown(scenario, way.whom_words)}" if way.whom_words else ""
+        lines.append(f"- {words}: distance {way.distance}" + (f" ({times})" if times else "") + whom + only)
     lines = [*lines[:2], *_listed(lines[2:])]
     if not ways:
         lines.append("- no way leads here")
+    lines += [f"- {in_markdown(scenario, poi.whom_words)}"] if poi.whom_words else []
     lines += _if_any("starts here", [a.name for a in scenario.agents if a.location.name == poi.name])
     here = [e.name for e in scenario.events if e.location is not None and e.location.name == poi.name]
     lines += _if_any("happens here", here)
@@ -191,8 +193,8 @@ def _state(scenario: Scenario, state: State) -> List[str]:
 def _said(scenario: Scenario, kind: str, name: str) -> List[str]:
     """What statements say of a thing that another one declares."""
     parts: Tuple[Written, ...] = (
-        *scenario.rules, *scenario.dependencies, *scenario.connections, *scenario.events, *scenario.states,
-        *scenario.batteries, *scenario.assumptions, *scenario.objectives,
+        *scenario.pois, *scenario.rules, *scenario.dependencies, *scenario.connections, *scenario.events,
+        *scenario.states, *scenario.batteries, *scenario.assumptions, *scenario.objectives,
     )  # fmt: skip
     return [f"- {line}" for part in parts for line in part.about(kind, name, partial(in_markdown, scenario))]
 
