@@ -17,11 +17,13 @@ from pursue_gen.language.scenario import (
     AtMost,
     Both,
     Choice,
+    Connection,
     Event,
     Leaves,
     NeverAt,
     NeverHolds,
     NotBefore,
+    Poi,
     Ref,
     RuleBody,
     Scenario,
@@ -64,6 +66,12 @@ class Stay:
         return not self.to and not self.event
 
 
+def is_for(part: Union[Poi, Connection], agent: str) -> bool:
+    """Whether an agent may be there, or set off there, as far as names go."""
+    named = {ref.name for ref in part.only_for} or {agent}
+    return agent in named - {ref.name for ref in part.not_for}
+
+
 @dataclass
 class Course:
     """One play of a scenario; times are time units from its start."""
@@ -98,6 +106,9 @@ class Course:
     def may_set_off(self, agent: str, a: str, b: str) -> bool:
         """Whether it may set off from a to b, whatever the time."""
         stay = self.stays[agent]
+        here_for = [poi for poi in self.scenario.pois if poi.name in (a, b)]
+        if not all(is_for(part, agent) for part in here_for):
+            return False
         ways = [way for way in self.scenario.connections if (a, b) == (way.a, way.b)]
         ways += [way for way in self.scenario.connections if (a, b) == (way.b, way.a) and not way.one_way]
         never = (each for each in self.scenario.assumptions if isinstance(each, NeverAt))
@@ -108,6 +119,7 @@ class Course:
         moves = self.agents[agent].mobile is not None
         if moves and self.levels.get(agent, 0) < self._used_on_way(agent, a, b):
             return False
+        ways = [way for way in ways if is_for(way, agent)]
         return stay.is_idle and stay.place == a and moves and any(self.holds(way.only_if) for way in ways)
 
     def _keeps(self, agent: str, stay: Stay) -> bool:

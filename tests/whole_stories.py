@@ -69,9 +69,13 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     def only_if() -> str:
         return maybe(f" only_if {draw(condition)}")
 
-    lines = [f'poi "{name}"' for name in places]
+    def whom() -> str:
+        some = ", ".join(draw(st.lists(st.sampled_from(names), min_size=1, max_size=2, unique=True)))
+        return maybe(draw(st.sampled_from((f" for {some}", f" except {some}", " for robots"))), 5)
+
+    lines = [f'poi "{name}"{whom()}' for name in places]
     lines += [
-        f"connect {x} and {y} distance {draw(st.integers(1, 3))}{maybe(' one_way', 7)}{only_if()}"
+        f"connect {x} and {y} distance {draw(st.integers(1, 3))}{maybe(' one_way', 7)}{whom()}{only_if()}"
         for x, y in zip(places, places[1:])
     ]
     limit = f" at_most {draw(st.integers(1, 3))} times"

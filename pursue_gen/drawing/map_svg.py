@@ -233,10 +233,13 @@ def _lasts(event: Event) -> str:
 
 
 def _conditions(scenario: Scenario) -> Iterator[str]:
-    """The ways and events that are not always open, and while what."""
+    """The places and ways that are not for all, the ways and events that are not always open, and while what."""
+    yield from (f"{poi.shown} {poi.whom_words}" for poi in scenario.pois if poi.whom_words)
     for way in scenario.connections:
+        ends = f"{scenario.shown(way.a)} and {scenario.shown(way.b)}"
+        if way.whom_words:
+            yield f"Between {ends} {way.whom_words}"
         if way.only_if is not None:
-            ends = f"{scenario.shown(way.a)} and {scenario.shown(way.b)}"
             yield f"Between {ends} only while {condition_words(way.only_if)}"
     for event in scenario.events:
         if event.only_if is not None:

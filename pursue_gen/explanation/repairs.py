@@ -21,7 +21,7 @@ from pursue_gen.explanation.number_changes import (
 )
 from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole_below
 from pursue_gen.language.objectives.holds import Holds
-from pursue_gen.language.scenario import Agent, Connection, Event, Reach, Scenario, StatedObjective
+from pursue_gen.language.scenario import Agent, Connection, Event, Poi, Reach, Scenario, StatedObjective
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
 from pursue_gen.tga.counts import counted
 
@@ -43,6 +43,11 @@ def _repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
         yield from _of_duration(scenario, event)
     for connection in scenario.connections:
         yield from _of_way(scenario, connection)
+    controlled = [agent.name for agent in scenario.agents if agent.controllable]
+    for part in (part for part in scenario.for_some if not all(map(part.admits, controlled))):
+        what = part.name if isinstance(part, Poi) else f"the way between {part.a} and {part.b}"
+        freer = scenario.with_instead(part, replace(part, only_for=(), not_for=()))
+        yield _switch("whom", what, f"{what} for all (without {part.whom_text})", part.whom_text, freer, part.span, 1)
     for travel in scenario.travels:
         yield from travel_changes(scenario, travel)
     for battery in scenario.batteries:

@@ -15,7 +15,7 @@ def setting_of(scenario: Scenario) -> Setting:
     """The scenario as assumptions ask for it."""
     return Setting(
         scenario.agents, scenario.events, scenario.states, scenario.safety, scenario.assumptions,
-        lambda place: destinations_from(scenario, place),
+        lambda place, agent: destinations_from(scenario, place, agent),
         lambda condition: holds_at_start(condition, scenario, Domains(scenario)),
     )  # fmt: skip
 

@@ -63,21 +63,29 @@ def destinations(scenario: Scenario) -> Dict[str, FrozenSet[str]]:
     return {name: reached[part] for name, part in parts.items()}
 
 
-def destinations_from(scenario: Scenario, start: str) -> FrozenSet[str]:
-    """The POIs that can be reached from one of them, itself included."""
-    return destinations(scenario).get(start, frozenset({start}))
+def destinations_from(scenario: Scenario, start: str, agent: str) -> FrozenSet[str]:
+    """The POIs that the agent of this name would reach from one of them, itself included."""
+    ways = scenario.ways_of(agent)
+    return destinations(replace(scenario, connections=ways)).get(start, frozenset({start}))
 
 
-def reachable(agent: Agent, connected: Mapping[str, FrozenSet[str]]) -> FrozenSet[str]:
-    """The POIs where an agent can be: those that its start leads to; its start alone if it is not mobile."""
-    alone = frozenset({agent.location.name})
-    return connected.get(agent.location.name, alone) if agent.mobile is not None else alone
+def places_of(scenario: Scenario) -> Dict[str, FrozenSet[str]]:
+    """For each agent the POIs where it can be: those that its start leads to; its start alone if it is not mobile."""
+    leads: Dict[Tuple[object, ...], Dict[str, FrozenSet[str]]] = {}  # by what is closed to agents
+    found = {}
+    for agent in scenario.agents:
+        closed, start = scenario.closed_to(agent.name), agent.location.name
+        if closed not in leads:
+            leads[closed] = destinations(replace(scenario, connections=scenario.ways_of(agent.name)))
+        alone = frozenset({start})
+        found[agent.name] = leads[closed].get(start, alone) if agent.mobile is not None else alone
+    return found
 
 
 def robots_at(scenario: Scenario) -> Dict[str, Tuple[str, ...]]:
     """For each POI the robots that may be there, in the order of their declaration."""
-    connected = destinations(scenario)
-    where = {agent.name: reachable(agent, connected) for agent in scenario.agents if agent.is_robot}
+    places = places_of(scenario)
+    where = {agent.name: places[agent.name] for agent in scenario.agents if agent.is_robot}
     return {poi.name: tuple(name for name, places in where.items() if poi.name in places) for poi in scenario.pois}
 
 
@@ -87,8 +95,7 @@ _Part = Tuple[Agent, Ref]
 
 def check_events(scenario: Scenario) -> Iterator[Diagnostic]:
     """Events that nothing uses, that nobody can do, that lack a partner, or that are out of an agent's reach."""
-    connected = destinations(scenario)
-    where = {agent.name: reachable(agent, connected) for agent in scenario.agents}
+    where = places_of(scenario)
     able, reacting = _parts(scenario, "can_do"), _parts(scenario, "reacts_to")
     used = events_used(scenario)
     for event in scenario.events:
@@ -102,7 +109,8 @@ def check_events(scenario: Scenario) -> Iterator[Diagnostic]:
             hint = f"give it to an agent: can_do {event.name}, or delete the event"
             yield error("PML150", f"nobody can do {event.name}", event.span, hint)
         for agent, ref in doers:
-            yield from _reach(agent, ref, event, where[agent.name])
+            way = "way that it may take" if scenario.closed_to(agent.name) else "way"
+            yield from _reach(agent, ref, event, where[agent.name], way)
         yield from _togetherness(event, [a.name for a, _ in doers])
         if event.collaborative:
             yield from _partners(event, [a for a, _ in doers], [a for a, _ in partners], where)
@@ -142,7 +150,7 @@ def _parts(scenario: Scenario, field: str) -> Dict[str, List[_Part]]:
     return parts
 
 
-def _reach(agent: Agent, ref: Ref, event: Event, where: FrozenSet[str]) -> Iterator[Diagnostic]:
+def _reach(agent: Agent, ref: Ref, event: Event, where: FrozenSet[str], way: str) -> Iterator[Diagnostic]:
     if event.location is None or event.location.name in where:
         return
     place, start = event.location.name, agent.location.name
@@ -150,7 +158,7 @@ def _reach(agent: Agent, ref: Ref, event: Event, where: FrozenSet[str]) -> Itera
         message = f"{agent.name} stays in {start} and can never do {event.name} in {place}"
         hint = f"make it mobile (mobile 1), let it start in {place}, or take {event.name} away from it"
     else:
-        message = f"{agent.name} can never do {event.name}: no way leads from {start} to {place}"
+        message = f"{agent.name} can never do {event.name}: no {way} leads from {start} to {place}"
         hint = f"connect them, or take {event.name} away from {agent.name}"
     yield error("PML153", message, ref.span, hint)
 

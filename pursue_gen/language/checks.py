@@ -17,7 +17,7 @@ from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.numbers import MOST_DIGITS, exact, is_fine
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.scenario import Poi, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
 from pursue_gen.language.tokens import shown
 
@@ -63,7 +63,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     findings += check_references(scenario, reading.lost)
     findings += check_labels(scenario)
     findings += _beside(scenario)
-    for part in (_alone, _too_long, _too_fine, _connections, _travels, _missing, _order):
+    for part in (_alone, _starts, _too_long, _too_fine, _connections, _travels, _missing, _order):
         findings += part(scenario)
     codes = {f.code for f in findings}
     if reading.scenario is None:
@@ -116,8 +116,19 @@ def _doubtful(scenario: Scenario) -> FrozenSet[str]:
 
 def _alone(scenario: Scenario) -> Iterator[Diagnostic]:
     """What is wrong with single statements."""
-    for part in (*scenario.connections, *scenario.events, *scenario.states, *scenario.agents, *scenario.travels):
+    parts = (*scenario.pois, *scenario.connections, *scenario.events, *scenario.states, *scenario.agents)
+    for part in (*parts, *scenario.travels):
         yield from part.check()
+
+
+def _starts(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Agents that start where they may never be."""
+    for agent in scenario.agents:
+        start = agent.location
+        if start.name in {part.name for part in scenario.closed_to(agent.name) if isinstance(part, Poi)}:
+            message = f"{agent.name} starts in {start.name}, which is not for {agent.name}"
+            hint = f"let it start somewhere else, or let poi {start.name} be for {agent.name}, too"
+            yield error("PML149", message, start.span, hint)
 
 
 def _too_long(scenario: Scenario) -> Iterator[Diagnostic]:
@@ -157,6 +168,10 @@ def _travels(scenario: Scenario) -> Iterator[Diagnostic]:
             back = f" (it is one_way, from {b} to {a})" if (b, a) in ways else ""
             message = f"no way leads from {a} to {b}{back}"
             hint = f"connect them: connect {a} and {b} distance …, or delete this line"
+            yield error("PML201", message, travel.span, hint)
+        elif agent is not None and travel.way in ways and travel.way not in scenario.movements(agent):
+            message = f"{agent.name} never goes from {a} to {b}: the way, or one of its ends, is not for {agent.name}"
+            hint = f"let it be for {agent.name}, too, or delete this line"
             yield error("PML201", message, travel.span, hint)
         elif (travel.agent.name, travel.way) in seen:
             message = f"{seen[travel.agent.name, travel.way].in_words} says already how long {travel.movement} takes"

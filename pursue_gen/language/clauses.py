@@ -10,7 +10,7 @@ from itertools import combinations, product
 from math import comb
 from typing import Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Tuple
 
-from pursue_gen.language.behaviour import destinations, reachable
+from pursue_gen.language.behaviour import places_of
 from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Atom, Condition, Doing, Holds, Not, OnWay, Who
 from pursue_gen.language.scenario import Agent, Event, Scenario
 
@@ -65,8 +65,7 @@ class Domains:
         self._agents = {agent.name: agent for agent in scenario.agents}
         self._states = frozenset(state.name for state in scenario.states)
         self._events = {event.name: event for event in scenario.events}
-        self._ways = [way for connection in scenario.connections for way in connection.directions]
-        self._connected = destinations(scenario)
+        self._scenario, self._places = scenario, places_of(scenario)
         self._found: Dict[str, Values] = {}
 
     def of(self, variable: str) -> Values:
@@ -107,10 +106,11 @@ class Domains:
         agent = self._agents.get(variable)
         if agent is None:
             return ()
-        places = reachable(agent, self._connected)
+        places = self._places[variable]
         found = [Value("at", poi) for poi in places]
         if agent.mobile is not None:
-            found += [Value("way", a, b) for a, b in self._ways if a in places]
+            ways = (way for one in self._scenario.ways_of(variable) for way in one.directions)
+            found += [Value("way", a, b) for a, b in ways if a in places]
         for event in self._lasting(agent):
             at = places if event.location is None else places & {event.location.name}
             found += [Value("doing", poi, event.name) for poi in at]

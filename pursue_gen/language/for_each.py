@@ -27,7 +27,7 @@ class Range(NamedTuple):
 
 def with_groups(statements: Iterable[Sequence[Token]]) -> bool:
     """True where some of the statements may have to be written out."""
-    return any(token.type in ("GROUP", "FOR", "OF") for tokens in statements for token in tokens)
+    return any(token.type in ("GROUP", "FOR", "EXCEPT", "OF") for tokens in statements for token in tokens)
 
 
 def body_of(tokens: Sequence[Token]) -> Sequence[Token]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import takewhile
 from typing import FrozenSet, List, Optional, Sequence, Tuple
 
 from lark import Token
@@ -143,7 +144,7 @@ def _hint(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     if token.type in ("AND", "OR") and expected & {"AND", "OR"} and statement != "RULE":
         return "put brackets around what belongs together: (bot1 at a and bot2 at b) or open is_true"
     if token.type in ("BEFORE", "OR", "AND") and statement == "RULE":
-        return "put brackets around what belongs together: (first before second) before third"
+        return "put brackets around what belongs together: (first or second) before third"
     if token.type == "RPAR":
         return "this `)` has no `(`"
     if token.type in ("TRUE_IF", "FALSE_IF") and "COMMA" in expected:
@@ -168,7 +169,7 @@ def name_meant(chunk: Sequence[Token], index: int) -> Tuple[str, Token]:
     """
     words = [chunk[index]]
     if chunk[0].type == "POI":
-        words += [word for word in chunk[index + 1 :] if word.type == "WORD" and word.line == words[0].line]
+        words += takewhile(lambda word: word.type == "WORD" and word.line == words[0].line, chunk[index + 1 :])
     text = " ".join(words)
     return (text if chunk[index - 1].type == "LABEL" else proposal(text, RESERVED)), words[-1]
 

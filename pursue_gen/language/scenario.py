@@ -143,6 +143,21 @@ class Scenario:
         """The agents that can do an event."""
         return tuple(agent for agent in self.agents if any(ref.name == event for ref in agent.can_do))
 
+    @cached_property
+    def for_some(self) -> Tuple[Union[Poi, Connection], ...]:
+        """The places and ways that are not for all agents."""
+        parts: Tuple[Union[Poi, Connection], ...] = (*self.pois, *self.connections)
+        return tuple(part for part in parts if part.only_for or part.not_for)
+
+    def closed_to(self, agent: str) -> Tuple[Union[Poi, Connection], ...]:
+        """The places and ways that are not for the agent of this name."""
+        return tuple(part for part in self.for_some if not part.admits(agent))
+
+    def ways_of(self, agent: str) -> Tuple[Connection, ...]:
+        """The ways that the agent of this name may take: those that are for it and have both ends where it may be."""
+        closed = {part.name for part in self.closed_to(agent) if isinstance(part, Poi)}
+        return tuple(way for way in self.connections if way.admits(agent) and not closed & {way.a, way.b})
+
     def movements(self, agent: Agent) -> Dict[Tuple[str, str], Window]:
         """From and to of each movement that the agent can make, and between which times it arrives."""
         if agent.mobile is None:
@@ -150,6 +165,6 @@ class Scenario:
         own = {travel.way: travel.window for travel in self.travels if travel.agent.name == agent.name}
         return {
             way: own.get(way) or window_of(exact(connection.distance * agent.mobile), None)
-            for connection in self.connections
+            for connection in self.ways_of(agent.name)
             for way in connection.directions
         }

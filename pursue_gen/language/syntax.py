@@ -56,6 +56,8 @@ _ENDS = frozenset(
     ).split()
 )
 """Tokens behind which no name can stand: one that opens the next line begins something else."""
+_OF_POIS = NAMES | {"NAME", "LABEL", "FOR", "EXCEPT", "COMMA"}
+"""What a point of interest consists of, before its pose."""
 
 
 @dataclass(frozen=True)
@@ -310,14 +312,13 @@ def accepts(tokens: Sequence[Token]) -> FrozenSet[str]:
 def _significant(tokens: Iterable[Token]) -> List[Token]:
     """The tokens without comments: a pose is none behind a point of interest, on its line."""
     kept: List[Token] = []
+    of_poi = False
     for token in tokens:
         if token.type in _BLANKS:
             continue
-        if token.type == "POSE":
-            before = [one.type for one in kept[-4:]]
-            behind_poi = before[-2:] == ["POI", "NAME"] or before == ["POI", "NAME", "LABEL", "NAME"]
-            if not behind_poi or kept[-1].line != token.line:
-                continue
+        if token.type == "POSE" and not (of_poi and kept[-1].type != "POI" and kept[-1].line == token.line):
+            continue
+        of_poi = token.type == "POI" or (of_poi and token.type in _OF_POIS)
         kept.append(token)
     return kept
 
@@ -328,12 +329,14 @@ def _opened(found: List[List[Token]]) -> bool:
     return 1 <= len(last) <= 2 and last[0].type == "OPTIONAL"
 
 
-def _awaits(chunk: Sequence[Token], token: Token) -> bool:
-    """True where this token goes on with a statement, whatever it begins elsewhere: behind `for each r in rooms:`, and
-    as `for each robot` behind the name of a rule."""
+def _awaits(chunk: Sequence[Token], token: Token, following: Sequence[Token]) -> bool:
+    """True where this token goes on with a statement, whatever it begins elsewhere: behind `for each r in rooms:`, as
+    `for each robot` behind the name of a rule, and as `for agv, cart` behind a place or a way."""
     if chunk[0].type == "FOR" and chunk[-1].type == "COLON":
         return not body_of(chunk)
     kinds = [one.type for one in body_of(chunk)] if token.type == "FOR" else []
+    if kinds[:1] in (["POI"], ["CONNECT"]):
+        return not {"EACH", "IN"} & {one.type for one in following}
     return kinds[:1] == ["RULE"] and "COLON" not in kinds
 
 
@@ -345,7 +348,7 @@ def _chunks(tokens: List[Token]) -> List[List[Token]]:
         following = tokens[index + 1].type if index + 1 < len(tokens) else ""
         goes_on = following in ("NAME", "UNCLOSED_NAME", "COLON")
         ended = index == 0 or tokens[index - 1].type in _ENDS
-        if found and _awaits(found[-1], token):
+        if found and _awaits(found[-1], token, tokens[index + 1 : index + 3]):
             begins = False
         elif token.type in _SECOND:  # an event may be called so
             second = index + 2 < len(tokens) and tokens[index + 2].type == _SECOND[token.type]

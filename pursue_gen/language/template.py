@@ -79,6 +79,7 @@ def _window(low: object, high: object) -> str:
 FILLINGS: Mapping[str, Filling] = {
     **{thing: Filling("ref", TreeReader.ref, name_text, thing) for thing in ("agent", "event", "state", "POI")},
     '"agent"': Filling("(ref | NAME)", TreeReader.agent_ref, lambda ref: f'"{ref.name}"', "agent"),
+    "agents": Filling("refs", TreeReader.refs, names_text, "agent"),
     "POIs": Filling("refs", TreeReader.refs, names_text, "POI"),
     "events": Filling("refs", TreeReader.refs, names_text, "event"),
     "event or condition": Filling(

@@ -95,11 +95,11 @@ def other_unit(
     """
     ratios = [(metres / unit / float(way.distance), way.span) for way, metres in measured.items()]
     ratios.sort(key=lambda one: one[0])
+    changed = {ends for way in measured for ends in way.directions}
     movers = [
         agent.name
         for agent in scenario.agents
-        if agent.mobile is not None
-        and any((agent.name, *ends) not in timed for way in measured for ends in way.directions)
+        if any((agent.name, *ends) not in timed for ends in changed & scenario.movements(agent).keys())
     ]
     if not ratios or not movers:
         return

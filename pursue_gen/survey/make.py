@@ -293,7 +293,7 @@ class _Work:
         for a, b in way.directions:
             for robot, speed in drive.speeds.items():
                 start, end = self._standing.get((robot, a)), self._standing.get((robot, b))
-                if start is None or end is None or (robot, a, b) in self._others:
+                if not way.admits(robot) or start is None or end is None or (robot, a, b) in self._others:
                     continue
                 points = (start.x, start.y), (end.x, end.y)
                 if points == (self.plan.places.get(a), self.plan.places.get(b)):
@@ -325,7 +325,7 @@ class _Work:
         pairs, longest = [], 0.0
         for way in self.scenario.connections:
             straight = self.route(way)
-            for robot in self.options.drive.speeds:
+            for robot in filter(way.admits, self.options.drive.speeds):
                 poses = [self._standing.get((robot, place)) for place in (way.a, way.b)]
                 points = [(pose.x, pose.y) for pose in poses if pose is not None]
                 places = [self.plan.places.get(place) for place in (way.a, way.b)]

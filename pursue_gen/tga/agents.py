@@ -85,8 +85,9 @@ class Surroundings:
 
     def pois(self, agent: Agent) -> Tuple[Symbol, ...]:
         """The locations at the POIs at which an agent can ever be, as far as being mobile goes."""
-        pois = self.scenario.pois if agent.mobile is not None else (agent.location,)
-        return tuple(names.at(poi.name) for poi in pois)
+        if agent.mobile is None:
+            return (names.at(agent.location.name),)
+        return tuple(names.at(poi.name) for poi in self.scenario.pois if poi.admits(agent.name))
 
 
 def agent_automaton(agent: Agent, around: Surroundings) -> Automaton:

@@ -93,7 +93,7 @@ def _channels(scenario: Scenario) -> Tuple[str, ...]:
         names.movement(agent.name, a, b)
         for agent in scenario.agents
         if agent.mobile is not None
-        for connection in scenario.connections
+        for connection in scenario.ways_of(agent.name)
         for a, b in connection.directions
     ]
     for event in scenario.events:

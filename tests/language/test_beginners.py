@@ -155,16 +155,16 @@ reach_objective knock
         ("PML010", 7, "put a comma between two names"),
         ("PML010", 8, "the form is: reach_objective: do e1 and e2 after 10 within 60"),
     ]),
-    ("three in a row", """\
+    ("two words in a row", """\
 poi "desk"
 event "take"
 event "carry"
 event "drop"
-rule "trip": take before carry before drop
+rule "trip": take or carry before drop
 agent "bot" controllable location desk can_do take, carry, drop
 reach_objective: do dropp
 """, [
-        ("PML010", 5, "put brackets around what belongs together: (first before secon"),
+        ("PML010", 5, "put brackets around what belongs together: (first or second) b"),
         ("PML110", 7, "did you mean drop?"),
     ]),
     ("syntax and names at once", """\
@@ -200,7 +200,7 @@ agent "bot" controllable location desk can_do take, carry, drop
 reach_objective: do drop
 """, [
         ("PML012", 1, 'write it as "name"'),
-        ("PML010", 5, "put brackets around what belongs together: (first before secon"),
+        ("PML010", 5, "put a `)` for each `(`"),
     ]),
     ("word processor's quotes and blanks", """\
 poi “desk”

@@ -99,7 +99,7 @@ LARGE: Dict[str, Tuple[str, List[str]]] = {
     "similar names": ("".join(f'poi "p{n}"\nconnect p{n} and q{n} distance 3\n' for n in range(5000)), ["PML018"]),
     "a star": ("".join(f'poi "p{n}"\nconnect p0 and p{n} distance 3\n' for n in range(9000)), ["PML145"]),
     "an event again and again": ('agent "b" location a can_do ' + ", ".join(["e"] * 20_000), ["PML018"]),
-    "a rule with too many events": ('rule "r": ' + " or ".join(["(a or b)"] * 2) + " or c" * 9000, ["PML010"]),
+    "a rule with too many events": ('rule "r": ' + " or ".join(["(a or b)"] * 2) + " or c" * 9000, ["PML016"]),
     "a chain of rules": (CHAIN, ["PML018"]),
     "many who hand over to many": ('poi "a" event "e" collaborative\n' + HAND_OVER, []),
     "names in names": (

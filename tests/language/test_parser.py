@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import string
 from pathlib import Path
 from typing import List
@@ -78,6 +79,25 @@ def test_and_joins_parts_of_a_rule() -> None:
     assert [part.name for part in (rule.body.first.first, rule.body.first.second) if isinstance(part, Ref)] == [
         "work", "rest",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize("word", ["before", "or", "and"])
+def test_one_word_joins_several_parts_of_a_rule_without_brackets(word: str) -> None:
+    def body(words: str) -> str:
+        (rule,) = parse(text(rule=f'rule "order": {words}'), "test.pur").rules
+        return re.sub(r"Span\([^)]*\)", "", repr(rule.body))
+
+    assert body(f"work {word} rest {word} hand") == body(f"(work {word} rest) {word} hand")
+    other = "or" if word == "before" else "before"
+    nested = body(f"work {word} ((rest {other} hand) {word} more) {word} less")
+    assert nested == body(f"(work {word} ((rest {other} hand) {word} more)) {word} less")
+
+
+def test_a_rule_of_many_parts_is_read_and_written_without_brackets_within_brackets() -> None:
+    events = [f"e{number}" for number in range(500)]
+    (rule,) = read(f'rule "order": {" or ".join(events)}', "test.pur").partial.rules
+    (again,) = read(rule.text, "test.pur").partial.rules
+    assert [ref.name for ref in rule.events] == [ref.name for ref in again.events] == events
 
 
 def test_a_rule_is_for_all_or_for_each() -> None:

@@ -10,10 +10,10 @@ syntax keyword pursueStatement agent assume battery connect event for group obje
 syntax keyword pursueStatement state stateDependency travel
 syntax keyword pursueConstant false is_false is_true true
 syntax keyword pursueKeyword after agents all always and any at at_most avoid before between by can_do capacity
-syntax keyword pursueKeyword collaborative controllable distance do does doing duration each every false_if from holds
-syntax keyword pursueKeyword human if in inflation initially label leaves location mobile never never_with no none not
-syntax keyword pursueKeyword of on_way one_way only_if or order patrol per place radius reacts_to recharges robot robots
-syntax keyword pursueKeyword takes then times to together tolerance true_if two unit uses waits way within
+syntax keyword pursueKeyword collaborative controllable distance do does doing duration each every except false_if from
+syntax keyword pursueKeyword holds human if in inflation initially label leaves location mobile never never_with no none
+syntax keyword pursueKeyword not of on_way one_way only_if or order patrol per place radius reacts_to recharges robot
+syntax keyword pursueKeyword robots takes then times to together tolerance true_if two unit uses waits way within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

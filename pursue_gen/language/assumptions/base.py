@@ -24,7 +24,7 @@ class Setting(NamedTuple):
     states: Tuple[State, ...]
     safety: Tuple[Safety, ...]
     assumptions: Tuple[Assumption, ...]
-    onward: Callable[[str], AbstractSet[str]]  # the places to which ways lead from a place, itself included
+    onward: Callable[[str, str], AbstractSet[str]]  # from a place, itself included, the places to which an agent gets
     at_start: Callable[[Condition], bool]  # whether a condition holds at the start
 
 
@@ -150,7 +150,7 @@ class AboutOne(Assumption):
         start = agent.location.name
         if agent.mobile is None and place.name != start:
             message = f"{agent.name} is not mobile: it stays in {start} anyway"
-        elif place.name not in setting.onward(start):
+        elif place.name not in setting.onward(start, agent.name):
             message = f"no way leads {agent.name} from {start} to {place.name} anyway"
         else:
             return None

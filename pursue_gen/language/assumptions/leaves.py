@@ -45,7 +45,7 @@ class Leaves(AboutOne):
             message = f"{agent.name} is not mobile: it stays in {start}, and cannot leave it"
             return error("PML252", message, self.span, "make it mobile (mobile 1)")
         found = self.never_comes(agent, self.place, setting)
-        if found is None and setting.onward(place) == {place}:
+        if found is None and setting.onward(place, agent.name) == {place}:
             return error("PML252", f"no way leads away from {place}", self.span, f"connect {place} and …")
         return found
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any, Callable, ClassVar, Dict, Iterator, Optional, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, Span, error, units
+from pursue_gen.diagnostics import Diagnostic, Span, error, listed, units
 from pursue_gen.language.conditions import Condition, names_in
 from pursue_gen.language.numbers import Number, exact
-from pursue_gen.language.refs import Ref
+from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.template import Template
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Numbers, Word
@@ -130,6 +130,43 @@ class Labelled(StatementKind):
     def shown(self) -> str:
         """What people read."""
         return self.label or self.name
+
+
+class ForSome(StatementKind):
+    """A kind of statement on a part of the building: for the agents of `only_for` alone, where it has any, and for none
+    of `not_for`.
+    """
+
+    only_for: Tuple[Ref, ...]
+    not_for: Tuple[Ref, ...]
+    for_whom: ClassVar[str] = "[for {only_for:agents}] [except {not_for:agents}]"
+    """The pieces of a template that say it."""
+
+    def admits(self, agent: str) -> bool:
+        """True where it is for the agent of this name."""
+        within = not self.only_for or any(ref.name == agent for ref in self.only_for)
+        return within and all(ref.name != agent for ref in self.not_for)
+
+    @property
+    def whom_words(self) -> str:
+        """For whom it is, as in `only for Porter 1, not for gerda`; "": for all."""
+        said = (("only for", self.only_for), ("not for", self.not_for))
+        return ", ".join(f"{words} {listed([ref.shown for ref in refs])}" for words, refs in said if refs)
+
+    @property
+    def whom_text(self) -> str:
+        """The same as it is written."""
+        said = (("for", self.only_for), ("except", self.not_for))
+        return " ".join(f"{word} {', '.join(ref.name for ref in refs)}" for word, refs in said if refs)
+
+    def check_whom(self, what: str) -> Iterator[Diagnostic]:
+        """Agents that are named twice, or that are all left out again. `what`: what this is, in words."""
+        for word, refs in (("for", self.only_for), ("except", self.not_for)):
+            for ref in twice(refs):
+                yield error("PML164", f"{ref.name} stands twice behind {word}", ref.span, "delete one of the two")
+        if self.only_for and not any(self.admits(ref.name) for ref in self.only_for):
+            message = f"{what} is for nobody: all that are named behind for stand behind except"
+            yield error("PML164", message, self.span, "name somebody whom it is for, or delete except and what follows")
 
 
 def check_window(name: str, low: Number, high: Number, word: str, span: Span) -> Iterator[Diagnostic]:

@@ -9,18 +9,19 @@ from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.conditions import Condition, condition_words
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.base import StatementKind
+from pursue_gen.language.statements.base import ForSome
 from pursue_gen.language.template import Template
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
-class Connection(StatementKind):
+class Connection(ForSome):
     """A way between two POIs; `distance` is in distance units, more than 0.
 
     `ends` are the places in the text where it names them. `one_way`: from `a` to `b` only, else in both directions.
-    Agents set off only while `only_if` holds (None: always).
+    Agents set off only while `only_if` holds (None: always); `only_for` and `not_for` say which agents may, as in
+    `ForSome`.
     """
 
     a: str
@@ -30,6 +31,8 @@ class Connection(StatementKind):
     ends: Tuple[Span, Span] = (NOWHERE, NOWHERE)
     one_way: bool = False
     only_if: Optional[Condition] = None
+    only_for: Tuple[Ref, ...] = ()
+    not_for: Tuple[Ref, ...] = ()
 
     listed_in: ClassVar[str] = "connections"
     symbol: ClassVar[str] = "Interface"
@@ -44,14 +47,16 @@ class Connection(StatementKind):
         Word("one_way", "From the first place to the second only. Without it, the way goes in both directions.", True),
     )
     template: ClassVar[Template] = Template(
-        "connect {a:POI=a} and {b:POI=b} distance {distance:number=3} [one_way]"
-        " [only_if {only_if:condition=open is_true}]"
+        "connect {a:POI=a} and {b:POI=b} distance {distance:number=3} [one_way] "
+        + ForSome.for_whom
+        + " [only_if {only_if:condition=open is_true}]"
     )
-    note: ClassVar[str] = "one_way and only_if are optional"
+    note: ClassVar[str] = "one_way and only_if are optional; between them: for agv, cart, or except gerda"
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("a way between two places", "connect {POI} and {POI} distance {=1}"),
         Form("a way in one direction only", "connect {POI} and {POI} distance {=1} one_way"),
         Form("a way that is not always open", "connect {POI} and {POI} distance {=1} only_if {state} is_true"),
+        Form("a way for some agents only", "connect {POI} and {POI} distance {=1} for {agent}"),
     )
     parts: ClassVar[Tuple[str, ...]] = template.begins
 
@@ -62,7 +67,8 @@ class Connection(StatementKind):
         return cls(a.name, b.name, ends=(a.span, b.span), **values, **at)
 
     def names(self) -> Iterator[Tuple[str, Ref]]:
-        return (("POI", Ref(name, span)) for name, span in zip((self.a, self.b), self.ends))
+        yield from (("POI", Ref(name, span)) for name, span in zip((self.a, self.b), self.ends))
+        yield from (("agent", ref) for ref in (*self.only_for, *self.not_for))
 
     @property
     def directions(self) -> Tuple[Tuple[str, str], ...]:
@@ -72,6 +78,8 @@ class Connection(StatementKind):
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if kind == "state" and self.only_if is not None and self.speaks_of(kind, name):
             yield f"between {self.a} and {self.b} only while {shown(condition_words(self.only_if))}"
+        if kind == "agent" and not self.admits(name):
+            yield f"never goes between {self.a} and {self.b}"
 
     def check(self) -> Iterator[Diagnostic]:
         if self.distance <= 0:
@@ -79,3 +87,4 @@ class Connection(StatementKind):
             yield error("PML140", message, self.span, "write distance and a number above 0")
         if self.a == self.b:
             yield error("PML145", f"this connects {self.a} with itself", self.span, "name two different places")
+        yield from self.check_whom(f"the way between {self.a} and {self.b}")

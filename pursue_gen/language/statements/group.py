@@ -38,7 +38,8 @@ class ForEach(_WrittenOut):
     """A statement for each member of a group: what is read are the statements that `language.groups` makes of it."""
 
     own_words: ClassVar[Tuple[Word, ...]] = (
-        Word("for", "A statement for each member of a group, or a rule for each robot or agent."),
+        Word("for", "A statement for each of a group; a rule for each robot or agent; a way or place for these only."),
+        Word("except", "A way, or a place, for all but these agents.", True),
         Word("each", "Every member of a group; in a rule every robot or agent, and each has its own turn.", True),
         Word("two", "Every pair of a group once.", True),
         Word("of", "The one that belongs to a member: call of room1 is call_room1.", True),

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Iterator, Optional, Tuple
+from typing import Any, Callable, ClassVar, Iterator, Optional, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Span
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span
 from pursue_gen.language.poses import Pose, Spot, pose_text, read_poses
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.base import Labelled
+from pursue_gen.language.statements.base import ForSome, Labelled
 from pursue_gen.language.template import Filling, Template
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word
@@ -24,10 +24,11 @@ def _read_poses(reader: TreeReader, comment: Any) -> Tuple[Optional[Pose], Tuple
 
 
 @dataclass(frozen=True)
-class Poi(Labelled):
+class Poi(Labelled, ForSome):
     """A point of interest; `pose` is None where the author gave none or left the thesis's placeholder.
 
-    `spots` are the poses that single robots have there, each robot once. `label`: what people read; None: the name.
+    `only_for` and `not_for` say which agents may be there, as in `ForSome`. `spots` are the poses that single robots
+    have there, each robot once. `label`: what people read; None: the name.
     """
 
     name: str
@@ -35,6 +36,8 @@ class Poi(Labelled):
     span: Span = NOWHERE
     spots: Tuple[Spot, ...] = ()
     label: Optional[str] = None
+    only_for: Tuple[Ref, ...] = ()
+    not_for: Tuple[Ref, ...] = ()
 
     listed_in: ClassVar[str] = "pois"
     symbol: ClassVar[str] = "Constant"
@@ -43,13 +46,27 @@ class Poi(Labelled):
         Word("label", "What people read in place of the name: any text without double quotes.", True),
     )
     template: ClassVar[Template] = Template(
-        'poi {name="a"} [label {label:name}] [{pose,spots:poses}]', poses=Filling("POSE", _read_poses, _poses_text)
+        'poi {name="a"} [label {label:name}] ' + ForSome.for_whom + " [{pose,spots:poses}]",
+        poses=Filling("POSE", _read_poses, _poses_text),
     )
-    note: ClassVar[str] = 'or with what people read: poi "a" label "security door"'
-    forms: ClassVar[Tuple[Form, ...]] = (Form("a place", 'poi "{=room}"'),)
+    note: ClassVar[str] = (
+        'or with what people read: poi "a" label "security door"; for agv, cart or except gerda behind it: '
+        "only these, or all but these, may be there"
+    )
+    forms: ClassVar[Tuple[Form, ...]] = (
+        Form("a place", 'poi "{=room}"'),
+        Form("a place where somebody never is", 'poi "{=room}" except {agent}'),
+    )
     declares: ClassVar[str] = "POI"
     shortest: ClassVar[str] = 'poi "{name}"'
     parts: ClassVar[Tuple[str, ...]] = template.begins
 
     def names(self) -> Iterator[Tuple[str, Ref]]:
-        return (("agent", spot.robot) for spot in self.spots)
+        return (("agent", ref) for ref in (*self.only_for, *self.not_for, *(spot.robot for spot in self.spots)))
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        if kind == "agent" and not self.admits(name):
+            yield f"never is at {self.name}"
+
+    def check(self) -> Iterator[Diagnostic]:
+        yield from self.check_whom(self.name)

@@ -49,17 +49,25 @@ _BODIES: Mapping[str, Type[Union[Sequence, Choice, Both]]] = {"sequence": Sequen
 _MOST_EARLIER = 1000  # sets of events
 
 _RULES = """_body: sequence | choice | both
-sequence: _side "before" _side
-choice: _side "or" _side
-both: _side "and" _side
+sequence: _side ("before" _side)+
+choice: _side ("or" _side)+
+both: _side ("and" _side)+
 _side: ref | "(" _body ")\""""
 
 
 def _body(reader: TreeReader, tree: Any) -> RuleBody:
     if tree.data == "ref":
         return reader.ref(tree)
-    first, second = (_body(reader, child) for child in tree.children)
-    return _BODIES[tree.data](first, second, reader.span(tree))
+    sides = tuple(_body(reader, child) for child in tree.children)
+    return _joined(_BODIES[tree.data], sides, reader.span(tree))
+
+
+def _joined(kind: Type[Union[Sequence, Choice, Both]], sides: Tuple[RuleBody, ...], span: Span) -> RuleBody:
+    """Several sides with one word between them, whose brackets make no difference: few of these are in one another."""
+    if len(sides) == 1:
+        return sides[0]
+    middle = (len(sides) + 1) // 2
+    return kind(_joined(kind, sides[:middle], span), _joined(kind, sides[middle:], span), span)
 
 
 def _events(body: RuleBody) -> Iterator[Ref]:
@@ -102,11 +110,11 @@ class Rule(StatementKind):
         body=Filling("_body", _body, _body_text, "event", ("rule", "robot", "agent", "before", "or", "and"), _RULES),
     )
     note: ClassVar[str] = (
-        'or: first or second, first and second; use brackets to nest; or: rule "order" for each robot: …'
+        'or: first or second, first and second; brackets where the words differ; or: rule "order" for each robot: …'
     )
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("events in turn", 'rule "{=order}": {event} before {event}'),
-        Form("three events in turn", 'rule "{=order}": ({event} before {event}) before {event}'),
+        Form("three events in turn", 'rule "{=order}": {event} before {event} before {event}'),
         Form("events in turn, for each robot", 'rule "{=order}" for each robot: {event} before {event}'),
         Form("either of two events", 'rule "{=choice}": {event} or {event}'),
         Form("two events in any order, then a third", 'rule "{=all}": ({event} and {event}) before {event}'),

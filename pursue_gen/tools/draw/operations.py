@@ -218,11 +218,14 @@ def _times(values: Values, field: str) -> Parts:
     return {"AT_MOST": f"{fields.number_of(values, field)} times" if values.get(field) else None}
 
 
+_WHOM = {"only_for": _text("FOR", fields.text_of), "not_for": _text("EXCEPT", fields.text_of)}
+
 _FIELDS: Mapping[str, Mapping[str, Callable[[Values, str], Parts]]] = {
-    "POI": {"label": _text("LABEL", fields.label_of)},
+    "POI": {"label": _text("LABEL", fields.label_of), **_WHOM},
     "CONNECT": {
         "distance": _needed("DISTANCE", fields.number_of),
         "one_way": _tick("ONE_WAY"),
+        **_WHOM,
         "only_if": _text("ONLY_IF", fields.text_of),
     },
     "EVENT": {

@@ -13,7 +13,7 @@ from pursue_gen.language.syntax import Statement
 
 def words_behind(statement: Statement, kind: str) -> str:
     """What stands behind the word that begins a part, without comments; "" where the part is not there."""
-    return " ".join(parts_of(statement).get(kind, ())[1:])
+    return " ".join(parts_of(statement).get(kind, ())[1:]).replace(" ,", ",")
 
 
 def names_behind(statement: Statement, kind: str) -> List[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Collection, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Collection, Dict, List, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import Diagnostic, Severity, Span, as_json, in_order
 from pursue_gen.drawing.ground import Ground
@@ -14,8 +14,10 @@ from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.names import KINDS
 from pursue_gen.language.occurrences import GROUP
 from pursue_gen.language.rewriting import parts_in, parts_of
+from pursue_gen.language.scenario import Connection, Poi
 from pursue_gen.language.sentences import objective_words
 from pursue_gen.language.syntax import Statement
+from pursue_gen.language.template import names_text
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.word import HOLE
 from pursue_gen.solving.inputs import findings_of
@@ -144,8 +146,19 @@ def _places(document: Draft) -> List[Dict[str, Any]]:
         place = {"name": poi.name, "label": poi.label or "", "x": pose.x, "y": pose.y, "yaw": heading(pose)}
         spots = [{"robot": spot.robot.name, "x": spot.pose.x, "y": spot.pose.y} for spot in poi.spots]
         origin = _made(document, poi.span) if here is None else _placed(document, here.statement)
-        found.append({**place, "given": poi.pose is not None, "spots": spots, **origin})
+        whom = _whom_made(poi) if here is None else _whom(document.statements[here.statement])
+        found.append({**place, "given": poi.pose is not None, "spots": spots, **whom, **origin})
     return found
+
+
+def _whom(statement: Statement) -> Dict[str, str]:
+    """For whom a place or a way is, as it is written."""
+    return {"only_for": words_behind(statement, "FOR"), "not_for": words_behind(statement, "EXCEPT")}
+
+
+def _whom_made(part: Union[Poi, Connection]) -> Dict[str, str]:
+    """The same of what is for each of a group."""
+    return {"only_for": names_text(part.only_for), "not_for": names_text(part.not_for)}
 
 
 def _ways(document: Draft, known: Collection[str]) -> List[Dict[str, Any]]:
@@ -156,10 +169,12 @@ def _ways(document: Draft, known: Collection[str]) -> List[Dict[str, Any]]:
         if a in known and b in known and a != b:
             way = {"a": a, "b": b, "distance": words_behind(statement, "DISTANCE")}
             way["only_if"] = words_behind(statement, "ONLY_IF")
+            way.update(_whom(statement))
             found.append({**way, "one_way": statement.first("ONE_WAY") is not None, **_placed(document, number)})
     for one in document.scenario.connections:
         if one.span.member and {one.a, one.b} <= {*known} and one.a != one.b:
             way = {"a": one.a, "b": one.b, "distance": str(one.distance), "only_if": _condition(one.only_if)}
+            way.update(_whom_made(one))
             found.append({**way, "one_way": one.one_way, **_made(document, one.span)})
     return found
 

@@ -189,7 +189,7 @@ def get_there(document: Draft, finding: Diagnostic, part: Statement, at: int) ->
     place, start = event.location.name, agent.location.name
     if agent.mobile is None:
         after = [token for token in part.tokens if token.type in ("NAME", "HUMAN", "CONTROLLABLE")][-1]
-        if place in destinations_from(document.scenario, start):
+        if place in destinations_from(document.scenario, start, agent.name):
             yield f"Make {agent.name} mobile", (behind(after, " mobile 1"),)
         location = agent.location.span
         yield f"Let {agent.name} start in {place}", (Edit(*document.lines.of_span(location), place),)

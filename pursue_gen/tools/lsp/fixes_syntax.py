@@ -89,7 +89,7 @@ def _straight_quotes(document: Draft, at: int) -> Proposals:
 
 
 def _brackets(part: Statement, wrong: int) -> Proposals:
-    """`a before b before c` becomes `(a before b) before c`, where there are no other brackets."""
+    """`a or b before c` becomes `(a or b) before c`, where there are no other brackets."""
     body = part.tokens[3:wrong]
     if len(part.tokens) > 3 and not any(token.type in ("LPAR", "RPAR") for token in body) and len(body) == 3:
         start = start_of(body[0])

@@ -18,7 +18,6 @@ from pursue_gen.language.occurrences import GROUP, MEMBERS, VARIABLE, Occurrence
 from pursue_gen.language.scenario import (
     Agent,
     Both,
-    Choice,
     Event,
     Poi,
     Ref,
@@ -124,10 +123,12 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
         movers = [(agent.name, scenario.movements(agent).get(direction)) for agent in scenario.agents]
         times = ", ".join(f"{name} {lasts(window)}" for name, window in movers if window is not None)
         only = f", only while {in_markdown(scenario, condition_words(way.only_if))}" if way.only_if is not None else ""
-        lines.append(f"- {words}: distance {way.distance}" + (f" ({times})" if times else "") + only)
+        whom = f", {in_markdown(scenario, way.whom_words)}" if way.whom_words else ""
+        lines.append(f"- {words}: distance {way.distance}" + (f" ({times})" if times else "") + whom + only)
     lines = [*lines[:2], *_listed(lines[2:])]
     if not ways:
         lines.append("- no way leads here")
+    lines += [f"- {in_markdown(scenario, poi.whom_words)}"] if poi.whom_words else []
     lines += _if_any("starts here", [a.name for a in scenario.agents if a.location.name == poi.name])
     here = [e.name for e in scenario.events if e.location is not None and e.location.name == poi.name]
     lines += _if_any("happens here", here)
@@ -166,16 +167,16 @@ def _rule(scenario: Scenario, rule: Rule) -> List[str]:
 def _in_words(body: RuleBody) -> str:
     if isinstance(body, Ref):
         return body.name
-    if isinstance(body, Choice):
-        return " or ".join(_bracketed(side) for side in (body.first, body.second))
-    if isinstance(body, Both):
-        return " and ".join(_bracketed(side) for side in (body.first, body.second)) + ", in any order"
-    return ", then ".join(_bracketed(side) for side in _steps(body))
+    word = ", then " if isinstance(body, Sequence) else f" {body.word} "
+    sides = word.join(_bracketed(side) for side in _sides(body, type(body)))
+    return sides + (", in any order" if isinstance(body, Both) else "")
 
 
-def _steps(body: RuleBody) -> List[RuleBody]:
-    """What follows one another in a sequence, however it is bracketed."""
-    return _steps(body.first) + _steps(body.second) if isinstance(body, Sequence) else [body]
+def _sides(body: RuleBody, kind: type) -> List[RuleBody]:
+    """What one kind of word stands between, however it is bracketed."""
+    if isinstance(body, Ref) or not isinstance(body, kind):
+        return [body]
+    return _sides(body.first, kind) + _sides(body.second, kind)
 
 
 def _bracketed(body: RuleBody) -> str:
@@ -192,8 +193,8 @@ def _state(scenario: Scenario, state: State) -> List[str]:
 def _said(scenario: Scenario, kind: str, name: str) -> List[str]:
     """What statements say of a thing that another one declares."""
     parts: Tuple[Written, ...] = (
-        *scenario.rules, *scenario.dependencies, *scenario.connections, *scenario.events, *scenario.states,
-        *scenario.batteries, *scenario.assumptions, *scenario.objectives,
+        *scenario.pois, *scenario.rules, *scenario.dependencies, *scenario.connections, *scenario.events,
+        *scenario.states, *scenario.batteries, *scenario.assumptions, *scenario.objectives,
     )  # fmt: skip
     return [f"- {line}" for part in parts for line in part.about(kind, name, partial(in_markdown, scenario))]
 

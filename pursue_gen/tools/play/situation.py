@@ -110,9 +110,10 @@ def ending(setup: Setup, play: PlayState) -> str:
     return f"Nothing can go on after {at} time units: {who} ought to move and cannot. The robots have not lost."
 
 
-def _only_while(way: Connection) -> str:
-    """Behind the length of a way: while what it is open; nothing where it always is."""
-    return "" if way.only_if is None else f", only while {condition_words(way.only_if)}"
+def _only(way: Connection) -> str:
+    """Behind the length of a way: for whom it is, and while what it is open; nothing where it always is for all."""
+    whom = f", {way.whom_words}" if way.whom_words else ""
+    return whom if way.only_if is None else f"{whom}, only while {condition_words(way.only_if)}"
 
 
 def overview(setup: Setup, words: Words, play: PlayState) -> Iterator[str]:
@@ -131,7 +132,7 @@ def overview(setup: Setup, words: Words, play: PlayState) -> Iterator[str]:
     widest = max((len(poi.shown) for poi in setup.scenario.pois), default=0)
     for poi in setup.scenario.pois:
         ways = [
-            f"{shown(to)} ({c.distance}{_only_while(c)})"
+            f"{shown(to)} ({c.distance}{_only(c)})"
             for c in setup.scenario.connections
             for a, to in c.directions
             if a == poi.name

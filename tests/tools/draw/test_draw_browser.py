@@ -184,7 +184,7 @@ def test_the_tutorials_scenario_is_drawn_from_nothing_and_won(there: Browser, tm
         for number, name in enumerate(("light", "fetch", "handOver"), 1):
             choose(there, f"hole-{number}", name)
         there.click("#add-form")
-        says(there, 'rule "round": (light before fetch) before handOver')
+        says(there, 'rule "round": light before fetch before handOver')
         tool(there, "agent")
         for name, place in (("lamp", "room"), ("porter", "office"), ("nurse", "room")):
             there.press(*at(there, place))

@@ -44,7 +44,7 @@ MISTAKES = {
     "PML010 misspelt word": changed("controllable", "controlable"),
     "PML010 bracket": changed("work before hand", "(work before hand"),
     "PML010 bracket too many": changed("work before hand", "work before hand)"),
-    "PML010 three in a row": changed("work before hand", "work before rest before hand"),
+    "PML010 two words in a row": changed("work before hand", "work or rest before hand"),
     "PML010 objective: do": changed("reach_objective: do hand after 4", "objective: do hand"),
     "PML011": changed('poi "b"', 'pio "b"'),
     "PML012": changed('event "rest"', 'event "rest'),

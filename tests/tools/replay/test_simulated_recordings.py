@@ -30,7 +30,7 @@ from tests.assumptions import AWAY, CAFE, GOODBYE, LEAVES, MUSEUM, ONCE
 CARTS = """\
 poi "hall"
 poi "plane"
-connect hall and plane distance 2 only_if gate is_true
+connect hall and plane distance 2 for robots only_if gate is_true
 event "open" at_most 1 times
 event "load" location hall duration 1 only_if no robot at plane
 event "unload" location plane

@@ -41,6 +41,12 @@ function named(kind, thing) {
 const places = () => state.view.places.map((one) => [one.name, shown(one)]);
 const number = { type: "number", step: "any" };
 
+// For whom a place or a way is.
+const whom = (thing) => [
+  field("field-only_for", "only for (agents)", thing.only_for, set(thing, "only_for"), { spellcheck: "false" }),
+  field("field-not_for", "not for (agents)", thing.not_for, set(thing, "not_for"), { spellcheck: "false" }),
+];
+
 function place(thing) {
   const move = (part) => (value) =>
     change(() => {
@@ -52,6 +58,7 @@ function place(thing) {
     field("field-x", "x in metres", thing.x, move("x"), number),
     field("field-y", "y in metres", thing.y, move("y"), number),
     field("field-yaw", "looks to, in degrees from x", thing.yaw, move("yaw"), number),
+    ...whom(thing),
   ];
   const others = places().filter(([name]) => name !== thing.name);
   const to = field("field-to", "a way to", "", (value) => value && change({ do: "connect", a: thing.name, b: value }), {
@@ -68,6 +75,7 @@ function way(thing) {
   const fields = [
     field("field-distance", "distance", thing.distance, set(thing, "distance"), { inputmode: "decimal" }),
     tick("field-one_way", `from ${thing.a} to ${thing.b} only`, thing.one_way, set(thing, "one_way")),
+    ...whom(thing),
     field("field-only_if", "only while (a condition)", thing.only_if, set(thing, "only_if"), { wide: true, spellcheck: "false" }),
   ];
   return { title: `Way between ${thing.a} and ${thing.b}`, fields, more: [] };
