@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Dict, Iterator
+from collections import defaultdict
+from typing import Dict, Iterator, Set
 
 from pursue_gen.diagnostics import Diagnostic, Span
 from pursue_gen.language.assumptions.base import Setting
@@ -21,9 +22,12 @@ def setting_of(scenario: Scenario) -> Setting:
         except TooMany:
             return False  # reported with the condition
 
+    next_to: Dict[str, Set[str]] = defaultdict(set)
+    for a, b in (way for connection in scenario.connections for way in connection.directions):
+        next_to[a].add(b)
     return Setting(
         scenario.agents, scenario.events, scenario.states, scenario.safety, scenario.assumptions,
-        lambda place: destinations_from(scenario, place), at_start,
+        lambda place: destinations_from(scenario, place), lambda place: next_to[place], at_start,
     )  # fmt: skip
 
 

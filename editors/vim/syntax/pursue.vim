@@ -12,8 +12,8 @@ syntax keyword pursueConstant false is_false is_true true
 syntax keyword pursueKeyword after all always and any at at_most avoid before between by can_do capacity collaborative
 syntax keyword pursueKeyword controllable distance do does doing duration each every false_if from human if in inflation
 syntax keyword pursueKeyword initially label leaves location mobile never never_with no none not of on_way one_way
-syntax keyword pursueKeyword only_if or order patrol per radius reacts_to recharges robot robots takes then times to
-syntax keyword pursueKeyword together tolerance true_if two unit uses waits within
+syntax keyword pursueKeyword only_if or order patrol per place radius reacts_to recharges robot robots stays takes then
+syntax keyword pursueKeyword times to together tolerance true_if two unit uses waits within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"
