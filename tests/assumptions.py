@@ -56,6 +56,7 @@ agent "visitor" mobile 1 location gallery can_do look, touch reacts_to goodbye
 """A visitor who goes where he likes, and a robot that says goodbye to him."""
 
 LEAVES = "assume: visitor leaves gallery within 30"
+STAYS = "assume: visitor stays 5 to 20 at each place"
 AWAY = "assume: visitor never at store"
 GOODBYE = "reach_objective: do goodbye"
 UNTOUCHED = "objective: avoid touch"

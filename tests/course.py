@@ -28,6 +28,7 @@ from pursue_gen.language.scenario import (
     RuleBody,
     Scenario,
     Sequence,
+    Stays,
     Waits,
 )
 from pursue_gen.tools.simulation.meaning import holds
@@ -216,6 +217,8 @@ class Course:
         for each in self.scenario.assumptions:
             if isinstance(each, Leaves) and (each.agent.name, each.place.name) == (agent, a):
                 assert self.now - stay.came <= each.time + 1e-9, "it is assumed to leave sooner"
+            if isinstance(each, Stays) and each.agent.name == agent:
+                assert each.least - 1e-9 <= self.now - stay.came <= each.most + 1e-9, "it is assumed to stay so long"
         if agent in self.levels:
             self.levels[agent] -= self._used_on_way(agent, a, b)
         self.stays[agent] = Stay(a, self.now, to=b)

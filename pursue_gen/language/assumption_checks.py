@@ -2,21 +2,32 @@
 
 from __future__ import annotations
 
-from typing import Dict, Iterator
+from typing import Dict, Iterator, Set
 
 from pursue_gen.diagnostics import Diagnostic, Span
 from pursue_gen.language.assumptions.base import Setting
 from pursue_gen.language.behaviour import destinations_from
-from pursue_gen.language.clauses import Domains, holds_at_start
+from pursue_gen.language.clauses import Domains, TooMany, holds_at_start
+from pursue_gen.language.conditions import Condition
 from pursue_gen.language.scenario import Scenario
 
 
 def setting_of(scenario: Scenario) -> Setting:
     """The scenario as assumptions ask for it."""
+
+    def at_start(condition: Condition) -> bool:
+        try:
+            return holds_at_start(condition, scenario, Domains(scenario))
+        except TooMany:
+            return False  # reported with the condition
+
+    def next_to(place: str, agent: str) -> Set[str]:
+        ways = (way for connection in scenario.ways_of(agent) for way in connection.directions)
+        return {end for start, end in ways if start == place}
+
     return Setting(
         scenario.agents, scenario.events, scenario.states, scenario.safety, scenario.assumptions,
-        lambda place, agent: destinations_from(scenario, place, agent),
-        lambda condition: holds_at_start(condition, scenario, Domains(scenario)),
+        lambda place, agent: destinations_from(scenario, place, agent), next_to, at_start,
     )  # fmt: skip
 
 

@@ -12,8 +12,19 @@ from typing import Any, Callable, Dict, List, Mapping, Tuple, Type
 from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Clauses, clauses_of
 from pursue_gen.language.numbers import exact
-from pursue_gen.language.scenario import Assumption, AtMost, Leaves, NeverAt, NeverHolds, NotBefore, Scenario, Waits
-from pursue_gen.language.symbols import Role
+from pursue_gen.language.scenario import (
+    Assumption,
+    AtMost,
+    Departure,
+    Leaves,
+    NeverAt,
+    NeverHolds,
+    NotBefore,
+    Scenario,
+    Stays,
+    Waits,
+)
+from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.tga.agents import PAUSE
 from pursue_gen.tga.changes import Change, beginning, setting_off, states_set
 from pursue_gen.tga.conditions import Conditions
@@ -139,23 +150,27 @@ def _waits(automaton: Automaton, number: int, assumption: Waits, *_: object) -> 
     return automaton.with_each(edges)
 
 
-def _leaves(automaton: Automaton, number: int, assumption: Leaves, *_: object) -> Automaton:
+def _departs(automaton: Automaton, number: int, assumption: Departure, *_: object) -> Automaton:
     """An invariant where it stands; what it does there begins only where it can set off in time afterwards."""
-    place, clock, most = assumption.place.name, names.assumption_clock(number), assumption.time
-    here = ClockBound(clock, "<=", most)
+    clock, (least, most) = names.assumption_clock(number), assumption.window
+    latest, earliest = ClockBound(clock, "<=", most), ClockBound(clock, ">=", least)
+    pois = {each.name for each in automaton.locations if role_of(each.name) is Role.AT}
+    places = {assumption.only_at} if assumption.only_at else pois
 
     def bounded(location: Location) -> Location:
-        return replace(location, invariant=(*location.invariant, here)) if location.name == place else location
+        return replace(location, invariant=(*location.invariant, latest)) if location.name in places else location
 
     def edges(edge: Edge) -> List[Edge]:
-        if edge.target == place and edge.leaves is Role.WAY:
+        if edge.target in places and edge.leaves is Role.WAY:
             return [edge.plus(resets=(clock,))]
         if edge.received is not None:
             # Whoever takes part in what another agent does is kept until that ends; its time begins anew then.
-            return [edge.plus(resets=(clock,))] if edge.target == place else [edge]
-        if edge.source != place or edge.enters is Role.WAY:
+            return [edge.plus(resets=(clock,))] if edge.target in places else [edge]
+        if edge.source not in places:
             return [edge]
-        lasts = 0 if edge.target == place else automaton.longest.get(edge.target, 0)
+        if edge.enters is Role.WAY:
+            return [edge.plus(bounds=(earliest,)), _when_broken(edge, number)] if least > PAUSE else [edge]
+        lasts = 0 if edge.target in places else automaton.longest.get(edge.target, 0)
         in_time = edge.plus(bounds=(ClockBound(clock, "<", exact(most - PAUSE - lasts)),))
         return [in_time, _when_broken(edge, number)]
 
@@ -177,7 +192,8 @@ _KEPT: Mapping[Type[Assumption], Callable[[Automaton, int, Any, Scenario, Condit
     AtMost: _at_most,
     NotBefore: _not_before,
     Waits: _waits,
-    Leaves: _leaves,
+    Leaves: _departs,
+    Stays: _departs,
     NeverAt: _never_at,
     NeverHolds: _never_holds,
 }

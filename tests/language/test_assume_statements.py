@@ -9,7 +9,7 @@ import pytest
 from pursue_gen.language import parse
 from pursue_gen.language.checks import check
 from pursue_gen.language.scenario import AtMost, Leaves, NeverAt, Waits
-from tests.assumptions import APART, AWAY, LEAVES, MUSEUM, PLAYROOM, ROOMS, SPACED, TWICE, scenario
+from tests.assumptions import APART, AWAY, GOODBYE, LEAVES, MUSEUM, PLAYROOM, ROOMS, SPACED, STAYS, TWICE, scenario
 
 
 def findings(text: str) -> List[Tuple[str, int, str]]:
@@ -34,15 +34,17 @@ def test_each_form_is_read() -> None:
 
 def test_its_words_may_be_names_everywhere_else() -> None:
     text = (
-        'poi "at" poi "never" connect at and never distance 1 event "waits" location at event "times" '
+        'poi "at" poi "never" poi "place" connect at and never distance 1 connect at and place distance 1 '
+        'event "waits" location at event "times" '
         'agent "does" controllable mobile 1 location never can_do waits, times '
-        'agent "leaves" mobile 1 location at can_do times\n'
-        "assume: leaves leaves at within 5 assume: leaves never at never\nreach_objective: do waits"
+        'agent "leaves" mobile 1 location at can_do times agent "stays" mobile 1 location place\n'
+        "assume: leaves leaves at within 5 assume: leaves never at never assume: stays stays 2 to 5 at each place\n"
+        "reach_objective: do waits"
     )
     story = parse(text, "words.pur", "words")
     assert [f.code for f in check(story)] == []
     assert [each.clause for each in story.assumptions] == [
-        "leaves leaves at within 5 units", "leaves is never at never",
+        "leaves leaves at within 5 units", "leaves is never at never", "stays stays 2 to 5 units at each place",
     ]
 
 
@@ -57,6 +59,20 @@ def test_its_words_may_be_names_everywhere_else() -> None:
         (PLAYROOM.format("assume: child leaves room within 5"), "PML252", "cannot leave it"),
         (PLAYROOM.format(f"{TWICE}\nassume: child does spill at_most 3 times"), "PML253", "line 9 assumes this"),
         (PLAYROOM.format("assume: child does clean at_most 2 times"), "PML254", "cannot do clean anyway"),
+        (ROOMS.format("assume: anna stays 0 to 1 at each place"), "PML251", "too short"),
+        (ROOMS.format("assume: anna stays 6 to 5 at each place"), "PML200", "the second number is smaller"),
+        (PLAYROOM.format("assume: child stays 5 to 9 at each place"), "PML252", "child is not mobile"),
+        (MUSEUM.replace("3\nevent", "3 one_way\nevent").format(f"{STAYS}\n{GOODBYE}"), "PML252",
+         "no way leads away from store"),
+        (ROOMS.format("assume: anna stays 5 to 9 at each place\nassume: anna stays 3 to 8 at each place"), "PML253",
+         "line 10 assumes this of anna already"),
+        (ROOMS.format("assume: anna stays 5 to 9 at each place\nassume: anna leaves west within 4"), "PML264",
+         "anna stays 5 or longer, and is assumed to leave west sooner"),
+        (ROOMS.format("assume: anna stays 5 to 9 at each place\nassume: anna never at east"), "PML264",
+         "anna leaves west in time, and is assumed never to be where ways lead from there"),
+        (MUSEUM.format(f"{AWAY}\n{AWAY.replace('store', 'hall')}\n{LEAVES}\nreach_objective: do goodbye"), "PML264",
+         "visitor leaves gallery in time, and is assumed never to be where ways lead from there"),
+        (ROOMS.format(f"assume: anna stays 5 to 9 at each place\n{APART}"), "PML264", "could be kept from setting off"),
         (ROOMS.format("assume: not cleaner at west"), "PML250", "cleaner is controlled"),
         (ROOMS.format("assume: not (any agent at west)"), "PML263", "any agent means controlled ones as well"),
         (PLAYROOM.format("assume: not tidy is_true"), "PML263", "bot is controlled, and its clean sets tidy"),

@@ -136,7 +136,7 @@ SLIPS = [
     ("assume: not (a at b and c at d", "PML010", 31, "expected `)` or `and`", "put a `)`"),
     ("assume: a at b", "PML010", 11, "expected `does`, `waits`", "not (visitor at a and guest at a)"),
     ("assume a never at b", "PML010", 8, "expected `:`", "the form is"),
-    ("assume: a stays at b", "PML010", 11, "expected `does`, `waits`, `leaves` or `never`", "the form is"),
+    ("assume: a lingers at b", "PML010", 11, "expected `does`, `waits`, `leaves`, `stays` or `never`", "the form is"),
     ('agent "b" mobile 3', "PML010", 19, "`radius`, `tolerance` or `inflation` after `3`", "location is required"),
     ('agent "b" mobile location a', "PML010", 18, "expected a number after `mobile`", "mobile 3"),
     ('agent "b" location a controllable', "PML010", 22, "found `controllable`", "human controllable mobile 3 location"),

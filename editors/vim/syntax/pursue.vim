@@ -13,7 +13,7 @@ syntax keyword pursueKeyword after agents all always and any at at_most avoid be
 syntax keyword pursueKeyword collaborative controllable distance do does doing duration each every except false_if from
 syntax keyword pursueKeyword holds human if in inflation initially label leaves location mobile never never_with no none
 syntax keyword pursueKeyword not of on_way one_way only_if or order patrol per place radius reacts_to recharges robot
-syntax keyword pursueKeyword robots takes then times to together tolerance true_if two unit uses waits way within
+syntax keyword pursueKeyword robots stays takes then times to together tolerance true_if two unit uses waits way within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

@@ -5,19 +5,22 @@ from __future__ import annotations
 from typing import Mapping, Type
 
 from pursue_gen.language.assumptions.at_most import AtMost
-from pursue_gen.language.assumptions.base import AboutOne, Assumption
+from pursue_gen.language.assumptions.base import AboutOne, Assumption, Departure
 from pursue_gen.language.assumptions.leaves import Leaves
 from pursue_gen.language.assumptions.never_at import NeverAt
 from pursue_gen.language.assumptions.never_holds import NeverHolds
 from pursue_gen.language.assumptions.not_before import NotBefore
+from pursue_gen.language.assumptions.stays import Stays
 from pursue_gen.language.assumptions.waits import Waits
 
-__all__ = ["AboutOne", "Assumption", "AtMost", "Leaves", "NeverAt", "NeverHolds", "NotBefore", "Waits"]
+__all__ = [
+    "AboutOne", "Assumption", "AtMost", "Departure", "Leaves", "NeverAt", "NeverHolds", "NotBefore", "Stays", "Waits",
+]  # fmt: skip
 """Parts of scenarios: `language.scenario` hands them on."""
 
 KINDS: Mapping[str, Type[Assumption]] = {
-    "at_most": AtMost, "not_before": NotBefore, "waits": Waits, "leaves": Leaves, "never_at": NeverAt,
-    "never_holds": NeverHolds,
+    "at_most": AtMost, "not_before": NotBefore, "waits": Waits, "leaves": Leaves, "stays": Stays,
+    "never_at": NeverAt, "never_holds": NeverHolds,
 }  # fmt: skip
 """The kinds of assumptions, by their rules in the grammar."""
 

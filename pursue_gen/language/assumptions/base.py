@@ -3,7 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import AbstractSet, Any, Callable, ClassVar, Iterator, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import (
+    AbstractSet,
+    Any,
+    Callable,
+    ClassVar,
+    Iterable,
+    Iterator,
+    Mapping,
+    NamedTuple,
+    Optional,
+    Sequence,
+    Tuple,
+)
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
 from pursue_gen.language.conditions import Condition
@@ -15,6 +27,9 @@ from pursue_gen.language.statements.base import Written
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.statements.state import State
 
+SHORTEST_STAY = 2
+"""Time units: an agent rests for one before it may set off."""
+
 
 class Setting(NamedTuple):
     """The scenario in which an assumption stands, as far as one asks for it."""
@@ -25,6 +40,7 @@ class Setting(NamedTuple):
     safety: Tuple[Safety, ...]
     assumptions: Tuple[Assumption, ...]
     onward: Callable[[str, str], AbstractSet[str]]  # from a place, itself included, the places to which an agent gets
+    next_to: Callable[[str, str], AbstractSet[str]]  # those to which a single way leads it from there
     at_start: Callable[[Condition], bool]  # whether a condition holds at the start
 
 
@@ -84,6 +100,11 @@ class Assumption(Written):
     @property
     def excluded(self) -> Tuple[str, ...]:
         """An agent and an event that it never does, where that is all that it says; (): it says something else."""
+        return ()
+
+    @property
+    def shunned(self) -> Tuple[str, ...]:
+        """The places to which its agent never sets off."""
         return ()
 
     @property
@@ -155,6 +176,39 @@ class AboutOne(Assumption):
         else:
             return None
         return warning("PML254", message, self.span, "delete the assumption")
+
+
+class Departure(AboutOne):
+    """An assumption about when an agent sets off, counted from when it came to a place or from the start."""
+
+    @property
+    def only_at(self) -> str:
+        """The place that it is about; "": each place."""
+        return ""
+
+    @property
+    def window(self) -> Tuple[Number, Number]:
+        """After how many time units it sets off at the earliest, and at the latest."""
+        raise NotImplementedError
+
+    def never_away(self, agent: Agent, places: Iterable[str], setting: Setting) -> Optional[Diagnostic]:
+        """An error where the agent cannot leave one of these places, to which it may come; else None."""
+        if agent.mobile is None:
+            message = f"{agent.name} is not mobile: it stays in {agent.location.name}, and cannot leave it"
+            return error("PML252", message, self.span, "make it mobile (mobile 1)")
+        for place in places:
+            ways = setting.next_to(place, agent.name)
+            if not ways:
+                return error("PML252", f"no way leads away from {place}", self.span, f"connect {place} and …")
+            if ways <= never_at(agent, setting):
+                message = f"{agent.name} leaves {place} in time, and is assumed never to be where ways lead from there"
+                return error("PML264", message, self.span, "assume one of the two")
+        return None
+
+
+def never_at(agent: Agent, setting: Setting) -> AbstractSet[str]:
+    """The places to which the agent is assumed never to set off."""
+    return {place for each in setting.assumptions if each.binds(agent) for place in each.shunned}
 
 
 class NotSooner(AboutOne):

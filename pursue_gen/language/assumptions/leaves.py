@@ -6,19 +6,16 @@ from dataclasses import dataclass
 from typing import ClassVar, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
-from pursue_gen.language.assumptions.base import AboutOne, Setting
+from pursue_gen.language.assumptions.base import SHORTEST_STAY, Departure, Setting
 from pursue_gen.language.numbers import Number, whole_below
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
 from pursue_gen.language.word import Form, Numbers, Word
 
-SHORTEST_STAY = 2
-"""Time units: an agent rests for one before it may set off."""
-
 
 @dataclass(frozen=True)
-class Leaves(AboutOne):
+class Leaves(Departure):
     """`assume: agent leaves place within time`: so many time units after it came (or the start) it has set off."""
 
     agent: Ref
@@ -36,18 +33,19 @@ class Leaves(AboutOne):
     def clause(self) -> str:
         return f"{self.agent.shown} leaves {self.place.shown} within {units(self.time)}"
 
+    @property
+    def only_at(self) -> str:
+        return self.place.name
+
+    @property
+    def window(self) -> Tuple[Number, Number]:
+        return 0, self.time
+
     def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
-        place, start = self.place.name, agent.location.name
         if self.time < SHORTEST_STAY:
             message = f"within {self.time} is too short: whoever arrives rests for 1 time unit before it can set off"
             return error("PML251", message, self.span, f"write within {SHORTEST_STAY} or more")
-        if agent.mobile is None and place == start:
-            message = f"{agent.name} is not mobile: it stays in {start}, and cannot leave it"
-            return error("PML252", message, self.span, "make it mobile (mobile 1)")
-        found = self.never_comes(agent, self.place, setting)
-        if found is None and setting.onward(place, agent.name) == {place}:
-            return error("PML252", f"no way leads away from {place}", self.span, f"connect {place} and …")
-        return found
+        return self.never_comes(agent, self.place, setting) or self.never_away(agent, [self.place.name], setting)
 
     @property
     def since(self) -> str:

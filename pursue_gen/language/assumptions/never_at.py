@@ -38,6 +38,10 @@ class NeverAt(AboutOne):
         message = stays if agent.mobile is None else f"{agent.name} starts in {start}"
         return error("PML252", message, self.span, "let it start somewhere else")
 
+    @property
+    def shunned(self) -> Tuple[str, ...]:
+        return (self.place.name,)
+
     @classmethod
     def missing(cls, setting: Setting, longest: Number) -> Iterator[Tuple[Assumption, Sequence[int]]]:
         """For each place in a condition that must always, or never, hold, and each agent of whom it is said."""

@@ -11,7 +11,7 @@ from pursue_gen.language.conditions import At, AtMostOf, Atom, Not, OnWay, Who, 
 from pursue_gen.language.objectives.base import Breaks, Safety
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import Form, Word
+from pursue_gen.language.word import PLACE, Form, Word
 
 
 class Holds(Safety):
@@ -69,7 +69,7 @@ class PlaceHolds(Holds):
     template: ClassVar[Template] = Template("place {places:POIs=a} holds {most,who:some=1 robot}")
     note: ClassVar[str] = "or 2 robots, 2 agents, 1 of bot1, bot2"
     own_words: ClassVar[Tuple[Word, ...]] = (
-        Word("place", "The places in which there is room for so many.", True),
+        PLACE,
         Word("holds", "There is room for so many, and no more.", True),
     )
     forms: ClassVar[Tuple[Form, ...]] = (Form("what a place holds", "place {POI} holds {=1} robot"),)

@@ -47,6 +47,7 @@ WHO = AGENTS.map(Who)
 ATOMS: st.SearchStrategy[Condition] = st.builds(At, WHO, PLACES) | st.builds(OnWay, WHO) | st.builds(Doing, WHO, EVENTS)
 VALUES: Dict[str, st.SearchStrategy[Any]] = {
     "agent": AGENTS, "event": EVENTS, "place": PLACES, "times": st.integers(0, 3), "time": st.integers(2, 20),
+    "least": st.integers(0, 6), "most": st.integers(6, 20),
     "condition": ATOMS | ATOMS.map(Not),
 }  # fmt: skip
 
