@@ -26,9 +26,6 @@ class Word(NamedTuple):
         return self.text.upper()
 
 
-PLACE = Word("place", "The places with room for so many; behind each, those to which somebody comes.", True)
-"""A word of two statements."""
-
 HOLE = re.compile(r"\{(=?)([^}]*)\}")
 """A hole in the words of a form: {kind of thing}, or {=an example}."""
 

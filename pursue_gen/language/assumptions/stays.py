@@ -13,7 +13,7 @@ from pursue_gen.language.numbers import Number, whole_below
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import PLACE, Form, Numbers, Word
+from pursue_gen.language.word import Form, Numbers, Word
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Stays(Departure):
     template: ClassVar[Template] = Template("{agent=visitor} stays {least:number=5} to {most:number=20} at each place")
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("stays", "How long it stays at the least and at the most, wherever it is.", True),
-        PLACE,
+        Word("place", "The places with room for so many; behind each, those to which somebody comes.", True),
     )
     forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody stays at each place", template.to_fill_in),)
     numbers: ClassVar[Numbers] = {

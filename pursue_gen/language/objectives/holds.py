@@ -11,7 +11,7 @@ from pursue_gen.language.conditions import At, AtMostOf, Atom, Not, OnWay, Who, 
 from pursue_gen.language.objectives.base import Breaks, Safety
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import PLACE, Form, Word
+from pursue_gen.language.word import Form, Word
 
 
 class Holds(Safety):
@@ -69,7 +69,6 @@ class PlaceHolds(Holds):
     template: ClassVar[Template] = Template("place {places:POIs=a} holds {most,who:some=1 robot}")
     note: ClassVar[str] = "or 2 robots, 2 agents, 1 of bot1, bot2"
     own_words: ClassVar[Tuple[Word, ...]] = (
-        PLACE,
         Word("holds", "There is room for so many, and no more.", True),
     )
     forms: ClassVar[Tuple[Form, ...]] = (Form("what a place holds", "place {POI} holds {=1} robot"),)
