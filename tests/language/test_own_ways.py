@@ -128,8 +128,8 @@ def told(before: str) -> str:
 
 def test_editors_complete_and_tell_it() -> None:
     at = floor().index(" except carts") + len(" except ")
-    names = {one.label for one in complete(Draft.of(floor(), "x.pur"), at) if one.kind == "name"}
-    assert {"carts", "agv", "cart1", "visitor"} <= names and "lift" not in names
+    names = {one.label for one in complete(Draft.of(floor(), "x.pur"), at)}
+    assert {"carts", "robots", "agv", "cart1", "visitor"} <= names and "lift" not in names
     assert "only for Porter, cart1 and cart2, not for cart2" in told('poi "li')
     assert "not for cart1 and cart2, only while" in told('poi "li')
     assert "never is at lift" in told('agent "ge') and "never goes" not in told('agent "ge')

@@ -202,7 +202,11 @@ def _words(place: _Place, expected: FrozenSet[str], grouped: bool) -> Iterator[C
         names_hide -= {"ANY", "NO", "AT_MOST", *(("ALL", "NONE") if grouped else ())}
     elif grouped and condition_start(place.behind) is not None and place.behind[-1].type in ("AT", "DOING"):
         names_hide.discard("ANY")
-    elif GROUP in kinds or [token.type for token in place.behind[-2:]] == ["NUMBER", "OF"]:
+    elif (
+        GROUP in kinds
+        or [token.type for token in place.behind[-2:]] == ["NUMBER", "OF"]
+        or (kinds == ("agent",) and place.behind[-1].type in ("FOR", "EXCEPT"))
+    ):
         names_hide.discard("ROBOTS")
     elif place.behind[0].type == "FOR" and not body_of(place.behind):
         names_hide = set()
