@@ -28,7 +28,7 @@ from pursue_gen.tga.network import (
     Sync,
     Test,
 )
-from tests.synthesis.play_by_play import PlayByPlay
+from tests.synthesis.play_by_play import broken
 from tests.synthesis.random_games import networks
 
 HOUSE = """poi "hall"
@@ -200,4 +200,4 @@ def test_the_verdict_is_that_of_the_whole_game_and_the_strategy_wins_it(
     if verdict.strategy is None or not verdict.strategy.blocks:
         return
     assert verify(network, objective, verdict.strategy, reaction, prompt=False).ok
-    assert PlayByPlay(network, objective, verdict.strategy, reaction).broken() in (None, "cycle")
+    assert broken(network, objective, verdict.strategy, reaction) in (None, "cycle")
