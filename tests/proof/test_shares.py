@@ -35,7 +35,7 @@ from pursue_gen.tools.simulation.runs import MissionRunner
 from tests.oracle.checker import natively
 from tests.proof.test_stages import of_the_whole
 
-RANDOM = settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+RANDOM = settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck))
 SIZES = (Size(places=3, robots=2, people=1, promises=2), Size(places=4, robots=3, people=1, promises=3))
 LITTLE = Limits(states=3_000, work=3_000_000)
 WORK = 20_000_000
