@@ -47,6 +47,7 @@ def files(text: str) -> Dict[str, bytes]:
     return generate(scenario(text), won.network, won.objective, won.strategy, Options(reaction=won.reaction))
 
 
+@functools.lru_cache(maxsize=None)
 def model(text: str) -> Model:
     """Its model, as the nodes have it."""
     return Model(yaml.safe_load(files(text)["src/observer/config/model.yaml"]))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import List
 
 import pytest
 
@@ -13,10 +14,7 @@ QUICK = [
     "tests/language/test_messages.py", "tests/language/test_parser.py", "tests/language/test_formatter.py",
     "tests/runtime/controller", "tests/runtime/test_bounded.py", "tests/tga/test_translate.py",
 ]  # fmt: skip
-SOLVING = [
-    "tests/partition", "tests/runtime/observer", "tests/workspace/test_generate.py",
-    "tests/workspace/test_mission_test.py",
-]  # fmt: skip
+SOLVING = ["tests/partition", "tests/runtime/observer", "tests/workspace/test_mission_test.py"]
 """They solve games, for which solver and checker are built."""
 
 
@@ -42,14 +40,19 @@ def test_tests_that_solve_games_pass_with_the_native_engine(engine38: str) -> No
     passed(engine38, *SOLVING)
 
 
-def test_a_workspace_is_the_same_as_with_the_packages_of_today(engine38: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("name", "how"), [("scenario_3", []), ("scenario_1", ["--controllers", "general"])], ids=["distributed", "general"]
+)
+def test_a_workspace_is_the_same_as_with_the_packages_of_today(
+    engine38: str, name: str, how: List[str], tmp_path: Path
+) -> None:
     trees = []
-    for name, python in (("old", engine38), ("today", sys.executable)):
-        done = said([python, "-m", "pursue_gen", "ws", "scenarios/thesis/scenario_3.pur", "-o", str(tmp_path / name)])
+    for place, python in ((tmp_path / "old", engine38), (tmp_path / "today", sys.executable)):
+        done = said([python, "-m", "pursue_gen", "ws", f"scenarios/thesis/{name}.pur", *how, "-o", str(place)])
         assert done.returncode == 0, done.stdout
         assert "native engine" in done.stdout
-        files = [path for path in sorted((tmp_path / name).rglob("*")) if path.is_file()]
-        trees.append({str(path.relative_to(tmp_path / name)): path.read_bytes() for path in files})
+        files = [path for path in sorted(place.rglob("*")) if path.is_file()]
+        trees.append({str(path.relative_to(place)): path.read_bytes() for path in files})
     old, today = trees
     assert sorted(old) == sorted(today) and len(old) > 100
     assert [path for path in old if old[path] != today[path]] == []

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 from typing import List, Tuple
 
@@ -18,6 +16,7 @@ from pursue_gen.workspace.model_file import render
 from pursue_runtime.model import Model, Position
 from pursue_runtime.state import SystemState
 from pursue_runtime.vocabulary import sentence
+from tests.cli.test_commands import pursue
 from tests.conftest import ROOT
 
 PAGE = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
@@ -30,9 +29,10 @@ def blocks(language: str) -> List[str]:
 
 def said(folder: Path, *words: str) -> Tuple[int, str]:
     """What a command says to its reader, and its exit status."""
-    command = [sys.executable, "-m", "pursue_gen", *words]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=600, check=False)
-    return done.returncode, done.stdout + done.stderr
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        told = pursue(*words)
+    return told.status, told.out + told.err
 
 
 def write_scenario(folder: Path) -> Path:

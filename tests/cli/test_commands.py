@@ -80,7 +80,7 @@ command_of = functools.lru_cache(maxsize=None)(typer.main.get_command)
 
 def pursue(*arguments: object, stream: Type[io.TextIOWrapper] = io.TextIOWrapper, **environment: str) -> Outcome:
     """Runs the program in this process."""
-    out, err = (stream(io.BytesIO(), encoding="utf-8") for _ in range(2))
+    out, err = (stream(io.BytesIO(), encoding="utf-8", newline="") for _ in range(2))
     words = ["pursue-gen", *map(str, arguments)]
     status = 0
     with contextlib.ExitStack() as changed:

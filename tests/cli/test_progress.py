@@ -19,12 +19,12 @@ import pytest
 from pursue_gen.cli import progress as progress_module
 from pursue_gen.cli.progress import in_words, progress_line
 from pursue_gen.synthesis.limits import PROVING, Progress
-from tests.cli.test_commands import FIRST, ROOT, Outcome, called
+from tests.cli.test_commands import FIRST, ROOT, Outcome, Terminal, called, pursue
 from tests.large_scenarios import many_walkers
 
 ERASE = "\r\033[K"
 IMPATIENT = "import pursue_gen.cli.progress as line; line._PATIENCE = line._REDRAW = 0.0"
-PATIENT = "import pursue_gen.cli.progress as line; line._PATIENCE = 1e9"
+QUICKLY_EXPLAINED = "import pursue_gen.explanation.costs as costs; costs.SECONDS = 1.0"
 SLOW_CHECKER = """
 import time
 from pursue_gen.synthesis.limits import PROVING, LimitMonitor
@@ -44,12 +44,12 @@ class Screen(io.StringIO):
 
 
 def on_terminal(
-    *arguments: object, changed: str = "", until: Optional[str] = None, times: int = 1, **environment: str
+    *arguments: object, changed: str = "", until: Optional[str] = None, times: int = 1
 ) -> Outcome:
     """Runs the program, some of it `changed`, with stderr on a terminal; Ctrl-C after showing `until` so often."""
     code = f"{changed}\nimport sys\nfrom pursue_gen.cli.app import main\nsys.exit(main())"
     words = [sys.executable, "-c", code, *map(str, arguments)]
-    variables = {**os.environ, "TERM": "xterm", "NO_COLOR": "1", **environment}
+    variables = {**os.environ, "TERM": "xterm", "NO_COLOR": "1"}
     ours, its = pty.openpty()
     shown = b""
     process = subprocess.Popen(words, cwd=str(ROOT), env=variables, stdout=subprocess.PIPE, stderr=its, text=True)
@@ -68,6 +68,13 @@ def on_terminal(
         os.close(ours)
         out = process.stdout.read()
     return Outcome(process.returncode, out, shown.decode("utf-8").replace("\r\n", "\n"))
+
+
+def seen(*arguments: object, patience: float = 0.0, term: str = "xterm") -> Outcome:
+    """Runs the program in this process, its streams terminals."""
+    paces = {"_PATIENCE": patience, "_REDRAW": 0.0}
+    with mock.patch.multiple(progress_module, **paces):
+        return pursue(*arguments, stream=Terminal, TERM=term, NO_COLOR="1")
 
 
 @pytest.fixture(scope="module")
@@ -106,7 +113,7 @@ def test_at_a_limit_it_is_erased(large: Path) -> None:
 
 
 def test_after_a_limit_it_is_shown_of_the_search_for_what_is_large(large: Path) -> None:
-    told = on_terminal("solve", large, "--memory", 100, changed=IMPATIENT)
+    told = on_terminal("solve", large, "--memory", 100, changed=f"{IMPATIENT}\n{QUICKLY_EXPLAINED}")
     assert told.status == 5
     assert told.err.index("error SYN010") < told.err.index("\rexplaining: ")
     # "Without walker1 …", or where that is not found within the limits: "Too large without walker1 …".
@@ -117,43 +124,41 @@ def test_after_a_limit_it_is_shown_of_the_search_for_what_is_large(large: Path) 
 def test_other_commands_show_it_too(command: List[str], tmp_path: Path) -> None:
     plan = tmp_path / "plan.txt"
     if command[0] == "verify" or "--plan" in command:
-        assert on_terminal("solve", FIRST, "-o", plan).status == 0
+        assert pursue("solve", FIRST, "-o", plan).status == 0
         command = [*command, str(plan)]
     if command[0] == "ws":
         command = [*command, "-o", str(tmp_path / "ws")]
-    told = on_terminal(*command, changed=IMPATIENT)
+    told = seen(*command)
     assert told.status == 0
     assert "\rproving: " in told.err
 
 
 def test_an_explanation_shows_it_too(tmp_path: Path) -> None:
     file = called(tmp_path, 3)
-    told = on_terminal("solve", file, changed=IMPATIENT)
+    told = seen("solve", file)
     assert told.status == 4
     assert "\rexplaining: " in told.err
     assert "would change that" in told.err.rsplit(ERASE, 1)[1]
 
 
 def test_what_is_quickly_done_shows_nothing() -> None:
-    told = on_terminal("solve", FIRST, "-o", os.devnull, changed=PATIENT)
+    told = seen("solve", FIRST, "-o", os.devnull, patience=1e9)
     assert told.status == 0
     assert "\033" not in told.err and "solving" not in told.err
 
 
 @pytest.mark.parametrize("quiet", [["--json"], []])
 def test_with_json_and_on_a_poor_terminal_nothing_is_shown(quiet: List[str]) -> None:
-    environment = {} if quiet else {"TERM": "dumb"}
-    told = on_terminal("solve", FIRST, *quiet, changed=IMPATIENT, **environment)
+    told = seen("solve", FIRST, *quiet, term="xterm" if quiet else "dumb")
     assert told.status == 0
     assert "\033" not in told.err and "solving" not in told.err
 
 
 def test_elsewhere_nothing_is_shown_of_short_work() -> None:
-    code = f"{IMPATIENT}\nfrom pursue_gen.cli.app import main\nmain()"
-    words = [sys.executable, "-c", code, "solve", FIRST]
-    done = subprocess.run(words, cwd=str(ROOT), capture_output=True, text=True, timeout=600, check=True)
-    assert "\033" not in done.stderr + done.stdout and "\r" not in done.stderr
-    assert "solving" not in done.stderr and "won: " in done.stderr
+    with mock.patch.multiple(progress_module, _PATIENCE=0.0, _REDRAW=0.0):
+        told = pursue("solve", FIRST, TERM="xterm")
+    assert "\033" not in told.err + told.out and "\r" not in told.err
+    assert "solving" not in told.err and "won: " in told.err
 
 
 # Ctrl-C ---------------------------------------------------------------------------------------------------------------

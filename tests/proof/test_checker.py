@@ -419,11 +419,11 @@ def used_blocks(report: ProofReport) -> Set[int]:
 
 @pytest.mark.parametrize("name", ["CT1", "CT2a", "CT4", "CT5", "WC1", "EB1", "EB2", "EB3"])
 def test_published_plans_win_the_ideal_game(reference_dir: Path, name: str, twin: str) -> None:
+    if twin == "python" and name in ("CT5", "EB2"):
+        pytest.skip("takes the readable twin seconds")
     net, objective, plan = published(reference_dir, name)
     report = verify(net, objective, plan)
     assert report.ok, report
-    if twin == "python" and name in ("CT5", "EB2"):
-        return  # the rest takes seconds
     less = pruned(plan, report)
     assert len(less.blocks) == len(used_blocks(report))
     assert verify(net, objective, less).ok

@@ -13,7 +13,7 @@ from pursue_gen.proof.checker import pruned, verify
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective, Sync
-from tests.synthesis.play_by_play import PlayByPlay
+from tests.synthesis.play_by_play import broken
 from tests.synthesis.random_games import objectives
 
 PLACES = ("l0", "l1", "l2")
@@ -108,9 +108,9 @@ def test_a_strategy_with_a_losing_play_is_never_passed(
         return
     report = verify(network, objective, strategy, reaction, prompt=False)
     assert report.ok, report
-    assert PlayByPlay(network, objective, strategy, reaction).broken() is None
+    assert broken(network, objective, strategy, reaction) is None
     changed = _changed(data.draw, strategy) if data.draw(st.booleans()) else pruned(strategy, report)
-    if PlayByPlay(network, objective, changed, reaction).broken() is not None:
+    if broken(network, objective, changed, reaction) is not None:
         assert not verify(network, objective, changed, reaction, prompt=False).ok
         assert not verify(network, objective, changed, reaction, prompt=False, ranks=verdict.ranks or {}).ok
 
@@ -136,4 +136,4 @@ def test_a_command_on_its_way_stands_whatever_those_do_who_are_left_out() -> Non
     strategy = solve(network, objective, Fraction(1, 2)).strategy
     assert strategy is not None and [name for name, _ in strategy.blocks[0].state.locations] == ["A0"]
     assert verify(network, objective, strategy, Fraction(1, 2)).ok
-    assert PlayByPlay(network, objective, strategy, Fraction(1, 2)).broken() is None
+    assert broken(network, objective, strategy, Fraction(1, 2)) is None

@@ -18,7 +18,7 @@ from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location,
 from pursue_gen.tga.pauses import pauses
 from tests.proof.test_checker_random import OBJECTIVES, _all_keys, _changed
 from tests.proof.test_parts import GO, LATER, REACH, before, block, since
-from tests.synthesis.play_by_play import PlayByPlay
+from tests.synthesis.play_by_play import broken
 
 BOT = Automaton("A", (Location("start"), Location("done")), "start", (GO,))
 SOON = Fraction(1, 2)
@@ -45,8 +45,8 @@ def test_a_call_that_changes_only_the_clock_that_is_left_out_makes_no_command_st
     strategy = Strategy((once,))
     assert not verify(network, REACH, strategy, SOON).ok
     assert verify(network, REACH, replace(strategy, left_out_clocks=("y",)), SOON).ok
-    assert PlayByPlay(network, REACH, strategy, SOON).broken() is not None
-    assert PlayByPlay(network, REACH, replace(strategy, left_out_clocks=("y",)), SOON).broken() is None
+    assert broken(network, REACH, strategy, SOON) is not None
+    assert broken(network, REACH, replace(strategy, left_out_clocks=("y",)), SOON) is None
 
 
 @pytest.mark.parametrize(
@@ -145,9 +145,9 @@ def test_a_strategy_that_leaves_clocks_out_is_right_in_the_network_with_them(
     report = verify(network, objective, strategy, reaction, prompt=False)
     assert report.ok, report
     assert verify(network, objective, pruned(strategy, report), reaction, prompt=False).ok
-    assert PlayByPlay(network, objective, strategy, reaction).broken() is None
+    assert broken(network, objective, strategy, reaction) is None
     changed = _changed(data.draw, strategy)
-    if PlayByPlay(network, objective, changed, reaction).broken() is not None:
+    if broken(network, objective, changed, reaction) is not None:
         event("refused")
         assert not verify(network, objective, changed, reaction, prompt=False).ok
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from dataclasses import replace
 from fractions import Fraction
-from typing import Dict, Optional, Tuple
+from typing import Dict, List, Optional, Tuple
 
 import pytest
 from hypothesis import HealthCheck, assume, event, example, given, settings
@@ -35,7 +35,7 @@ from pursue_gen.tools.simulation.runs import MissionRunner
 from tests.oracle.checker import natively
 from tests.proof.test_stages import of_the_whole
 
-RANDOM = settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+RANDOM = settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck))
 SIZES = (Size(places=3, robots=2, people=1, promises=2), Size(places=4, robots=3, people=1, promises=3))
 LITTLE = Limits(states=3_000, work=3_000_000)
 WORK = 20_000_000
@@ -363,14 +363,18 @@ def test_a_strategy_with_wrong_claims_that_passes_wins_the_game_as_a_whole(data:
         assert report.ok or report.reason.startswith("limit"), (report.reason, report.play)
 
 
+@functools.lru_cache(maxsize=None)
+def ends(seed: int) -> List[str]:
+    """How missions end that are simulated by this seed's strategy: no checker has a part in that."""
+    scenario, network, objective, strategy = found_for(seed, Rules().reaction)
+    network = with_watchers(network, strategy.watchers)
+    won = Solution(network, objective, strategy, Rules().reaction, rules=Rules())
+    stage = MissionRunner(make_case(scenario, won, SolveRequest(), "random", (), None)[0]).stage
+    return [simulate_mission(stage, Settings("random", until=150.0), number).end for number in range(4)]
+
+
 @settings(RANDOM, max_examples=8)
 @example(seed=67)  # two shares name a robot, and what matters to the one that does not command it changes
 @given(seed=SEEDS)
 def test_missions_stay_safe_by_commands_that_the_strategy_holds(seed: int) -> None:
-    scenario, network, objective, strategy = found_for(seed, Rules().reaction)
-    network = with_watchers(network, strategy.watchers)
-    won = Solution(network, objective, strategy, Rules().reaction, rules=Rules())
-    runner = MissionRunner(make_case(scenario, won, SolveRequest(), "random", (), None)[0])
-    for number in range(4):
-        mission = simulate_mission(runner.stage, Settings("random", until=150.0), number)
-        assert mission.end == SAFE, mission
+    assert ends(seed) == [SAFE] * 4

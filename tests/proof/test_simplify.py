@@ -23,7 +23,7 @@ from pursue_gen.tga.network import Edge, Guard, Network, Objective, Test
 from tests.conftest import thesis_scenario
 from tests.proof.test_checker import automaton, block, edge, moves, network
 from tests.proof.test_checker_random import OBJECTIVES, networks
-from tests.synthesis.play_by_play import PlayByPlay, inside
+from tests.synthesis.play_by_play import broken, inside
 from tests.synthesis.test_verdicts import published
 
 NOW, HALF = Fraction(0), Fraction(1, 2)
@@ -91,7 +91,7 @@ def test_in_fewer_zones_it_still_wins(net: Network, objective: Objective, reacti
     ranks = pruned_ranks(verdict.strategy, report, verdict.ranks) if ranked and verdict.ranks else None
     few = simplify.simplified(net, kept, reaction, ranks)
     assert verify(net, objective, few, reaction, prompt=False).ok
-    assert PlayByPlay(net, objective, few, reaction).broken() is None
+    assert broken(net, objective, few, reaction) is None
     assert all(one <= other for one, other in zip(size(few), size(kept)))
 
 

@@ -270,7 +270,7 @@ def crowded(draw: st.DrawFn) -> Network:
     return replace(net.with_each(lambda a: a.with_edges(map(resetting, a.edges))), clocks=tuple(clocks))
 
 
-@settings(RANDOM, max_examples=8)
+@settings(RANDOM, max_examples=4)
 @given(st.data(), crowded(), OBJECTIVES, REACTIONS)
 def test_they_agree_however_many_clocks_there_are(
     data: st.DataObject, net: Network, objective: Objective, reaction: Fraction

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Tuple
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving import forbidden
@@ -86,6 +86,7 @@ def test_nothing_is_reported_of_a_network_that_is_too_large(monkeypatch: pytest.
     assert list(check_forbidden(scenario(WORKSHOP.format("", NO_VISITS)))) == []
 
 
+@settings(max_examples=15)
 @given(stories())
 def test_the_relaxed_search_finds_every_edge_that_states_lead_to(story: Tuple[str, Scenario]) -> None:
     network = translate(story[1])

@@ -5,6 +5,7 @@ A deliberately naive reading of the same rules, to hold against the symbolic che
 
 from __future__ import annotations
 
+import functools
 import itertools
 import operator
 from fractions import Fraction
@@ -70,6 +71,7 @@ class PlayByPlay:
         bounds += [b.bound for a in network.automata for loc in a.locations for b in loc.invariant]
         self.longest = UNIT * (2 * max([3, *bounds]) + 3)
         self._moves: Dict[Entry, Tuple[Move, ...]] = {}
+        self._of_environment: Dict[Tuple[Entry, bool], Tuple[Entry, ...]] = {}
         self._invariants: Dict[Tuple[str, ...], List[Tuple[Automaton, ClockBound]]] = {}
         self._automaton = {automaton.name: k for k, automaton in enumerate(network.automata)}
         self._variable = {name: k for k, (name, _) in enumerate(network.variables)}
@@ -153,12 +155,12 @@ class PlayByPlay:
 
     def act(self, now: Entry, command: Command) -> Iterator[Entry]:
         """The command takes effect at any time within the reaction."""
+        commanded = {(x.automaton, x.edge) for x in command.moves}
         for n in range(int(self.reaction * UNIT / STEP) + 1):
             then = self.later(now, n * STEP)
             if not self.lasts(then):  # time is blocked before the command comes: someone else has to move
                 self.check_obliged(self.later(now, (n - 1) * STEP))
                 return
-            commanded = {(x.automaton, x.edge) for x in command.moves}
             moves = [m for m in self.moves(then) if commanded == {(a, e) for a, e in m if a in self.named}]
             if not moves or not all(edge.controllable for _, edge in moves[0]):
                 raise Broken("not enabled")
@@ -174,8 +176,13 @@ class PlayByPlay:
         values = any(now[1][k] != after[1][k] for k in self._values)
         return places or values or any(edge.resets for name, edge in move if name in self.named)
 
-    def environment(self, now: Entry, in_flight: bool = False) -> Iterator[Entry]:
+    def environment(self, now: Entry, in_flight: bool = False) -> Tuple[Entry, ...]:
         """What the environment may make of this point; of a command `in_flight` what makes it stale."""
+        if (now, in_flight) not in self._of_environment:
+            self._of_environment[now, in_flight] = tuple(self._environment(now, in_flight))
+        return self._of_environment[now, in_flight]
+
+    def _environment(self, now: Entry, in_flight: bool) -> Iterator[Entry]:
         for move in self.moves(now):
             if not all(edge.controllable for _, edge in move):
                 if in_flight and not self._is_seen(now, move):
@@ -273,6 +280,12 @@ class PlayByPlay:
         }
         if not (at_bound <= able if self.objective.kind is Kind.SAFETY else at_bound & able):
             raise Broken("time is blocked")
+
+
+@functools.lru_cache(maxsize=None)
+def broken(network: Network, objective: Objective, strategy: Strategy, reaction: Fraction) -> Optional[str]:
+    """Why a play fails, or None; played once, however many checkers are held against it."""
+    return PlayByPlay(network, objective, strategy, reaction).broken()
 
 
 def _has_cycle(after: Dict[Entry, List[Entry]]) -> bool:

@@ -38,7 +38,7 @@ from pursue_gen.tga.network import (
 )
 from pursue_gen.tga.part import part_of
 from tests.oracle import ENGINES
-from tests.synthesis.play_by_play import PlayByPlay
+from tests.synthesis.play_by_play import broken
 from tests.synthesis.random_games import networks
 
 EVERY_KIND = (Kind.REACH, Kind.REACH_WHILE_SAFE, Kind.SAFETY)
@@ -385,7 +385,7 @@ def test_a_strategy_for_the_part_wins_in_the_whole_game(game: Tuple[Network, Obj
     if verdict.strategy is None or not verdict.strategy.blocks:
         return
     assert verify(network, objective, verdict.strategy, prompt=False).ok
-    assert PlayByPlay(network, objective, verdict.strategy, Fraction(0)).broken() is None
+    assert broken(network, objective, verdict.strategy, Fraction(0)) is None
 
 
 @RANDOM
@@ -401,9 +401,9 @@ def test_the_checker_passes_no_part_in_which_something_is_missing(
     if strategy is None or not strategy.blocks:
         return
     assert named_part(network, strategy) == part
-    broken = PlayByPlay(network, objective, strategy, Fraction(0)).broken()
-    if broken not in (None, "cycle"):  # a cycle without time is no play of the world
-        assert not verify(network, objective, strategy, prompt=False).ok, broken
+    why = broken(network, objective, strategy, Fraction(0))
+    if why not in (None, "cycle"):  # a cycle without time is no play of the world
+        assert not verify(network, objective, strategy, prompt=False).ok, why
 
 
 @RANDOM

@@ -60,7 +60,7 @@ def is_stuck(walker: Automaton) -> bool:
     return False
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(walkers())
 def test_who_lets_time_pass_is_never_stuck(walker: Automaton) -> None:
     network = Network(("y", "z"), (), (), (GOAL, walker))

@@ -18,7 +18,7 @@ from typing import Dict, FrozenSet, List, Set, Tuple
 import pytest
 import yaml
 from catkin_pkg.package import parse_package
-from worlds import REACTION, SCENARIOS, files, world
+from worlds import REACTION, SCENARIOS, files, made, world
 
 import pursue_runtime
 from pursue_gen.diagnostics import PursueError
@@ -61,7 +61,7 @@ def generated(request: pytest.FixtureRequest) -> Dict[str, bytes]:
     name, controllers, reach_obj = request.param
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("HOME", HOME)
-        return files(name, controllers, reach_obj)
+        return made(name, controllers, reach_obj)
 
 
 def test_what_is_special_to_a_mission_is_small() -> None:
@@ -249,7 +249,7 @@ def test_the_launch_file_starts_every_node_and_no_other(generated: Dict[str, byt
 
 
 def test_the_same_scenario_gives_the_same_bytes() -> None:
-    assert files("thesis/catch_the_thief") == files("thesis/catch_the_thief")
+    assert made("thesis/catch_the_thief") == files("thesis/catch_the_thief")
 
 
 def test_neither_the_machine_nor_the_day_is_in_any_file(generated: Dict[str, bytes]) -> None:
@@ -508,7 +508,7 @@ def test_the_page_gets_the_strategies_of_all_controllers_unless_they_are_large(m
         assert data == read(found[f"src/{controller}/config/strategy.yaml"])
     assert found[path].count(b"\n") < 10, "one line each"
     monkeypatch.setattr(ui_file, "LARGEST", 10)
-    assert path not in files("thesis/catch_the_thief")
+    assert path not in made("thesis/catch_the_thief")
 
 
 def paths_in(readme: str) -> List[str]:

@@ -31,9 +31,13 @@ def world(name: str, ideal: bool = False) -> World:
     return scenario, network, objective, verdict.strategy
 
 
-def files(name: str, controllers: str = "distributed", reach_obj: str = "dedicated") -> Dict[str, bytes]:
+def made(name: str, controllers: str = "distributed", reach_obj: str = "dedicated") -> Dict[str, bytes]:
     """The workspace of the scenario, in memory; a general controller plays the ideal game, as the original's does."""
     ideal = controllers == "general"
     reaction = Fraction(0) if ideal else REACTION
     options = Options(controllers, reach_obj, reaction, "controllable" if ideal else "reported")
     return generate(*world(name, ideal), options)
+
+
+files = functools.lru_cache(maxsize=None)(made)
+"""The same, made once for all the tests that read it."""
