@@ -41,6 +41,7 @@ class Setting(NamedTuple):
     assumptions: Tuple[Assumption, ...]
     onward: Callable[[str], AbstractSet[str]]  # the places to which ways lead from a place, itself included
     next_to: Callable[[str], AbstractSet[str]]  # those to which a single way leads from there
+    open_ways: Callable[[Agent], Mapping[Tuple[str, str], Number]]  # nothing keeps it from them: how long they take
     at_start: Callable[[Condition], bool]  # whether a condition holds at the start
 
 
