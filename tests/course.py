@@ -9,11 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from itertools import product
 from math import ceil, floor
-from typing import Dict, List, Optional, Tuple, Union
+from typing import Dict, List, Optional, Set, Tuple, Union
 
 from pursue_gen.language.conditions import Condition
 from pursue_gen.language.scenario import (
     Agent,
+    Assumption,
     AtMost,
     Both,
     Choice,
@@ -29,6 +30,7 @@ from pursue_gen.language.scenario import (
     Scenario,
     Sequence,
     Stays,
+    ThereBy,
     Waits,
 )
 from pursue_gen.tools.simulation.meaning import holds
@@ -115,6 +117,9 @@ class Course:
         never = (each for each in self.scenario.assumptions if isinstance(each, NeverAt))
         if any((each.agent.name, each.place.name) == (agent, b) for each in never):
             return False
+        there = [each.place.name for each in self.scenario.assumptions if self._is_there_by(each, agent)]
+        if there and b not in self._open_to(agent, there[0]):
+            return False
         if not self._keeps(agent, Stay(a, self.now, to=b)):
             return False
         moves = self.agents[agent].mobile is not None
@@ -122,6 +127,18 @@ class Course:
             return False
         ways = [way for way in ways if is_for(way, agent)]
         return stay.is_idle and stay.place == a and moves and any(self.holds(way.only_if) for way in ways)
+
+    def _is_there_by(self, each: Assumption, agent: str) -> bool:
+        return isinstance(each, ThereBy) and each.agent.name == agent
+
+    def _open_to(self, agent: str, place: str) -> Set[str]:
+        """The places from which ways that are always open lead to this one."""
+        never = {(each.agent.name, each.place.name) for each in self.scenario.assumptions if isinstance(each, NeverAt)}
+        ways = [pair for way in self.scenario.connections if way.only_if is None for pair in way.directions]
+        found = {place}
+        for _ in ways:
+            found |= {a for a, b in ways if b in found and (agent, b) not in never}
+        return found
 
     def _keeps(self, agent: str, stay: Stay) -> bool:
         """Whether conditions that are assumed never to hold cannot hold with the agent there, nor when it has come."""
@@ -219,6 +236,8 @@ class Course:
                 assert self.now - stay.came <= each.time + 1e-9, "it is assumed to leave sooner"
             if isinstance(each, Stays) and each.agent.name == agent:
                 assert each.least - 1e-9 <= self.now - stay.came <= each.most + 1e-9, "it is assumed to stay so long"
+            if isinstance(each, ThereBy) and each.agent.name == agent:
+                assert self.now <= each.time + 1e-9, "it is assumed to stay where it is"
         if agent in self.levels:
             self.levels[agent] -= self._used_on_way(agent, a, b)
         self.stays[agent] = Stay(a, self.now, to=b)
@@ -238,6 +257,9 @@ class Course:
     def arrive(self, agent: str) -> None:
         stay = self.stays[agent]
         low, high = self._window(self.agents[agent], stay)
+        for each in self.scenario.assumptions:
+            if isinstance(each, ThereBy) and (each.agent.name, each.place.name) != (agent, stay.to):
+                assert each.agent.name != agent or self.now <= each.time + 1e-9, "it is assumed to be there by then"
         assert low - 1e-9 < self.now - stay.since <= high + 1e-9, (agent, stay, self.now)
         self.stays[agent] = Stay(stay.to, self.now, rested=self.now, came=self.now)
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Dict, Iterator, Set
+from typing import Dict, Iterator, Set, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span
 from pursue_gen.language.assumptions.base import Setting
 from pursue_gen.language.behaviour import destinations_from
 from pursue_gen.language.clauses import Domains, TooMany, holds_at_start
 from pursue_gen.language.conditions import Condition
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.numbers import Number
+from pursue_gen.language.scenario import Agent, Scenario
 
 
 def setting_of(scenario: Scenario) -> Setting:
@@ -27,8 +28,17 @@ def setting_of(scenario: Scenario) -> Setting:
 
     return Setting(
         scenario.agents, scenario.events, scenario.states, scenario.safety, scenario.assumptions,
-        lambda place, agent: destinations_from(scenario, place, agent), next_to, at_start,
+        lambda place, agent: destinations_from(scenario, place, agent), next_to,
+        lambda agent: open_ways(scenario, agent), at_start,
     )  # fmt: skip
+
+
+def open_ways(scenario: Scenario, agent: Agent) -> Dict[Tuple[str, str], Number]:
+    """The ways that are always open, and that no assumption keeps the agent from, with their longest times."""
+    shunned = {place for each in scenario.assumptions if each.binds(agent) for place in each.shunned}
+    closed = {way for each in scenario.connections if each.only_if is not None for way in each.directions}
+    ways = scenario.movements(agent).items()
+    return {way: most for way, (_, most) in ways if way not in closed and way[1] not in shunned}
 
 
 def check_assumptions(scenario: Scenario) -> Iterator[Diagnostic]:

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import Any, Callable, Dict, List, Mapping, Tuple, Type
 
 from pursue_gen.language import network_names as names
+from pursue_gen.language.assumption_checks import open_ways
 from pursue_gen.language.clauses import Clauses, clauses_of
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import (
@@ -22,9 +23,10 @@ from pursue_gen.language.scenario import (
     NotBefore,
     Scenario,
     Stays,
+    ThereBy,
     Waits,
 )
-from pursue_gen.language.symbols import Role, role_of
+from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
 from pursue_gen.tga.agents import PAUSE
 from pursue_gen.tga.changes import Change, beginning, setting_off, states_set
 from pursue_gen.tga.conditions import Conditions
@@ -177,6 +179,31 @@ def _departs(automaton: Automaton, number: int, assumption: Departure, *_: objec
     return automaton.with_locations(bounded).with_each(edges)
 
 
+def _there_by(automaton: Automaton, number: int, assumption: ThereBy, scenario: Scenario, *_: object) -> Automaton:
+    """An invariant at each other place; it begins only that from which it gets there in time afterwards."""
+    clock, place = names.assumption_clock(number), assumption.place.name
+    agent = next(each for each in scenario.agents if each.name == automaton.name)
+    latest = assumption.latest(open_ways(scenario, agent))
+    ends = {edge.source: edge.target for edge in automaton.edges if edge.leaves in UNDER_WAY and edge.is_end}
+
+    def bounded(location: Location) -> Location:
+        if location.name not in latest:
+            return location
+        return replace(location, invariant=(*location.invariant, ClockBound(clock, "<=", latest[location.name])))
+
+    def edges(edge: Edge) -> List[Edge]:
+        end = ends.get(edge.target, edge.target)
+        if edge.source in ends or edge.received is not None or edge.source == end == place:
+            return [edge]
+        if end != place and end not in latest:
+            return [_when_broken(edge, number)]
+        moment = assumption.time if end == place else latest[end] - 2 * PAUSE
+        in_time = ClockBound(clock, "<=", exact(moment - automaton.longest.get(edge.target, 0)))
+        return [edge.plus(bounds=(in_time,)), _when_broken(edge, number)]
+
+    return automaton.with_locations(bounded).with_each(edges)
+
+
 def _never_at(automaton: Automaton, number: int, assumption: NeverAt, *_: object) -> Automaton:
     place = assumption.place.name
     ways = {edge.source for edge in automaton.edges if edge.target == place and edge.leaves is Role.WAY}
@@ -194,6 +221,7 @@ _KEPT: Mapping[Type[Assumption], Callable[[Automaton, int, Any, Scenario, Condit
     Waits: _waits,
     Leaves: _departs,
     Stays: _departs,
+    ThereBy: _there_by,
     NeverAt: _never_at,
     NeverHolds: _never_holds,
 }

@@ -11,16 +11,18 @@ from pursue_gen.language.assumptions.never_at import NeverAt
 from pursue_gen.language.assumptions.never_holds import NeverHolds
 from pursue_gen.language.assumptions.not_before import NotBefore
 from pursue_gen.language.assumptions.stays import Stays
+from pursue_gen.language.assumptions.there_by import ThereBy
 from pursue_gen.language.assumptions.waits import Waits
 
 __all__ = [
-    "AboutOne", "Assumption", "AtMost", "Departure", "Leaves", "NeverAt", "NeverHolds", "NotBefore", "Stays", "Waits",
+    "AboutOne", "Assumption", "AtMost", "Departure", "Leaves", "NeverAt", "NeverHolds", "NotBefore", "Stays",
+    "ThereBy", "Waits",
 ]  # fmt: skip
 """Parts of scenarios: `language.scenario` hands them on."""
 
 KINDS: Mapping[str, Type[Assumption]] = {
     "at_most": AtMost, "not_before": NotBefore, "waits": Waits, "leaves": Leaves, "stays": Stays,
-    "never_at": NeverAt, "never_holds": NeverHolds,
+    "there_by": ThereBy, "never_at": NeverAt, "never_holds": NeverHolds,
 }  # fmt: skip
 """The kinds of assumptions, by their rules in the grammar."""
 

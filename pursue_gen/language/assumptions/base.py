@@ -41,6 +41,7 @@ class Setting(NamedTuple):
     assumptions: Tuple[Assumption, ...]
     onward: Callable[[str, str], AbstractSet[str]]  # from a place, itself included, the places to which an agent gets
     next_to: Callable[[str, str], AbstractSet[str]]  # those to which a single way leads it from there
+    open_ways: Callable[[Agent], Mapping[Tuple[str, str], Number]]  # nothing keeps it from them: how long they take
     at_start: Callable[[Condition], bool]  # whether a condition holds at the start
 
 

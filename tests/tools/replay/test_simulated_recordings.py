@@ -167,6 +167,7 @@ def test_what_is_done_while_its_condition_does_not_hold_is_a_fault() -> None:
         (MUSEUM.format(f"{LEAVES}\n{AWAY}\n{GOODBYE}"), [], "visitor leaves gallery within 30 units"),
         (MUSEUM.format(f"{STAYS}\n{AWAY}\n{GOODBYE}"), [], "visitor stays 5 to 20 units at each place"),
         (MUSEUM.format(f"{STAYS}\n{AWAY}\n{GOODBYE}"), [(2.0, "visitor:visitor_gallery2hall")], "stays 5 to 20"),
+        (MUSEUM.format(f"assume: visitor at hall by 30\n{AWAY}\n{GOODBYE}"), [], "visitor is at hall 30 units after"),
         (MUSEUM.format(f"{LEAVES}\n{AWAY}\n{GOODBYE}"), [(2.0, "visitor:visitor_gallery2store")], "never at store"),
     ],
 )

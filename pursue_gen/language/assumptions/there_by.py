@@ -1,0 +1,80 @@
+"""`assume: agent at place by T`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Dict, Mapping, Optional, Tuple
+
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units, warning
+from pursue_gen.language.assumptions.base import SHORTEST_STAY, AboutOne, Departure, Setting
+from pursue_gen.language.numbers import Number, exact
+from pursue_gen.language.refs import Ref
+from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.template import Template
+from pursue_gen.language.word import Form, Numbers
+
+
+@dataclass(frozen=True)
+class ThereBy(AboutOne):
+    """`assume: agent at place by time`: from so many time units after the start on, it is there."""
+
+    agent: Ref
+    place: Ref
+    time: Number
+    span: Span = NOWHERE
+    template: ClassVar[Template] = Template("{agent=visitor} at {place:POI=exit} by {time:number=300}")
+    forms: ClassVar[Tuple[Form, ...]] = (Form("by when somebody has gone", template.to_fill_in),)
+    numbers: ClassVar[Numbers] = {"by": "It is there {} of time after the start, and stays there.".format}
+    number: ClassVar[str] = "time"
+    nearest: ClassVar[int] = 1
+
+    @property
+    def subject(self) -> str:
+        return f"assume: {self.template.written(self, place='…', time='…')}"
+
+    @property
+    def clause(self) -> str:
+        return f"{self.agent.shown} is at {self.place.shown} {units(self.time)} after the start, and from then on"
+
+    @property
+    def since(self) -> str:
+        return "the start"
+
+    def latest(self, ways: Mapping[Tuple[str, str], Number]) -> Dict[str, Number]:
+        """When it sets off at the latest from each other place from which these ways, with their longest times, lead
+        there: the nearest places first, with two time units at each place in between."""
+        found: Dict[str, Number] = {}
+        pending: Dict[str, Number] = {self.place.name: exact(self.time + SHORTEST_STAY)}
+        while pending:
+            here = max(pending, key=lambda place: pending[place])
+            found[here] = pending.pop(here)
+            for (a, b), longest in ways.items():
+                if b == here and a not in found:
+                    moment = exact(found[here] - SHORTEST_STAY - longest)
+                    pending[a] = max(moment, pending.get(a, moment))
+        del found[self.place.name]
+        return found
+
+    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+        place, start = self.place.name, agent.location.name
+        if self.time <= 0:
+            message = "by 0 assumes that it is always there: expected more than 0"
+            return error("PML251", message, self.span, "write the time, or take mobile away from it")
+        if place == start and agent.mobile is None:
+            return warning("PML254", f"{agent.name} is not mobile: it stays in {start} anyway", self.span, "delete it")
+        latest = self.latest(setting.open_ways(agent)).get(start)
+        if place != start and latest is None:
+            message = f"no way that is always open leads {agent.name} from {start} to {place}"
+            return error("PML252", message, self.span, f"connect {start} and {place}, without only_if")
+        if latest is not None and latest < SHORTEST_STAY:
+            sooner = exact(self.time + SHORTEST_STAY - latest)
+            message = f"{agent.name} may need {units(sooner)} from {start} to {place}"
+            return error("PML252", message, self.span, f"write by {sooner} or later")
+        shared = {event.name for event in setting.events if event.is_shared}
+        for event in (ref.name for ref in agent.reacts_to if ref.name in shared):
+            message = f"{agent.name} takes part in {event}, and could be kept from going to {place} in time"
+            return error("PML264", message, self.span, f"let it not react to {event}, or delete the assumption")
+        if any(isinstance(each, Departure) and each.binds(agent) for each in setting.assumptions):
+            message = f"{agent.name} is assumed to leave places in time, and to stay at {place}"
+            return error("PML264", message, self.span, "assume one of the two")
+        return None
