@@ -62,7 +62,7 @@ def test_without_faults_every_mission_stays_safe(name: str) -> None:
 
 @pytest.mark.parametrize("kind", [kind for kind in FAULTS if kind not in HARMLESS])
 def test_with_a_fault_missions_reach_the_goal_or_stop_safely(kind: str) -> None:
-    outcomes = missions(THIEF, 20, Settings("random", (kind,)))
+    outcomes = missions(THIEF, 10, Settings("random", (kind,)))
     assert {outcome.end for outcome in outcomes} <= {GOAL, STOPPED, HELD, LOST}, [
         (o.seed, o.reason) for o in outcomes if o.end == FAILED
     ]
