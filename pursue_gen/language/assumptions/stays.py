@@ -28,7 +28,6 @@ class Stays(Departure):
     template: ClassVar[Template] = Template("{agent=visitor} stays {least:number=5} to {most:number=20} at each place")
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("stays", "How long it stays at the least and at the most, wherever it is.", True),
-        Word("place", "The places with room for so many; behind each, those to which somebody comes.", True),
     )
     forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody stays at each place", template.to_fill_in),)
     numbers: ClassVar[Numbers] = {

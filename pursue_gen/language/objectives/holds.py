@@ -69,6 +69,7 @@ class PlaceHolds(Holds):
     template: ClassVar[Template] = Template("place {places:POIs=a} holds {most,who:some=1 robot}")
     note: ClassVar[str] = "or 2 robots, 2 agents, 1 of bot1, bot2"
     own_words: ClassVar[Tuple[Word, ...]] = (
+        Word("place", "The places with room for so many; behind each, those to which somebody comes.", True),
         Word("holds", "There is room for so many, and no more.", True),
     )
     forms: ClassVar[Tuple[Form, ...]] = (Form("what a place holds", "place {POI} holds {=1} robot"),)
