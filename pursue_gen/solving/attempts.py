@@ -43,7 +43,7 @@ class _Attempt:
 _SHARED = (
     _Attempt(EFFORTS[:1], alone=True),
     _Attempt(EFFORTS[1:2], one_robot=(40_000_000, 2_500_000)),
-    _Attempt(EFFORTS[2:3], policy=1_000_000, one_robot=(200_000_000, 100_000_000), pinned=(60_000_000, 40_000_000)),
+    _Attempt(EFFORTS[2:3], policy=450_000, one_robot=(200_000_000, 100_000_000), pinned=(60_000_000, 40_000_000)),
     _Attempt(EFFORTS[3:6], lost=True),
     _Attempt(EFFORTS[6:], policy=500_000),
 )
