@@ -20,9 +20,9 @@ from pursue_gen.tga.pauses import pauses
 def won_by_policy(
     game: Network, objective: Objective, reaction: Fraction, work: int, options: SolveOptions
 ) -> Optional[Found]:
-    """A proven strategy by a simple policy (see `Engine.guess`), without the clocks of pauses where they do not matter,
-    and by one by which patrols wait until they are due where others have orders meanwhile; None where so much work for
-    each finds none."""
+    """A proven strategy by a simple policy (see `Engine.guess`), without the clocks of pauses where they do not matter;
+    None where so much work for each finds none. Where not only patrols are asked for, policies by which these
+    wait until they are due are tried, too."""
     start, names = options.limits.now(), {name for name, _ in objective.bad}
     late = patrols(game) & names
     for free in (True, False) if pauses(game) else (False,):

@@ -26,9 +26,7 @@ class Stays(Departure):
     most: Number
     span: Span = NOWHERE
     template: ClassVar[Template] = Template("{agent=visitor} stays {least:number=5} to {most:number=20} at each place")
-    own_words: ClassVar[Tuple[Word, ...]] = (
-        Word("stays", "How long it stays at the least and at the most, wherever it is.", True),
-    )
+    own_words: ClassVar[Tuple[Word, ...]] = (Word("stays", "How long it stays at each place.", True),)
     forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody stays at each place", template.to_fill_in),)
     numbers: ClassVar[Numbers] = {
         "stays": "It sets off {} of time after it came, or after the start, or later.".format,
