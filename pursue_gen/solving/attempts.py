@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Optional, Sequence, Tuple, Union
 
-from pursue_gen.solving.contradictions import excluded_by_a_stay
+from pursue_gen.solving.cut_off import lost_to_a_stay
 from pursue_gen.solving.efforts import EFFORTS, Effort
 from pursue_gen.solving.errands import excluded_by_an_errand
 from pursue_gen.solving.found import Found
@@ -65,7 +65,8 @@ def decided_by_attempts(
             found = won_in_shares(network, objective, reaction, options.since(start), each.shares, known)
         if found is None and each.alone:
             lost = lost_alone(network, objective, reaction, options.since(start))
-            lost = lost or excluded_by_a_stay(network, objective) or excluded_by_an_errand(network, objective)
+            stay = None if lost else lost_to_a_stay(network, objective)
+            lost = (stay.promises,) if stay else lost or excluded_by_an_errand(network, objective)
         if found is None and each.policy:
             found = won_by_policy(network, objective, reaction, each.policy, options.since(start))
         if found is None and not lost and each.one_robot:

@@ -14,6 +14,7 @@ from math import prod
 from typing import AbstractSet, Collection, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.solving.duties import is_free
+from pursue_gen.solving.stays import LostToAStay, arrivals
 from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.ends import is_nobodys
 from pursue_gen.tga.network import Automaton, Edge, Guard, Kind, Network, Objective
@@ -28,41 +29,26 @@ _Places = Tuple[str, ...]
 _Valuation = Mapping[str, int]
 
 
-def excluded_by_a_stay(network: Network, objective: Objective) -> Tuple[Objective, ...]:
-    """The first two promises, places to be avoided, that cannot both be kept where one agent stays; () where none are
+def excluded_by_a_stay(network: Network, objective: Objective) -> Optional[LostToAStay]:
+    """The first two promises, places to be avoided, that cannot both be kept where one agent stays; None where none are
     found."""
-    if objective.reaches:
-        return ()
-    for arrival in _arrivals(network):
+    for agent, arrival in _arrivals(network) if not objective.reaches else ():
         asking = [place for place in objective.bad if _asks(network.automaton(place[0]), arrival)]
         requests = _requests(network, arrival)
         waiting = [(name, at) for name, at in objective.bad if requests & network.automaton(name).channels]
         for pair in combinations(objective.bad, 2):
             concerned = any(place in asking for place in pair) and all(place in asking + waiting for place in pair)
             if concerned and not _can_be_kept(network, pair, arrival, requests):
-                return (Objective(Kind.SAFETY, bad=pair),)
-    return ()
+                return LostToAStay(Objective(Kind.SAFETY, bad=pair), agent, arrival.target)
+    return None
 
 
-def _arrivals(network: Network) -> Iterator[Edge]:
-    """The edges by which agents whom nobody controls come to places where they may stay for ever, each by a way that
-    they can take in any case."""
+def _arrivals(network: Network) -> Iterator[Tuple[str, Edge]]:
+    """The agents whom nobody controls, with the edges by which they come to places where they may stay for ever, each
+    by a way that they can take in any case."""
     for automaton in filter(is_nobodys, network.automata):
-        yield from arrivals(automaton)
-
-
-def arrivals(agent: Automaton) -> Iterator[Edge]:
-    """The edges by which an agent whom nobody controls comes to places where it may stay for ever, each by a way that
-    it can take in any case."""
-    met, waiting = {agent.initial}, [agent.initial]
-    while waiting:
-        here = waiting.pop()
-        for edge in agent.edges:
-            if edge.source == here and edge.target not in met and is_free(edge):
-                met.add(edge.target)
-                waiting.append(edge.target)
-                if edge.target not in agent.stays and edge.assign:
-                    yield edge
+        for edge in arrivals(automaton):
+            yield automaton.name, edge
 
 
 def _requests(network: Network, arrival: Edge) -> Set[str]:

@@ -17,7 +17,7 @@ from typing import AbstractSet, Collection, Dict, FrozenSet, List, Mapping, Opti
 from pursue_gen.language.numbers import Number
 from pursue_gen.solving.distances import distances_to, times_to
 from pursue_gen.synthesis.strategy import Place
-from pursue_gen.tga.ends import is_agent, is_nobodys
+from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Automaton, Edge, Network, Test
 
 Standing = Mapping[str, str]
@@ -72,11 +72,6 @@ def can_be_covered(duties: Sequence[Duty], robots: Mapping[str, Sequence[str]]) 
 def are_reported(network: Network, robots: Sequence[str]) -> bool:
     """True if the environment chooses when what these robots do ends."""
     return not any(edge.is_end and edge.controllable for name in robots for edge in network.automaton(name).edges)
-
-
-def at_home(network: Network) -> Dict[str, str]:
-    """The agents whom nobody controls that may be for ever where they begin, and these places."""
-    return {a.name: a.initial for a in filter(is_nobodys, network.automata) if a.initial not in a.stays}
 
 
 def begins(automaton: Automaton, channels: AbstractSet[str]) -> List[Edge]:

@@ -12,7 +12,8 @@ from typing import Optional, Sequence, Tuple
 from pursue_gen.language.numbers import Number
 from pursue_gen.solving.distances import times_to
 from pursue_gen.solving.due_moves import Duty, duties, patrols
-from pursue_gen.solving.duties import Duties, are_reported, at_home, begins
+from pursue_gen.solving.duties import Duties, are_reported, begins
+from pursue_gen.solving.stays import at_home
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective
 

@@ -11,15 +11,15 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product
-from typing import AbstractSet, Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Dict, FrozenSet, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
-from pursue_gen.solving.contradictions import arrivals
-from pursue_gen.solving.duties import Duties, Duty, Standing, are_reported, at_home, begins, can_be_covered
+from pursue_gen.solving.duties import Duties, Duty, Standing, are_reported, begins, can_be_covered
 from pursue_gen.solving.freer import standing as without_walks
 from pursue_gen.solving.freer import without_turns
 from pursue_gen.solving.lost_promises import watched
 from pursue_gen.solving.one_robot import lost_for_one
 from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.stays import is_reached, standings
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.synthesis.strategy import Place
 from pursue_gen.tga.ends import is_agent
@@ -40,7 +40,7 @@ def lost_to_pins(
     everywhere = {robot: network.automaton(robot).lasting for robot in robots}
     all_duties = Duties(network, objective.bad, robots)
     tried: Set[FrozenSet[Tuple[str, Edge]]] = set()
-    for standing, stay in _standing(network):
+    for standing, stay in standings(network):
         duties = all_duties.at(standing)
         if not can_be_covered(duties, everywhere):
             return (_promises(objective, _fewest(duties, everywhere)),)
@@ -102,15 +102,6 @@ def _ended(robot: Automaton, begin: Edge) -> AbstractSet[str]:
     return {edge.sync.channel for edge in robot.edges if edge.source == begin.target and edge.sync is not None}
 
 
-def _standing(network: Network) -> Iterator[Tuple[Standing, Optional[Edge]]]:
-    """Where those whom nobody controls may be for ever: all where they begin, or one where an edge has led it."""
-    home = at_home(network)
-    yield home, None
-    for name in home:
-        for arrival in arrivals(network.automaton(name)):
-            yield {**home, name: arrival.target}, arrival
-
-
 def _pins(network: Network, duties: Sequence[Duty], everywhere: Dict[str, List[str]]) -> _Pins:
     channels = frozenset(channel for duty in duties for channel in duty.ends)
     found: _Pins = {}
@@ -137,7 +128,7 @@ def _kept_away(
             for begin in begins(network.automaton(other), channels - duty.ends):
                 known = {**values, **{name: {value} for name, value in begin.assign}}
                 for place in objective.bad:
-                    if _is_reached(network, place, known):
+                    if is_reached(network, place, known):
                         found[other, begin] = (duty, Duty(place, 0, {}))
     return found
 
@@ -163,23 +154,6 @@ def _values(network: Network, robot: Automaton) -> Dict[str, Set[int]]:
             if name in found:
                 found[name].add(value)
     return found
-
-
-def _is_reached(network: Network, bad: Place, known: Mapping[str, AbstractSet[int]]) -> bool:
-    """True if the environment can at once make happen what is to be avoided, whatever else holds."""
-    automaton = network.automaton(bad[0])
-    sure = {edge.source for edge in automaton.edges if edge.target == bad[1] and _is_taken(edge, known)}
-    return sure == {place.name for place in automaton.locations if place.name != bad[1]}
-
-
-def _is_taken(edge: Edge, known: Mapping[str, AbstractSet[int]]) -> bool:
-    """True if the environment can take the edge whichever of these values hold."""
-    if edge.controllable or edge.sync is not None or edge.guard.clocks:
-        return False
-    return all(
-        any(some <= {test.value for test in clause if test.variable == name} for name, some in known.items())
-        for clause in edge.guard.integers
-    )
 
 
 def _fewest(duties: Sequence[Duty], robots: Dict[str, List[str]]) -> Tuple[Duty, ...]:

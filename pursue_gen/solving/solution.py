@@ -12,6 +12,7 @@ from pursue_gen.outcomes import Lost, NotProven
 from pursue_gen.proof.independence import named_part
 from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.solving.attempts import decided_by_attempts
+from pursue_gen.solving.cut_off import lost_to_a_stay
 from pursue_gen.solving.decomposition import has_parts, little_work, won_by_some, works_in_parallel
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.least_time import Guarantee, bounds
@@ -268,6 +269,12 @@ def _cannot_be_met(
     if alone:
         message += f"; no robot can do anything about it, as it depends on {' and '.join(alone)} alone"
         hint = "let something that a robot does matter to the objective, or make one of these agents controllable"
+        return error(_CANNOT_BE_MET, message, hint=hint)
+    stay = lost_to_a_stay(network, objective)
+    if stay is not None:
+        agent, place = stay.agent, stay.place
+        hint = f"{agent} may stay at {place} for ever, which is enough to prevent it: say that it does not (assume: "
+        hint += f"{agent} leaves {place} within 30), or let robots do without that place"
         return error(_CANNOT_BE_MET, message, hint=hint)
     if rules != IDEAL and not options.most_work and _won_ideally(network, objective, options):
         message += "; only the ideal game (ends controllable, reaction 0) is won, which no real robot can play"

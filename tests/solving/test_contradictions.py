@@ -13,6 +13,7 @@ from pursue_gen.outcomes import Lost
 from pursue_gen.solving.contradictions import excluded_by_a_stay
 from pursue_gen.solving.rules import DEFAULT, played
 from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.solving.stays import LostToAStay
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
@@ -43,11 +44,11 @@ def game(*objectives: str, floor: str = FLOOR) -> Tuple[Network, Objective]:
 @pytest.mark.parametrize("other", [NEAR, ALWAYS])
 def test_a_guest_who_stays_excludes_them(other: str) -> None:
     network, objective = game(AVOID, other)
-    assert excluded_by_a_stay(network, objective) == (objective,)
+    assert excluded_by_a_stay(network, objective) == LostToAStay(objective, "guest", "room1")
     many = FLOOR + "".join(f'agent "more{k}" controllable mobile 1 location hall\n' for k in range(4))
     network, objective = game(other, "patrol room2 every 90 by any robot", AVOID, floor=many)
-    (found,) = excluded_by_a_stay(network, objective)
-    assert [name for name, _ in found.bad] == ["obj", "obj3"]
+    found = excluded_by_a_stay(network, objective)
+    assert found is not None and [name for name, _ in found.promises.bad] == ["obj", "obj3"]
 
 
 @pytest.mark.parametrize(
@@ -60,14 +61,14 @@ def test_a_guest_who_stays_excludes_them(other: str) -> None:
     ],
 )
 def test_what_a_robot_may_keep_is_not_excluded(one: str, two: str) -> None:
-    assert excluded_by_a_stay(*game(one, two)) == ()
+    assert excluded_by_a_stay(*game(one, two)) is None
 
 
 def test_who_cannot_come_or_has_to_leave_excludes_nothing() -> None:
     apart = FLOOR.replace('"guest" mobile 2 location hall', '"guest" location hall')
-    assert excluded_by_a_stay(*game(AVOID, NEAR, floor=apart)) == ()
+    assert excluded_by_a_stay(*game(AVOID, NEAR, floor=apart)) is None
     for assumed in ("guest leaves room1 within 20", "guest never at room1"):
-        assert excluded_by_a_stay(*game(AVOID, NEAR, floor=f"{FLOOR}assume: {assumed}\n")) == ()
+        assert excluded_by_a_stay(*game(AVOID, NEAR, floor=f"{FLOOR}assume: {assumed}\n")) is None
 
 
 @pytest.mark.parametrize("one, two", list(combinations(FORMS, 2)))
@@ -103,15 +104,15 @@ def called(who: str) -> str:
 @pytest.mark.parametrize("who", ["people", "guest"])
 def test_what_is_to_be_done_where_no_robot_may_be_is_excluded(who: str) -> None:
     network, objective = game(AVOID, SERVE, floor=called(who))
-    assert excluded_by_a_stay(network, objective) == (objective,)
-    assert excluded_by_a_stay(*game(AVOID, SERVE.replace("serve", "look"), floor=called(who))) == ()
-    assert excluded_by_a_stay(*game(AVOID, SERVE, floor=CALLED + 'agent "people" location hall\n')) == ()
+    assert excluded_by_a_stay(network, objective) == LostToAStay(objective, "guest", "room1")
+    assert excluded_by_a_stay(*game(AVOID, SERVE.replace("serve", "look"), floor=called(who))) is None
+    assert excluded_by_a_stay(*game(AVOID, SERVE, floor=CALLED + 'agent "people" location hall\n')) is None
 
 
 @pytest.mark.parametrize("assumed", ["people does call at_most 1 times", "guest leaves room1 within 20"])
 def test_who_may_not_call_then_or_has_to_leave_excludes_nothing(assumed: str) -> None:
     floor = f"{called('people')}assume: {assumed}\n"
-    assert excluded_by_a_stay(*game(AVOID, SERVE, floor=floor)) == ()
+    assert excluded_by_a_stay(*game(AVOID, SERVE, floor=floor)) is None
 
 
 @pytest.mark.parametrize("who", ["people", "guest"])
