@@ -1,15 +1,17 @@
 """Promises that are lost where somebody stays in the way: "no robot at the lift while the bed is there".
 
 An agent whom nobody controls goes to a place and stays there for ever. Where a robot must not be with it, it never is
-from then on, so in the end each robot goes round among places with ways between them that lead past no such place. A
-caller who can ask again and again is answered so often only if all that has to come before the answer can be done so
-often, too, by the robots that are there. No times are looked at, and no game is played.
+from then on. Nor does the robot set off for a place where the agent may be before the robot can have left it again. So
+in the end each robot goes round among places with ways between them that lead past no such place. A caller who can ask
+again and again is answered so often only if all that has to come before the answer can be done so often, too, by the
+robots that are there. No game is played.
 """
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
 from itertools import combinations, product
-from math import prod
 from typing import (
     AbstractSet,
     Collection,
@@ -23,10 +25,13 @@ from typing import (
     Sequence,
     Set,
     Tuple,
+    Union,
 )
 
+from pursue_gen.language.numbers import Number
 from pursue_gen.solving.contradictions import excluded_by_a_stay
-from pursue_gen.solving.duties import Duties, Duty, Standing
+from pursue_gen.solving.distances import distances_to
+from pursue_gen.solving.duties import Duties, Duty, is_free
 from pursue_gen.solving.stays import LostToAStay, is_reached, standings
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.synthesis.strategy import Place
@@ -51,51 +56,105 @@ def cut_off_by_a_stay(network: Network, objective: Objective) -> Optional[LostTo
     are found."""
     robots = commanded_agents(network)
     all_duties = Duties(network, () if objective.reaches else objective.bad, robots)
-    for standing, arrival in standings(network) if robots else ():
+    meetings: Dict[str, Sequence[_Meeting]] = {}
+    for comes, (standing, arrival) in product((False, True), list(standings(network)) if robots else ()):
         duties = [duty for duty in all_duties.at(standing) if duty.ends]
-        for agent, known in _values_of_others(network, standing, arrival) if duties else ():
-            closed = _closed(network, objective, known, robots)
+        for name, at in standing.items() if duties else ():
+            agent = network.automaton(name)
+            if (arrival is None) != (at == agent.initial):
+                continue
+            if name not in meetings:
+                meetings[name] = tuple(_meetings(network, objective, agent, robots))
+            closed = _closed(network, agent, at, meetings[name], comes)
             some = _unanswered(network, duties, robots, closed) if closed else ()
             if some:
                 promises = {*_needed(network, some, robots, closed), *(duty.promise for duty in some)}
                 bad = tuple(place for place in objective.bad if place in promises)
-                return LostToAStay(Objective(Kind.SAFETY, bad=bad), agent, standing[agent])
+                return LostToAStay(Objective(Kind.SAFETY, bad=bad), name, at, comes)
     return None
 
 
-_Values = Dict[str, AbstractSet[int]]
-"""Of some variables the values that they may have."""
+@dataclass(frozen=True)
+class _Meeting:
+    """Where a robot and an agent whom nobody controls must not be together: the location of each."""
 
-_Closed = Mapping[Place, AbstractSet[Tuple[str, str]]]
-"""For each place to be avoided the robots, each with a location at which it comes to that."""
-
-
-def _values_of_others(
-    network: Network, standing: Standing, arrival: Optional[Edge]
-) -> Iterator[Tuple[str, _Values]]:
-    """Each agent that stays where it begins, or the one that an edge has led elsewhere, with the values of the
-    variables that only it sets."""
-    for name in standing:
-        if (arrival is None) == (standing[name] == network.automaton(name).initial):
-            now = network.variables if arrival is None else arrival.assign
-            yield name, {each: {value} for each, value in now if network.setters[each] == {name}}
+    promise: Place
+    robot: str
+    location: str
+    other: str
 
 
-def _closed(network: Network, objective: Objective, known: _Values, robots: Sequence[str]) -> _Closed:
-    """Where robots must not be while variables of somebody else have these values."""
-    found: Dict[Place, Set[Tuple[str, str]]] = {}
-    for robot in robots if known else ():
-        for location, values in _values(network, network.automaton(robot)).items():
-            for place in objective.bad:
+_Closed = Mapping[Place, AbstractSet[Tuple[str, Edge]]]
+"""For each place to be avoided the robots, each with an edge that it cannot take because of it."""
+
+
+def _meetings(network: Network, objective: Objective, agent: Automaton, robots: Sequence[str]) -> Iterator[_Meeting]:
+    """Where the agent must not be together with a robot."""
+    others = _values(network, agent)
+    for place in objective.bad:
+        asked = {name for e in network.automaton(place[0]).edges if e.target == place[1] for name in e.tested}
+        matters = [network.automaton(r) for r in robots] if asked.intersection(agent.assigned) else ()
+        for robot in (each for each in matters if asked.intersection(each.assigned)):
+            own = _values(network, robot)
+            for (other, known), (location, values) in product(others.items(), own.items()):
                 if is_reached(network, place, {**known, **values}) and not is_reached(network, place, known):
-                    found.setdefault(place, set()).add((robot, location))
-    return found
+                    yield _Meeting(place, robot.name, location, other)
+
+
+def _values(network: Network, agent: Automaton) -> Dict[str, Mapping[str, AbstractSet[int]]]:
+    """For each location of an agent the values of the variables that only it sets, and sets whenever it comes there."""
+    found: Dict[str, Dict[str, AbstractSet[int]]] = {}
+    for name, initial in network.variables:
+        for location in agent.locations if network.setters[name] == {agent.name} else ():
+            coming = [(edge.source, dict(edge.assign)) for edge in agent.edges if edge.target == location.name]
+            entering = [some.get(name) for source, some in coming if source != location.name or name in some]
+            entering += [initial] if location.name == agent.initial else []
+            values = {value for value in entering if value is not None}
+            if entering and None not in entering:
+                found.setdefault(location.name, {})[name] = values
+    return {**found}
+
+
+def _closed(network: Network, agent: Automaton, at: str, meetings: Sequence[_Meeting], comes: bool) -> _Closed:
+    """What robots cannot do any more while the agent stays there; `comes`: until one of them is too near."""
+    found: Dict[Place, Set[Tuple[str, Edge]]] = {}
+    soonest: Dict[str, Union[Number, float]] = {}
+    for each in meetings:
+        robot = network.automaton(each.robot)
+        if each.other == at:
+            edges = [edge for edge in robot.edges if each.location in (edge.source, edge.target)]
+        else:
+            if each.other not in soonest:
+                soonest[each.other] = _soonest(agent, at, each.other) if comes else math.inf
+            edges = [edge for edge in robot.edges if soonest[each.other] < _past(robot, edge, each.location)]
+        found.setdefault(each.promise, set()).update((each.robot, edge) for edge in edges)
+    return {promise: edges for promise, edges in found.items() if edges}
+
+
+def _soonest(agent: Automaton, start: str, goal: str) -> Union[Number, float]:
+    """How long an agent that has rested takes at least from one location to another, where nobody can keep it."""
+    back: Dict[str, List[Tuple[str, Number]]] = {}
+    for edge in filter(is_free, agent.edges):
+        back.setdefault(edge.target, []).append((edge.source, edge.guard.since))
+    far = distances_to([goal], back)
+    led = (far[edge.target] for edge in agent.edges if edge.source == start and is_free(edge) and edge.target in far)
+    return min(led, default=math.inf)
+
+
+def _past(robot: Automaton, edge: Edge, location: str) -> Number:
+    """How long it may take from this edge on until the robot can leave the location, where the edge begins a movement
+    that leads nowhere else; 0 for any other edge."""
+    ends = [end for end in robot.edges if end.source == edge.target]
+    if edge.source == edge.target or edge.target not in robot.stays or any(end.target != location for end in ends):
+        return 0
+    arrival = min((end.guard.since if end.controllable else robot.longest[edge.target] for end in ends), default=0)
+    return arrival + min((each.guard.since for each in robot.edges if each.source == location), default=0)
 
 
 def _unanswered(
     network: Network, duties: Sequence[Duty], robots: Sequence[str], closed: _Closed
 ) -> Sequence[Duty]:
-    """Duties that robots which are at none of these places cannot meet again and again, one or two where it is no more;
+    """Duties that robots which do none of this cannot meet again and again, one or two where it is no more;
     () where they can meet all."""
     if not _can_be_answered(network, duties, robots, closed):
         for size in (1, 2):
@@ -104,19 +163,6 @@ def _unanswered(
                     return some
         return duties
     return ()
-
-
-def _values(network: Network, robot: Automaton) -> Dict[str, _Values]:
-    """For each location of a robot the values of the variables that only it sets, and sets whenever it comes there."""
-    found: Dict[str, _Values] = {}
-    for name in robot.assigned:
-        if network.setters[name] == {robot.name}:
-            for location in robot.locations:
-                entering = [dict(edge.assign).get(name) for edge in robot.edges if edge.target == location.name]
-                values = {value for value in entering if value is not None}
-                if entering and None not in entering:
-                    found.setdefault(location.name, {})[name] = values
-    return found
 
 
 def _needed(network: Network, duties: Sequence[Duty], robots: Sequence[str], closed: _Closed) -> List[Place]:
@@ -130,17 +176,17 @@ def _needed(network: Network, duties: Sequence[Duty], robots: Sequence[str], clo
 
 
 def _can_be_answered(network: Network, duties: Sequence[Duty], robots: Sequence[str], closed: _Closed) -> bool:
-    """False if robots that are at none of these places cannot meet the duties again and again."""
-    gone = frozenset(each for where in closed.values() for each in where)
+    """False if robots that do none of this cannot meet the duties again and again."""
+    gone = {each for edges in closed.values() for each in edges}
     rounds = [list(_rounds(network, network.automaton(robot), gone)) for robot in robots]
-    if prod(map(len, rounds)) > _MOST:
+    if math.prod(map(len, rounds)) > _MOST:
         return True
     return any(_answers(network, duties, robots, some) for some in product(*rounds))
 
 
-def _rounds(network: Network, robot: Automaton, gone: FrozenSet[Tuple[str, str]]) -> Iterator[_Round]:
+def _rounds(network: Network, robot: Automaton, gone: AbstractSet[Tuple[str, Edge]]) -> Iterator[_Round]:
     """What a robot may do again and again among some places; where it is of use anywhere, only where it is."""
-    edges = [e for e in robot.edges if not gone.intersection(((robot.name, e.source), (robot.name, e.target)))]
+    edges = [edge for edge in robot.edges if (robot.name, edge) not in gone]
     heard = {channel for each in network.automata if not is_agent(each) for channel in each.channels}
     parts = [[e for e in edges if {e.source, e.target} <= part] for part in _parts(edges)]
     useful = [part for part in parts if any(edge.channel in heard for edge in part)]

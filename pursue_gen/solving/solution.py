@@ -30,6 +30,7 @@ from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import DEFAULT as DEFAULT_RULES
 from pursue_gen.solving.rules import IDEAL, Rules, played
 from pursue_gen.solving.shares import can_be_shared
+from pursue_gen.solving.stays import LostToAStay
 from pursue_gen.solving.tours import PATROL, won_by_tours
 from pursue_gen.solving.tours_beside import won_beside_tours
 from pursue_gen.solving.without_pauses import lost_to_few_calls, verdict_with, won_without_pauses
@@ -272,14 +273,22 @@ def _cannot_be_met(
         return error(_CANNOT_BE_MET, message, hint=hint)
     stay = lost_to_a_stay(network, objective)
     if stay is not None:
-        agent, place = stay.agent, stay.place
-        hint = f"{agent} may stay at {place} for ever, which is enough to prevent it: say that it does not (assume: "
-        hint += f"{agent} leaves {place} within 30), or let robots do without that place"
-        return error(_CANNOT_BE_MET, message, hint=hint)
+        return error(_CANNOT_BE_MET, message, hint=_without_the_stay(stay))
     if rules != IDEAL and not options.most_work and _won_ideally(network, objective, options):
         message += "; only the ideal game (ends controllable, reaction 0) is won, which no real robot can play"
         hint = "give the robots more time or speed; to see the ideal strategy: --ends controllable --reaction 0"
     return error(_CANNOT_BE_MET, message, hint=hint)
+
+
+def _without_the_stay(stay: LostToAStay) -> str:
+    """What to do where somebody who stays prevents it."""
+    agent, place = stay.agent, stay.place
+    prevents = f"{agent} may stay at {place} for ever, and that is enough to prevent it"
+    change = f"say that it does not (assume: {agent} leaves {place} within 30), or let robots do without that place"
+    if stay.comes:
+        prevents = f"{agent} may wait at {place} for ever, and be where a robot goes before the robot is gone"
+        change = f"say how far it goes (assume: {agent} never at …), or let robots have another way"
+    return f"{prevents}: {change}"
 
 
 def _won_ideally(network: Network, objective: Objective, options: SolveOptions) -> bool:

@@ -13,11 +13,15 @@ from pursue_gen.tga.network import Automaton, Edge, Network, Objective
 
 @dataclass(frozen=True)
 class LostToAStay:
-    """Promises that cannot all be kept where an agent whom nobody controls stays at a place for ever."""
+    """Promises that cannot all be kept where an agent whom nobody controls stays at a place for ever.
+
+    `comes`: but leaves it as soon as a robot sets off for where it can be before the robot is gone.
+    """
 
     promises: Objective
     agent: str
     place: str
+    comes: bool = False
 
 
 def at_home(network: Network) -> Dict[str, str]:

@@ -81,7 +81,7 @@ def test_only_what_is_lost_to_it_is_named() -> None:
                      id="another way"),
         pytest.param("mobile 1 location office", "location office", id="the bed does not move"),
         pytest.param('"bed" mobile 1 location office',
-                     '"bed" mobile 1 location office\nassume: bed leaves lift within 20', id="it leaves in time"),
+                     '"bed" mobile 9 location office\nassume: bed leaves lift within 20', id="it leaves in time"),
         pytest.param("can_do ask", "can_do ask\nassume: doctor does ask at_most 1 times", id="one call"),
         pytest.param('rule "medicine": pick before hand', "", id="nothing has to come before"),
         pytest.param("never_with bed at lift", "never_with bed at office", id="elsewhere"),
@@ -90,6 +90,16 @@ def test_only_what_is_lost_to_it_is_named() -> None:
 def test_what_may_be_kept_is_not_cut_off(old: str, new: str) -> None:
     assert old in CLINIC
     assert cut_off_by_a_stay(*game(CLINIC.replace(old, new))) is None
+
+
+def test_who_may_come_before_a_robot_is_gone_cuts_it_off_too() -> None:
+    """A robot takes 3 to the lift at most and stays for 1; the bed needs more than 2 or 3 from the office."""
+    leaves = CLINIC + "assume: bed leaves lift within 20\nassume: bed never at store\nassume: bed never at ward\n"
+    for distance, lost in ((2, True), (3, True), (5, False)):
+        network, objective = game(leaves.replace("lift and office distance 2", f"lift and office distance {distance}"))
+        found = cut_off_by_a_stay(network, objective)
+        assert found == (LostToAStay(objective, "bed", "office", comes=True) if lost else None)
+        assert solve(network, objective, DEFAULT.reaction).won == (not lost)
 
 
 def test_the_message_says_who_stays_where() -> None:
