@@ -78,9 +78,9 @@ class Words:
         index += 1
         while index + 1 < len(tokens) and tokens[index].type == "OF" and tokens[index + 1].type in NAMES:
             owner = tokens[index + 1]
-            owners = self._meant(owner, members)
+            owners = self._meant(owner, members) or self._member(owner)
             if not owners:
-                message = f"{owner} is no group, and no variable of a for each"
+                message = f"{owner} is no group, in none, and no variable of a for each"
                 hint = f"write {_owned(token, owner)}, or a group or a variable behind of"
                 raise Refused(error("PML406", message, self._at(owner), hint))
             if token.type == "NAME" and len(owners) > 1:
@@ -99,6 +99,10 @@ class Words:
         meant = (members[name],) if name in members else self.members(name, token) if name in self._groups else ()
         self._spend(len(meant), token)
         return tuple(between("WORD", str(one), token, token) for one in meant)
+
+    def _member(self, token: Token) -> Tokens:
+        """A member of some group, which is called by its own name; (): it is none."""
+        return (token,) if any(token == one for group in self._groups.values() for one in group) else ()
 
     def members(self, name: str, group: Token) -> Tokens:
         """The members of a group that there is, named by a word. Raises Refused where nothing is in it."""

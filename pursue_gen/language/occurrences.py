@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Dict, Iterator, List, Optional, Sequence, Tuple
+from typing import AbstractSet, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from lark import Token
 
@@ -100,6 +100,7 @@ def occurrences(parts: Sequence[Statement]) -> Tuple[Occurrence, ...]:
     kinds = {one.name: one.kind for one in reversed(found) if one.declares}
     made = {start_of(token) + (token.type == "NAME") for part in parts for token in around_of(part.tokens)}
     standing = list(_of_groups(parts))
+    standing += _behind_of(parts, kinds, {one.start for one in standing})
     taken = made | {one.start for one in standing}
     standing += [
         replace(one, kind=kinds.get(one.name, one.kind)) if parts[one.statement].kind == "GROUP" else one
@@ -107,6 +108,15 @@ def occurrences(parts: Sequence[Statement]) -> Tuple[Occurrence, ...]:
         if one.start not in taken
     ]
     return tuple(sorted(standing, key=lambda one: one.start))
+
+
+def _behind_of(parts: Sequence[Statement], kinds: Mapping[str, str], taken: AbstractSet[int]) -> Iterator[Occurrence]:
+    """The members of groups that stand behind `of`, where no group and no variable does."""
+    for number, part in enumerate(parts):
+        for before, token in zip(part.tokens, part.tokens[1:]):
+            name, start = str(token), start_of(token)
+            if before.type == "OF" and name in kinds and start not in taken:
+                yield Occurrence(name, kinds[name], start, start + len(name), False, number)
 
 
 def _of_groups(parts: Sequence[Statement]) -> Iterator[Occurrence]:

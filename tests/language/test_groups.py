@@ -233,7 +233,7 @@ def changed(old: str, new: str) -> str:
         (changed("each r in rooms: connect hall and r", "each rooms in rooms: connect hall and rooms"), "PML404", 6, 10,
          "rooms is a group already, of line 5"),
         (changed("connect hall and r", "connect hall and room1"), "PML405", 6, 10, "r is not used"),
-        (changed("can_do look of rooms", "can_do look of room1"), "PML406", 11, 64, "room1 is no group"),
+        (changed("can_do look of rooms", "can_do look of hall"), "PML406", 11, 64, "hall is no group, in none"),
         (changed("location r can_do call of r", "location r can_do call of s"), "PML406", 10, 67, "s is no group"),
         (HOTEL + 'group "one": bob\nfor each two a, b in one: objective: a never_with b', "PML407", 14, 22, "no pair"),
         (changed("location hall can_do", "location rooms can_do"), "PML409", 11, 44, "rooms is a group, and one thing"),
@@ -252,12 +252,19 @@ def changed(old: str, new: str) -> str:
         (HOTEL + "for each two a in rooms: connect hall and a distance 1", "PML010", 13, 16, "expected `,`"),
         (changed('room3\nfor', 'room3,\nfor'), "PML010", 5, 36, "but the statement ends here"),
         (HOTEL + 'event "call_room1"', "PML103", 13, 7, "call_room1 is declared twice; line 7 (r is room1) declares"),
-        (HOTEL + "objective: avoid call of bob", "PML406", 13, 26, "bob is no group"),
+        (HOTEL + "objective: avoid call of hall", "PML406", 13, 26, "hall is no group"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_said_where_it_stands(text: str, code: str, line: int, column: int, message: str) -> None:
     first = found(text)[0]
     assert first[:3] == (code, line, column) and message in first[3], found(text)
+
+
+def test_a_member_is_named_behind_of_by_its_own_name() -> None:
+    text = changed("can_do look of rooms", "can_do look of room1, look of room2, look_room3")
+    assert _meaning(parse(text, "story.pur")) == _meaning(parse(HOTEL, "story.pur"))
+    more = parse(HOTEL + "objective: if call of room2 then look of room2 within 90\n", "story.pur")
+    assert more.objectives[-1].text == "if call_room2 then look_room2 within 90"
 
 
 def test_nothing_else_is_said_while_a_group_is_wrong() -> None:
@@ -355,6 +362,14 @@ def test_a_member_gets_another_name_everywhere() -> None:
     after = document.changed(*rename(document, HOTEL.index("room2"), "suite")).text
     assert after == re.sub(r"\broom2\b", "suite", HOTEL)
     assert meaning(after) == meaning(re.sub(r"room2\b", "suite", WRITTEN_OUT))
+
+
+def test_a_member_behind_of_gets_another_name_too() -> None:
+    text = changed("can_do look of rooms", "can_do look of room1, look of room2, look of room3")
+    document = Draft.of(text, "story.pur")
+    for place in ("room2", "of room2"):
+        edits = rename(document, text.index(place) + len(place) - 1, "suite")
+        assert document.changed(*edits).text == re.sub(r"\broom2\b", "suite", text)
 
 
 @pytest.mark.parametrize(("place", "new"), [('"room2', "r"), ('"room2', "rooms"), ('"hall', "r")])

@@ -14,6 +14,7 @@ from pursue_gen.solving.attempts import decided_by_attempts
 from pursue_gen.solving.efforts import EFFORTS
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.policies import won_by_policy
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.shares import Known, won_in_shares
 from pursue_gen.tga import scenario_objective, translate
@@ -154,3 +155,40 @@ def test_who_sees_to_one_place_of_a_patrol_stays_there_and_another_robot_sees_to
     assert found is not None
     commands = (command for block in found.strategy.blocks for command in block.commands)
     assert {command.moves[0].automaton for command in commands} == {"bot2"}
+
+
+YARD = """
+poi "press"
+poi "yard"
+poi "gate"
+poi "bin1"
+poi "bin2"
+connect press and yard distance 3
+connect yard and gate distance 4
+connect yard and bin1 distance 3
+connect yard and bin2 distance 5
+event "full1"
+event "full2"
+event "lift1" location bin1
+event "tip1" location press
+event "lift2" location bin2
+event "tip2" location press
+event "lorry"
+event "opens" location gate
+rule "one": lift1 before tip1
+rule "two": lift2 before tip2
+agent "bot" controllable mobile 1 location yard can_do lift1, tip1, lift2, tip2, opens
+agent "bins" location bin1 can_do full1, full2
+agent "driver" location gate can_do lorry
+objective: if full1 then tip1 within 100
+objective: if full2 then tip2 within 100
+objective: if lorry then opens within 44
+"""
+"""Two bins, either of which may take a robot as long as the gate leaves it."""
+
+
+def test_what_has_a_short_limit_is_done_between_what_has_long_ones() -> None:
+    network, objective = game(YARD)
+    found = won_by_policy(network, objective, REACTION, 5_000_000, SolveOptions())
+    assert found is not None
+    assert verify(network, objective, found.strategy, REACTION).ok

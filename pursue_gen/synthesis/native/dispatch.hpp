@@ -19,15 +19,18 @@ class Dispatch : private Steps {
     Dispatch(const Game& game, Joints& joints, Duties& duties, const Guess& guess)
         : Steps(game, joints, duties, guess), patrols_(game.automata.size()) {
         for (const int a : guess.patrols) patrols_[a] = true;
+        if (guess.alternates == Alternates::visits) alternating_ = duties.visits();
+        if (guess.alternates == Alternates::long_limits) alternating_ = duties.with_long_limits();
     }
 
     std::size_t robots() const { return duties_.robots().size(); }
     bool is_patrol(int a) const { return patrols_[a]; }
     bool has_guards() const { return tasks_.has_guards(); }
+    bool alternates() const { return !alternating_.empty(); }
 
     // Which duty each robot is at, -1: none, after a move from d; before, it was at those of `memory`. More than the numbers
     // of automata once: it is a patrol that is put off, and the robot goes to a call first; several times: to that patrol next,
-    // or, for one that alternates, that was its last visit.
+    // or, for one that alternates, that was the last of those that it does in turn with others.
     void remember(const Discrete& d, const Joint& joint, std::vector<int>& memory) {
         const std::vector<int> last = memory;
         for (std::size_t r = 0; r < memory.size(); ++r) {
@@ -55,8 +58,8 @@ class Dispatch : private Steps {
             memory[robot] = duty;
             if (is_put_off(d, robot, duty, memory, last[robot])) memory[robot] += count_;
             else if (is_waiting(last[robot]) && !is_patrol(duty)) memory[robot] += count_ * (2 + last[robot] % count_);
-            else if (const int visit = last_visit(last[robot]); guess_.alternates && visit >= 0 && !duties_.is_visit(duty))
-                memory[robot] += count_ * (2 + visit);
+            else if (const int before = last_of_these(last[robot]); before >= 0 && !alternating_[duty])
+                memory[robot] += count_ * (2 + before);
         }
     }
 
@@ -124,9 +127,9 @@ class Dispatch : private Steps {
             looked = true;
             const std::int64_t cost = duties_.cost(duties_.done(a));
             if (cost == Duties::NEVER || !tasks_.is_for(robot, a)) continue;
-            std::int64_t place = guess_.alternates ? alternating(a, last) : in_turn(a, last);
+            std::int64_t place = alternates() ? alternating(a, last) : in_turn(a, last);
             if (is_waiting(last) && is_patrol(a)) place += 2 * count_;
-            if (last >= 2 * count_ && a == last / count_ - 2 && !guess_.alternates) place = -1;
+            if (last >= 2 * count_ && a == last / count_ - 2 && !alternates()) place = -1;
             if (guess_.next == Next::soonest_due) place = duties_.deadline(d, a);
             if (guess_.next == Next::nearest) place = cost;
             best = std::min(best, {place, robot, a});
@@ -140,18 +143,19 @@ class Dispatch : private Steps {
         return last < 0 || turn > duties_.turn(last % count_) ? turn : turn + count_;
     }
 
-    // The same where visits take turns with what else is asked for, of which each time another one comes first.
+    // The same where some take turns with what else is asked for, of which each time another one comes first.
     int alternating(int a, int last) const {
-        const int visit = last_visit(last);
         if (last < 0) return duties_.turn(a);
-        const bool again = duties_.is_visit(last % count_) == duties_.is_visit(a);
-        return (again ? 2 * count_ : 0) + (duties_.is_visit(a) || visit < 0 ? in_turn(a, visit) : duties_.rotated(a, visit));
+        const int before = last_of_these(last);
+        const bool again = alternating_[last % count_] == alternating_[a];
+        const int turn = alternating_[a] || before < 0 ? in_turn(a, before) : duties_.rotated(a, before, alternating_);
+        return (again ? 2 * count_ : 0) + turn;
     }
 
-    // The last visit of a robot that alternates and was at a duty, -1: not known.
-    int last_visit(int duty) const {
-        if (duty >= 0 && duties_.is_visit(duty % count_)) return duty % count_;
-        return std::max(duty / count_ - 2, -1);
+    // The last of those that a robot does in turn with others, after it was at a duty, -1: not known.
+    int last_of_these(int duty) const {
+        if (!alternates()) return -1;
+        return duty >= 0 && alternating_[duty % count_] ? duty % count_ : std::max(duty / count_ - 2, -1);
     }
 
     // Whether a robot waits with a patrol that it has put off.
@@ -283,7 +287,7 @@ class Dispatch : private Steps {
         return command(d, enabled, robot, duties_.first(nearest));
     }
 
-    std::vector<bool> patrols_;
+    std::vector<bool> patrols_, alternating_;  // by automaton; the second is empty where nothing alternates
 };
 
 }  // namespace pursue

@@ -50,17 +50,30 @@ class Duties {
     // coming there last: that is done by then.
     int turn(int a) const { return turns_[a]; }
 
-    // The place of a duty among those that are no visits, each time another one first, after a visit.
-    int rotated(int a, int visit) const {
-        const auto before = [&](int b, bool visits) {
-            return std::count_if(watching_.begin(), watching_.end(), [&](int c) { return visits_[c] == visits && turns_[c] < turns_[b]; });
+    // The place of a duty among the others than `these`, each time another one first, after one of these.
+    int rotated(int a, int after, const std::vector<bool>& these) const {
+        const auto before = [&](int b, bool among) {
+            return std::count_if(watching_.begin(), watching_.end(), [&](int c) { return these[c] == among && turns_[c] < turns_[b]; });
         };
-        const auto others = std::count_if(watching_.begin(), watching_.end(), [&](int c) { return !visits_[c]; });
-        return static_cast<int>((before(a, false) + before(visit, true)) % others);
+        const auto others = std::count_if(watching_.begin(), watching_.end(), [&](int c) { return !these[c]; });
+        return static_cast<int>((before(a, false) + before(after, true)) % others);
     }
 
-    // Whether the duty of automaton a is done by coming somewhere, as that of a patrol is.
-    bool is_visit(int a) const { return visits_[a]; }
+    // The duties that are done by coming somewhere, as that of a patrol is, by automaton.
+    const std::vector<bool>& visits() const { return visits_; }
+
+    // The duties that have the longest limits, four fifths of the longest of all or more, by automaton; none if all have.
+    std::vector<bool> with_long_limits() const {
+        std::vector<wide_t> limits(game_.automata.size());
+        for (const int a : watching_)
+            for (const auto& bounds : game_.automata[a].invariants)
+                if (!bounds.empty()) limits[a] = std::max(limits[a], bounds.front().raw);
+        const wide_t longest = *std::max_element(limits.begin(), limits.end());
+        std::vector<bool> out;
+        for (const wide_t limit : limits) out.push_back(limit * 5 >= longest * 4);
+        const auto has = [&](int a) { return out[a]; };
+        return std::all_of(watching_.begin(), watching_.end(), has) ? std::vector<bool>{} : out;
+    }
 
     // Whether a deadline of automaton a is running in d.
     bool is_open(const Discrete& d, int a) const { return !game_.automata[a].invariants[d[a]].empty(); }

@@ -84,6 +84,7 @@ class Forward {
     }
 
     std::size_t robots() const { return dispatch_.robots(); }
+    bool alternates() const { return dispatch_.alternates(); }
     bool has_guards() const { return dispatch_.has_guards(); }
     const Joint& joint(int k) const { return joints_[k]; }
     std::size_t followed() const { return followed_; }
@@ -387,6 +388,7 @@ std::unique_ptr<Forward<Z>> winning_guess(const Game& game, LimitMonitor& monito
             auto forward = std::make_unique<Forward<Z>>(game, monitor, joints, duties, each);
             if (!each.shared_out && forward->robots() < 2) continue;  // the same as one that was tried
             if (each.relieved && !forward->has_guards()) continue;    // likewise
+            if (each.alternates == Alternates::long_limits && !forward->alternates()) continue;
             if (forward->wins()) return forward;
         }
     return nullptr;

@@ -12,6 +12,9 @@ enum class Next { in_turn, soonest_due, nearest };
 // what it will be asked for.
 enum class Idle { stays, goes_home, goes_to_post, prepares };
 
+// What a robot does in turn with anything else that it is asked for: visits, or what has the longest limits.
+enum class Alternates { nothing, visits, long_limits };
+
 struct Guess {
     Next next = Next::in_turn;
     bool shared_out = true;  // each duty is one robot's: who has least to do
@@ -23,7 +26,7 @@ struct Guess {
     int reserve = 0;         // the part of their period, in hundredths, that is left then beside the way
     bool sets_off = false;   // but the first one is begun at once
     bool relieved = false;   // a post is for a robot without duties; until it is there, another one sees to the post first
-    bool alternates = false; // after a visit something else is done, if it is asked for, and the other way round
+    Alternates alternates = Alternates::nothing;  // after each of these something else, if it is asked for
     int charge = 0;          // a robot that charges goes on until its battery has so many hundredths
 };
 
@@ -37,7 +40,8 @@ inline const std::vector<Guess> GUESSES = {
     {Next::soonest_due, true, Idle::goes_to_post},
     {Next::nearest, false},                       {Next::nearest, false, Idle::goes_home},
     {Next::in_turn, true, Idle::stays, 4},        {Next::soonest_due, true, Idle::stays, 4},
-    {Next::in_turn, true, Idle::stays, 1, false, false, {}, 0, false, false, true},
+    {Next::in_turn, true, Idle::stays, 1, false, false, {}, 0, false, false, Alternates::visits},
+    {Next::in_turn, true, Idle::stays, 1, false, false, {}, 0, false, false, Alternates::long_limits},
     {Next::in_turn, true, Idle::prepares},        {Next::in_turn, true, Idle::prepares, 16},
 };
 
