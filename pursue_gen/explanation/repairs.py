@@ -22,6 +22,7 @@ from pursue_gen.explanation.number_changes import (
 from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole_below
 from pursue_gen.language.objectives.holds import Holds
 from pursue_gen.language.scenario import Agent, Connection, Event, Poi, Reach, Scenario, StatedObjective
+from pursue_gen.language.times import instead, like
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
 from pursue_gen.tga.counts import counted
 
@@ -114,7 +115,7 @@ def _of_limit(scenario: Scenario, objective: StatedObjective) -> Iterator[Repair
     yield Repair(
         change, about, label, before, whole_above(before, before + max(before, 2 * _all_time(scenario))),
         lambda k: scenario.with_each(lambda each: each.with_limit(k) if each in together else each),
-        lambda k: f"{begins} {k} instead of {before}{ends}", objective.span, 1,
+        lambda k: f"{begins} {instead(k, before)}{ends}", objective.span, 1,
     )  # fmt: skip
 
 
@@ -122,8 +123,8 @@ def _earlier(scenario: Scenario, reach: Reach) -> Repair:
     due, names, before = reach.words.due, listed(ref.name for ref in reach.events), reach.after
     return Repair(
         "after", names, f"an earlier {due}", before, whole_below(before, 0),
-        lambda k: scenario.with_instead(reach, replace(reach, after=k)),
-        lambda k: f"{due} after {k} instead of {before}", reach.span, 1,
+        lambda k: scenario.with_instead(reach, replace(reach, after=like(k, before))),
+        lambda k: f"{due} after {instead(k, before)}", reach.span, 1,
     )  # fmt: skip
 
 
@@ -149,8 +150,8 @@ def _of_duration(scenario: Scenario, event: Event) -> Iterator[Repair]:
     def lasting(word: str, values: Sequence[int], helps: int = 2) -> Repair:
         return Repair(
             "duration", event.name, f"a {word} {event.shown}", duration, values,
-            lambda k: scenario.with_instead(event, replace(event, duration=k)),
-            lambda k: f"{event.shown} lasting {k} instead of {duration or 'no time'}", event.span, helps,
+            lambda k: scenario.with_instead(event, replace(event, duration=like(k, duration))),
+            lambda k: f"{event.shown} lasting {instead(k, duration or 'no time')}", event.span, helps,
         )  # fmt: skip
 
     if event.duration is None:

@@ -24,6 +24,9 @@ from pursue_gen.language.tokens import shown
 _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
 """Codes of findings that need a scenario that was read as a whole."""
 
+_UNREAD = frozenset(("PML014", "PML280", "PML420"))
+"""Codes of findings on numbers that could not be read."""
+
 MOST_OPTIONAL = 6
 """So many different numbers stand behind `optional` at most: each takes a game of its own."""
 
@@ -63,7 +66,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     findings += check_references(scenario, reading.lost)
     findings += check_labels(scenario)
     findings += _beside(scenario)
-    for part in (_alone, _starts, _too_long, _too_fine, _connections, _travels, _missing, _order):
+    for part in (_alone, _units, _starts, _too_long, _too_fine, _connections, _travels, _missing, _order):
         findings += part(scenario)
     codes = {f.code for f in findings}
     if reading.scenario is None:
@@ -85,7 +88,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
 
 def _of_what_was_read(reading: Reading, findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Without what checks find in the line of a number that could not be read: they saw another one in its place."""
-    unread = {f.span.line for f in reading.diagnostics if f.code == "PML014" and f.span is not None}
+    unread = {f.span.line for f in reading.diagnostics if f.code in _UNREAD and f.span is not None}
     return (f for f in findings if f in reading.diagnostics or f.span is None or f.span.line not in unread)
 
 
@@ -117,8 +120,15 @@ def _doubtful(scenario: Scenario) -> FrozenSet[str]:
 def _alone(scenario: Scenario) -> Iterator[Diagnostic]:
     """What is wrong with single statements."""
     parts = (*scenario.pois, *scenario.connections, *scenario.events, *scenario.states, *scenario.agents)
-    for part in (*parts, *scenario.travels):
+    for part in (*scenario.units, *parts, *scenario.travels):
         yield from part.check()
+
+
+def _units(scenario: Scenario) -> Iterator[Diagnostic]:
+    """A unit of time that is said twice."""
+    for again in scenario.units[1:]:
+        message = f"{scenario.units[0].span.in_words} says already what a unit of time is"
+        yield error("PML422", message, again.span, "delete one of the two; times may have other units: 2 min, 8 h")
 
 
 def _starts(scenario: Scenario) -> Iterator[Diagnostic]:

@@ -18,10 +18,12 @@ from pursue_gen.language.statements.poi import Poi
 from pursue_gen.language.statements.rule import Rule
 from pursue_gen.language.statements.state import State
 from pursue_gen.language.statements.travel import Travel
+from pursue_gen.language.statements.unit import Unit
 
 STATEMENTS: Mapping[str, Type[StatementKind]] = {
     kind.token(): kind
     for kind in (
+        Unit,
         Poi,
         Connection,
         Event,

@@ -12,7 +12,7 @@ from pursue_gen.language import objectives as kinds_of_objectives
 from pursue_gen.language.assumptions import *
 from pursue_gen.language.assumptions.base import Assumption
 from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Condition, Doing, Holds, Not, OnWay, Who
-from pursue_gen.language.numbers import Window, exact, window_of
+from pursue_gen.language.numbers import Number, Window, exact, window_of
 from pursue_gen.language.objectives import *
 from pursue_gen.language.objectives import GivenUp, Patrol, Reach, Safety, StatedObjective, WhyGivenUp
 from pursue_gen.language.objectives.patrol import patrols_in
@@ -27,11 +27,12 @@ from pursue_gen.language.statements.poi import Poi
 from pursue_gen.language.statements.rule import Both, Choice, Rule, RuleBody, Sequence
 from pursue_gen.language.statements.state import State
 from pursue_gen.language.statements.travel import Travel
+from pursue_gen.language.statements.unit import Unit
 
 __all__ = [
     "Agent", "AllOf", "AnyOf", "At", "AtMostOf", "Battery", "Both", "Choice", "Condition", "Connection", "Dependency",
     "Doing", "Event", "Holds", "Not", "OnWay", "Poi", "Pose", "Ref", "Rule", "RuleBody", "Scenario", "Sequence",
-    "Spot", "State", "Travel", "Who", "Window",
+    "Spot", "State", "Travel", "Unit", "Who", "Window",
 ]
 __all__ += kinds_of_assumptions.__all__
 __all__ += kinds_of_objectives.__all__
@@ -64,10 +65,16 @@ class Scenario:
     assumptions: Tuple[Assumption, ...] = ()
     given_up: Tuple[GivenUp, ...] = ()
     batteries: Tuple[Battery, ...] = ()
+    units: Tuple[Unit, ...] = ()
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
         """Show it in a notebook."""
         printer.text(self.text or repr(self))
+
+    @property
+    def unit(self) -> Optional[Number]:
+        """The seconds of a time unit; None: it does not say."""
+        return self.units[0].seconds if self.units else None
 
     @property
     def optional(self) -> Tuple[int, ...]:

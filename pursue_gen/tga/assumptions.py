@@ -127,7 +127,7 @@ def _at_most(automaton: Automaton, number: int, assumption: AtMost, *_: object) 
 
 def _not_before(automaton: Automaton, number: int, assumption: NotBefore, *_: object) -> Automaton:
     """A clock that nothing resets has to be past the time."""
-    late = ClockBound(names.assumption_clock(number), ">", assumption.time)
+    late = ClockBound(names.assumption_clock(number), ">", exact(assumption.time))
 
     def edges(edge: Edge) -> List[Edge]:
         return [edge.plus(bounds=(late,)), _when_broken(edge, number)] if edge.sent == assumption.event.name else [edge]
@@ -146,7 +146,7 @@ def _waits(automaton: Automaton, number: int, assumption: Waits, *_: object) -> 
         if edge.sent != event:
             return [edge]
         begun = edge if lasts else edge.plus(resets=(clock,))
-        again = begun.plus((Test(count, 1),), bounds=(ClockBound(clock, ">=", assumption.time),))
+        again = begun.plus((Test(count, 1),), bounds=(ClockBound(clock, ">=", exact(assumption.time)),))
         return [begun.plus((Test(count, 0),), assign=((count, 1),)), again, _when_broken(begun, number)]
 
     return automaton.with_each(edges)
@@ -155,7 +155,7 @@ def _waits(automaton: Automaton, number: int, assumption: Waits, *_: object) -> 
 def _departs(automaton: Automaton, number: int, assumption: Departure, *_: object) -> Automaton:
     """An invariant where it stands; what it does there begins only where it can set off in time afterwards."""
     clock, (least, most) = names.assumption_clock(number), assumption.window
-    latest, earliest = ClockBound(clock, "<=", most), ClockBound(clock, ">=", least)
+    latest, earliest = ClockBound(clock, "<=", exact(most)), ClockBound(clock, ">=", exact(least))
     pois = {each.name for each in automaton.locations if role_of(each.name) is Role.AT}
     places = {assumption.only_at} if assumption.only_at else pois
 

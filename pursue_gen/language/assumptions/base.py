@@ -26,6 +26,7 @@ from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.statements.base import Written
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.statements.state import State
+from pursue_gen.language.times import like
 
 SHORTEST_STAY = 2
 """Time units: an agent rests for one before it may set off."""
@@ -121,7 +122,7 @@ class Assumption(Written):
     def with_number(self, number: int) -> Any:
         """The same with another number, where it has one."""
         changed: Any = self
-        return replace(changed, **{self.number: number}) if self.number else self
+        return replace(changed, **{self.number: like(number, self.known_number)}) if self.number else self
 
     def stronger(self, longest: Number) -> Sequence[int]:
         """Numbers with which it would say more, the smallest change first; times up to `longest` units."""

@@ -11,6 +11,7 @@ from pursue_gen.language.numbers import Number, whole_below
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
+from pursue_gen.language.times import written_time
 from pursue_gen.language.word import Form, Numbers, Word
 
 
@@ -22,10 +23,10 @@ class Leaves(Departure):
     place: Ref
     time: Number
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=visitor} leaves {place:POI=hall} within {time:number=30}")
+    template: ClassVar[Template] = Template("{agent=visitor} leaves {place:POI=hall} within {time:time=30}")
     own_words: ClassVar[Tuple[Word, ...]] = (Word("leaves", "The place that it leaves in time.", True),)
     forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody stays", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {"within": "It has set off {} of time after it came, or after the start.".format}
+    numbers: ClassVar[Numbers] = {"within": "It has set off {} after it came, or after the start.".format}
     number: ClassVar[str] = "time"
     nearest: ClassVar[int] = SHORTEST_STAY
 
@@ -43,7 +44,8 @@ class Leaves(Departure):
 
     def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
         if self.time < SHORTEST_STAY:
-            message = f"within {self.time} is too short: whoever arrives rests for 1 time unit before it can set off"
+            message = f"within {written_time(self.time)} is too short"
+            message += ": whoever arrives rests for 1 time unit before it can set off"
             return error("PML251", message, self.span, f"write within {SHORTEST_STAY} or more")
         return self.never_comes(agent, self.place, setting) or self.never_away(agent, [self.place.name], setting)
 

@@ -11,6 +11,7 @@ from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
+from pursue_gen.language.times import like, written_time
 from pursue_gen.language.word import Form, Numbers
 
 
@@ -22,9 +23,9 @@ class ThereBy(AboutOne):
     place: Ref
     time: Number
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=visitor} at {place:POI=exit} by {time:number=300}")
+    template: ClassVar[Template] = Template("{agent=visitor} at {place:POI=exit} by {time:time=300}")
     forms: ClassVar[Tuple[Form, ...]] = (Form("by when somebody has gone", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {"by": "It is there {} of time after the start, and stays there.".format}
+    numbers: ClassVar[Numbers] = {"by": "It is there {} after the start, and stays there.".format}
     number: ClassVar[str] = "time"
     nearest: ClassVar[int] = 1
 
@@ -67,9 +68,9 @@ class ThereBy(AboutOne):
             message = f"no way that is always open leads {agent.name} from {start} to {place}"
             return error("PML252", message, self.span, f"connect {start} and {place}, without only_if")
         if latest is not None and latest < SHORTEST_STAY:
-            sooner = exact(self.time + SHORTEST_STAY - latest)
+            sooner = like(exact(self.time + SHORTEST_STAY - latest), self.time)
             message = f"{agent.name} may need {units(sooner)} from {start} to {place}"
-            return error("PML252", message, self.span, f"write by {sooner} or later")
+            return error("PML252", message, self.span, f"write by {written_time(sooner)} or later")
         shared = {event.name for event in setting.events if event.is_shared}
         for event in (ref.name for ref in agent.reacts_to if ref.name in shared):
             message = f"{agent.name} takes part in {event}, and could be kept from going to {place} in time"

@@ -272,7 +272,7 @@ def filled(form: Form, given: Any) -> str:
         field = {"value": value}
         is_number = bool(example) and what.replace(".", "").isdigit()
         if is_number:
-            text = fields.number_of(field, "value")
+            text = fields.time_of(field, "value")
         elif what == "agent" and value in ANYBODY:
             text = str(value)
         else:

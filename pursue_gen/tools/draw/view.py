@@ -18,6 +18,7 @@ from pursue_gen.language.scenario import Connection, Poi
 from pursue_gen.language.sentences import objective_words
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.template import names_text
+from pursue_gen.language.times import window_text
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.word import HOLE
 from pursue_gen.solving.inputs import findings_of
@@ -219,7 +220,7 @@ def _events(document: Draft) -> List[Dict[str, Any]]:
         if each.span.member:
             event = {"name": each.name, "label": each.label or "", "at_most": str(each.at_most or "")}
             event.update(location=each.location.name if each.location else "", only_if=_condition(each.only_if))
-            event["duration"] = " to ".join(str(end) for end in (each.duration, each.latest) if end is not None)
+            event["duration"] = "" if each.duration is None else window_text(each.duration, each.latest)
             ticks = {key: getattr(each, key) for key in ("collaborative", "together")}
             found.append({**event, **ticks, **_made(document, each.span)})
     return found

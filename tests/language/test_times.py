@@ -1,0 +1,218 @@
+"""Units of time: how times are read and given back, and that the game is that of the same numbers without units."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from fractions import Fraction
+from typing import Tuple
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pursue_gen.diagnostics import units
+from pursue_gen.explanation.repairs import repairs
+from pursue_gen.language import parse
+from pursue_gen.language.checks import check, check_reading
+from pursue_gen.language.document import Document, edited, written
+from pursue_gen.language.formatter import format_text
+from pursue_gen.language.numbers import Number, exact
+from pursue_gen.language.parser import read
+from pursue_gen.language.rewriting import Rewriting
+from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.sentences import objective_words
+from pursue_gen.language.times import SECONDS, Time, duration_text, like, read_seconds
+from pursue_gen.language.writer import scenario_text
+from pursue_gen.solving.periods import with_period
+from pursue_gen.solving.rules import Rules
+from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.uppaal import write_network
+from tests.stories import files
+from tests.whole_stories import stories
+
+TEXT = """\
+unit second
+
+poi "desk"
+poi "shelf"
+
+connect desk and shelf distance 4
+
+event "call"
+event "fetch" location shelf duration 30 s
+event "pack" location shelf duration 1 min to 1 min 30 s
+
+agent "bot" controllable mobile 1 location desk can_do fetch, pack
+agent "guest" mobile 60 location desk can_do call
+
+travel "bot" from desk to shelf takes 5 s to 8.5 s
+
+assume: guest waits 5 min between call
+assume: guest stays 90 to 20 min at each place
+
+objective: if call then fetch within 2 min
+objective: patrol shelf every 8 h by bot
+reach_objective: do pack after 10 within 1 h
+"""
+
+seconds = st.builds(lambda number: exact(Fraction(number, 1000)), st.integers(0, 10**9))
+
+
+@given(seconds)
+def test_a_time_that_is_shown_can_be_read(number: Number) -> None:
+    assert read_seconds(duration_text(number)).seconds == number
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [(90, "90 s"), (120, "2 min"), (127, "2 min 7 s"), (3600, "1 h"), (5400, "90 min"), (9000, "2 h 30 min")],
+)
+def test_times_are_shown_as_people_say_them(number: int, text: str) -> None:
+    assert duration_text(number) == text
+
+
+def test_a_scenario_says_its_times_as_they_were_written() -> None:
+    scenario = parse(TEXT, "story.pur")
+    assert not check(scenario)
+    assert format_text(TEXT.replace(" min 30", "  min\t30"), "story.pur") == TEXT == scenario_text(scenario)
+    assert scenario.unit == 1
+    assert scenario.events[2].window == (60, 90)
+    assert scenario.travels[0].window == (5, Fraction(17, 2))
+    assert [each.limit for each in scenario.objectives] == [120, 8 * 3600, 3600]
+    assert objective_words(scenario) == [
+        "Whenever call happens, fetch happens within 2 min.",
+        "bot is at shelf at least every 8 h.",
+        "pack happens later than 10 s after the start and within 1 h after the start.",
+    ]
+    assert [each.clause for each in scenario.assumptions] == [
+        "guest waits 5 min between one call and the next",
+        "guest stays 90 to 20 min at each place",
+    ]
+
+
+@pytest.mark.parametrize("unit", ["second", "10 s", "minute", "0.5 s", "hour"])
+def test_a_time_with_a_unit_is_the_same_in_each_unit_of_time(unit: str) -> None:
+    found = read(TEXT.replace("unit second", f"unit {unit}").replace("8.5 s", "18 s"), "story.pur")
+    known, wrong = found.partial, [finding.code for finding in found.diagnostics]
+    assert known.unit is not None and known.objectives[1].known_limit * Fraction(known.unit) == 8 * 3600
+    assert set(wrong) <= {"PML280"}, "what is no number of units is an error, and nothing is rounded"
+    assert bool(wrong) == (unit in ("minute", "hour"))
+
+
+def wrong(text: str) -> Tuple[Tuple[str, int, str], ...]:
+    found = check_reading(read(text, "x.pur"))
+    return tuple((each.code, each.span.line if each.span else 0, each.hint) for each in found)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code", "line", "hint"),
+    [
+        ("unit second\n", "\n", "PML420", 9, "unit second"),
+        ("unit second\n", "unit 3\n", "PML014", 1, "write unit 3 s"),
+        ("unit second\n", "unit 2 minutes\n", "PML014", 1, "write 2 min"),
+        ("unit second\n", "unit two\n", "PML010", 1, "the form is: unit second"),
+        ("unit second\n", "unit 0 s\n", "PML421", 1, "unit second"),
+        ("unit second\n", "unit second unit minute\n", "PML422", 1, "delete one"),
+        ("duration 30 s", "duration 30 seconds", "PML014", 9, "write 30 s"),
+        ("duration 30 s", "duration 30s", "PML014", 9, "write 30 s"),
+        ("duration 30 s", "duration 30 s 1 min", "PML014", 9, "write 90 s"),
+        ("duration 30 s", "duration 1.2.3 s", "PML014", 9, "30 s, 2 min"),
+        ("duration 30 s", "duration 0.0001 s", "PML280", 9, "nothing is rounded"),
+        ("every 8 h", "every 300 h", "PML014", 21, "larger unit"),
+        ("distance 4", "distance 4 min", "PML014", 6, "write 4: a unit stands behind times only"),
+        ("5 s to 8.5 s", "8 s to 5 s", "PML200", 15, "takes 5 s to 8 s"),
+        ("5 s to 8.5 s", "2 min to 2 min", "PML200", 15, "takes 2 min to 2 min 1 s"),
+        ("after 10 within 1 h", "after 2 min within 1 min", "PML223", 22, "within 2 min 1 s or more"),
+        ("90 to 20 min", "20 min to 90", "PML200", 18, "stays 90 to 20 min"),
+    ],
+)
+def test_what_is_wrong_with_a_time_is_said(old: str, new: str, code: str, line: int, hint: str) -> None:
+    assert old in TEXT
+    found = wrong(TEXT.replace(old, new))
+    assert found and found[0][:2] == (code, line) and hint in found[0][2], found
+    assert len(found) == 1 or code == "PML420"
+
+
+def test_names_may_be_words_of_times() -> None:
+    text = TEXT.replace("call", "second").replace("fetch", "s").replace("pack", "min").replace("guest", "unit")
+    assert not check(parse(text.replace('"shelf"', '"h"').replace("shelf", "h"), "story.pur"))
+
+
+# What is computed ----------------------------------------------------------------------------------------------------
+
+TIMES = frozenset(("DURATION", "TAKES", "WITHIN", "EVERY", "AFTER", "WAITS", "STAYS", "BY", "TO"))
+
+
+def in_seconds(text: str, unit: int) -> str:
+    """The text with `unit`, and each of its times with a unit behind it."""
+    tokens = Document(text).tokens
+    pairs = ((word, number) for word, number in zip(tokens, tokens[1:]) if number.type == "NUMBER")
+    edits = [
+        written(number, duration_text(exact(Fraction(number) * unit))) for word, number in pairs if word.type in TIMES
+    ]
+    return f"unit {unit} s\n{edited(text, edits)}"
+
+
+def game(scenario: Scenario) -> Tuple[Network, Objective]:
+    return translate(scenario), scenario_objective(scenario)
+
+
+@settings(max_examples=25)
+@given(stories(small=True), st.sampled_from((1, 10, 60)))
+def test_units_change_nothing_in_the_game(story: Tuple[str, Scenario], unit: int) -> None:
+    text, plain = story
+    timed = parse(in_seconds(text, unit), "story.pur", plain.name)
+    assert timed.unit == unit
+    assert any(isinstance(each.limit, Time) for each in timed.objectives if each.limit is not None) or not any(
+        each.limit for each in plain.objectives
+    )
+    assert write_network(*game(timed)) == write_network(*game(plain))
+    assert repr(game(timed)) == repr(game(plain)), "numbers in networks know nothing of units"
+
+
+def test_what_is_computed_from_a_time_is_a_plain_number() -> None:
+    time = Time(120, 1, "2 min")
+    assert type(exact(time)) is int and type(time + 1) is Fraction
+    assert str(time) == "120" and units(time) == "2 min" and units(Time(120, 1, "120")) == "2 min"
+    assert str(like(127, time)) == "127" and units(like(127, time)) == "2 min 7 s"
+    assert like(3, 5) == 3 and not isinstance(like(3, 5), Time)
+    for same in (copy.copy(time), copy.deepcopy(time), pickle.loads(pickle.dumps(time))):
+        assert (same, same.unit, same.written) == (120, 1, "2 min")
+    assert time < 120.5 and time == 120.0 and max(time, 3.5) is time and float(time) == 120
+    assert SECONDS == {"s": 1, "min": 60, "h": 3600}
+
+
+def test_changes_are_told_in_the_units_of_the_text() -> None:
+    said = {repair.what: repair.say(repair.values[0]) for repair in repairs(parse(TEXT, "story.pur"), Rules())}
+    assert said["deadline"] == "a patrol of shelf every 8 h 1 s instead of 8 h"
+    assert said["within"] == "pack within 1 h 1 s instead of 1 h" or said["within"].startswith("pack within")
+    assert said["travel"] == "bot going from desk to shelf in 5 s to 8 s instead of 5 s to 8.5 s"
+    assert said["latest"] == "pack lasting 1 min to 89 s instead of 1 min to 90 s"
+    assert said["after"] == "pack after 9 instead of 10"
+
+
+def test_what_commands_write_has_units_where_the_text_has_them() -> None:
+    scenario = parse(TEXT, "story.pur")
+    rewriting = Rewriting(scenario)
+    edits = rewriting.windows({("bot", "desk", "shelf"): (6, exact(Fraction(19, 2)), "calibrate: here")})
+    edits += rewriting.windows({("bot", "shelf", "desk"): (100, 130, "calibrate: back")})
+    text = edited(TEXT, [*edits, *rewriting.duration(scenario.events[1], 29, 31, "calibrate: work")])
+    assert "takes 6 s to 9.5 s // calibrate: here" in text
+    assert "travel bot from shelf to desk takes 100 s to 2 min 10 s // calibrate: back" in text
+    assert "duration 29 s to 31 s // calibrate: work" in text
+
+
+def test_a_period_that_is_found_is_written_with_its_unit() -> None:
+    found = with_period(parse(TEXT.replace(" every 8 h", ""), "story.pur"), 200)
+    assert "patrol shelf every 3 min 20 s by bot" in found.text
+    assert objective_words(found)[1] == "bot is at shelf at least every 3 min 20 s."
+    assert parse(found.text, "story.pur").patrols[0].every == 200
+
+
+def test_the_workspace_begins_with_the_unit_of_the_scenario() -> None:
+    text = TEXT.replace("unit second", "unit 0.5 s").replace("objective: patrol shelf every 8 h by bot\n", "")
+    made = files(text)
+    launch = next(content for name, content in made.items() if name.endswith("launch/mission.launch"))
+    assert b'<arg name="time_unit" default="0.5"' in launch
