@@ -19,7 +19,7 @@ from pursue_gen.explanation.number_changes import (
     room_changes,
     travel_changes,
 )
-from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole_below
+from pursue_gen.language.numbers import Number, decimal_text, exact, whole_above, whole_below
 from pursue_gen.language.objectives.holds import Holds
 from pursue_gen.language.scenario import Agent, Connection, Event, Poi, Reach, Scenario, StatedObjective
 from pursue_gen.language.times import instead, like
@@ -133,12 +133,26 @@ def _of_agent(scenario: Scenario, agent: Agent) -> Iterator[Repair]:
     if pace is None or not scenario.connections:
         return
     what = f"a {'faster' if agent.controllable else 'slower'} {agent.shown}"
+    if agent.speed is not None:
+        yield _of_speed(scenario, agent, agent.speed, what)
+        return
     values = whole_below(pace, 1) if agent.controllable else whole_above(pace, pace * SLOWER)
     if values:
         yield Repair(
             "agent", agent.name, what, pace, values, lambda k: scenario.with_instead(agent, replace(agent, mobile=k)),
             lambda k: f"{what}, mobile {k} instead of {pace}", agent.span,
         )  # fmt: skip
+
+
+def _of_speed(scenario: Scenario, agent: Agent, speed: Number, what: str) -> Repair:
+    """Tenths of its speed more, up to four times as fast; less, for one that is not controlled."""
+    tenths = range(11, 41) if agent.controllable else range(9, 0, -1)
+    pace = Fraction(agent.mobile or 0) * Fraction(speed)
+    return Repair(
+        "agent", agent.name, what, speed, [exact(Fraction(speed) * k / 10) for k in tenths],
+        lambda k: scenario.with_instead(agent, replace(agent, speed=k, mobile=exact(pace / k))),
+        lambda k: f"{what}, speed {k} instead of {speed}", agent.span,
+    )  # fmt: skip
 
 
 def _of_duration(scenario: Scenario, event: Event) -> Iterator[Repair]:

@@ -17,8 +17,9 @@ from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.numbers import MOST_DIGITS, exact, is_fine
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
-from pursue_gen.language.scenario import Poi, Scenario
+from pursue_gen.language.scenario import Agent, Poi, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
+from pursue_gen.language.times import in_units, written_time
 from pursue_gen.language.tokens import shown
 
 _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
@@ -154,6 +155,9 @@ def _too_fine(scenario: Scenario) -> Iterator[Diagnostic]:
     for agent in scenario.agents:
         if not isinstance(agent.mobile, Fraction):  # then no time has more digits than the author wrote
             continue
+        if agent.speed is not None:
+            yield from _rounded(scenario, agent)
+            continue
         for (a, b), (time, _) in scenario.movements(agent).items():
             if not is_fine(time):
                 digits = f"more than {MOST_DIGITS} digits after the point"
@@ -162,6 +166,21 @@ def _too_fine(scenario: Scenario) -> Iterator[Diagnostic]:
                 hint = f"round its mobile or the distance, or write travel {agent.name} from {a} to {b} takes {rounded}"
                 yield error("PML281", message, agent.span, hint)
                 break
+
+
+def _rounded(scenario: Scenario, agent: Agent) -> Iterator[Diagnostic]:
+    """A way whose time, which comes of a speed, is rounded."""
+    own = {travel.way for travel in scenario.travels if travel.agent.name == agent.name}
+    for way in scenario.ways_of(agent.name):
+        time = exact(way.distance * (agent.mobile or 0))
+        for a, b in way.directions:
+            if (a, b) not in own and not is_fine(time):
+                low, high = (written_time(in_units(end, scenario.unit)) for end in agent.window_on(way.distance))
+                about = written_time(in_units(exact(round(Fraction(time), MOST_DIGITS)), scenario.unit))
+                message = f"{agent.name} needs about {about} from {a} to {b}: {low} to {high} is taken"
+                hint = f"that is on the safe side; for another window write travel {agent.name} from {a} to {b} takes …"
+                yield warning("PML424", message, agent.span, hint)
+                return
 
 
 def _travels(scenario: Scenario) -> Iterator[Diagnostic]:

@@ -12,7 +12,7 @@ from pursue_gen.language import objectives as kinds_of_objectives
 from pursue_gen.language.assumptions import *
 from pursue_gen.language.assumptions.base import Assumption
 from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Condition, Doing, Holds, Not, OnWay, Who
-from pursue_gen.language.numbers import Number, Window, exact, window_of
+from pursue_gen.language.numbers import Number, Window
 from pursue_gen.language.objectives import *
 from pursue_gen.language.objectives import GivenUp, Patrol, Reach, Safety, StatedObjective, WhyGivenUp
 from pursue_gen.language.objectives.patrol import patrols_in
@@ -171,7 +171,7 @@ class Scenario:
             return {}
         own = {travel.way: travel.window for travel in self.travels if travel.agent.name == agent.name}
         return {
-            way: own.get(way) or window_of(exact(connection.distance * agent.mobile), None)
+            way: own.get(way) or agent.window_on(connection.distance)
             for connection in self.ways_of(agent.name)
             for way in connection.directions
         }

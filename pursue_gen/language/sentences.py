@@ -52,7 +52,8 @@ def speed_words(agent: Agent, scenario: Scenario) -> str:
     batteries = [battery.in_words for battery in scenario.batteries if battery.agent.name == agent.name]
     if agent.mobile is None:
         return ", ".join(["stays there", *batteries])
-    words = [f"{words_for(agent.mobile, scenario.unit)} per unit of distance"]
+    pace = f"{words_for(agent.mobile, scenario.unit)} per unit of distance"
+    words = [pace if agent.speed is None else f"{agent.speed} m/s"]
     own = [travel for travel in scenario.travels if travel.agent.name == agent.name]
     words += [f"{travel.a.shown} to {travel.b.shown} in {window_words(travel.window, scenario.unit)}" for travel in own]
     return ", ".join(words + batteries)

@@ -17,7 +17,7 @@ from pursue_gen.language import parse
 from pursue_gen.language.checks import check, check_reading
 from pursue_gen.language.document import Document, edited, written
 from pursue_gen.language.formatter import format_text
-from pursue_gen.language.numbers import Number, exact
+from pursue_gen.language.numbers import Number, exact, is_fine
 from pursue_gen.language.parser import read
 from pursue_gen.language.rewriting import Rewriting
 from pursue_gen.language.scenario import Scenario
@@ -216,3 +216,87 @@ def test_the_workspace_begins_with_the_unit_of_the_scenario() -> None:
     made = files(text)
     launch = next(content for name, content in made.items() if name.endswith("launch/mission.launch"))
     assert b'<arg name="time_unit" default="0.5"' in launch
+
+
+# Speeds --------------------------------------------------------------------------------------------------------------
+
+DRIVES = """\
+unit second
+
+poi "desk"
+poi "shelf"
+poi "door"
+
+connect desk and shelf distance 12
+connect shelf and door distance 7
+
+event "fetch" location shelf duration 30 s
+
+agent "bot" controllable speed 0.5 location desk can_do fetch
+
+reach_objective: do fetch within 2 min
+"""
+
+
+@pytest.mark.parametrize(
+    ("unit", "speed", "window"),
+    [
+        ("second", "0.5", (24, 25)),
+        ("second", "0.8", (15, 16)),
+        ("minute", "0.5", (Fraction(2, 5), Fraction(7, 5))),
+        ("10 s", "0.64", (Fraction(15, 8), Fraction(23, 8))),
+        ("second", "0.7", (Fraction(171, 10), Fraction(182, 10))),
+        ("minute", "0.7", (Fraction(2, 10), Fraction(13, 10))),
+    ],
+)
+def test_a_speed_says_how_long_a_way_takes(unit: str, speed: str, window: Tuple[Number, Number]) -> None:
+    scenario = parse(DRIVES.replace("second", unit).replace("0.5", speed), "drives.pur")
+    agent = scenario.agents[0]
+    found = scenario.movements(agent)["desk", "shelf"]
+    assert found == window
+    metres, seconds_of = Fraction(12) / Fraction(speed), Fraction(scenario.unit or 0)
+    assert found[0] * seconds_of <= metres and metres + seconds_of <= found[1] * seconds_of, "never too narrow"
+    assert agent.text == f'agent "bot" controllable speed {speed} location desk can_do fetch'
+    assert scenario_text(scenario) == scenario.text
+    rounded = [finding for finding in check(scenario) if finding.code == "PML424"]
+    ends = (Fraction(way) / Fraction(speed) / seconds_of for way in (12, 7))
+    assert bool(rounded) == (not all(map(is_fine, ends)))
+
+
+@given(st.integers(1, 9999), st.integers(1, 9999), st.sampled_from((1, 60)))
+def test_what_comes_of_a_speed_is_never_narrower_than_it_says(thousandths: int, distance: int, unit: int) -> None:
+    text = DRIVES.replace("unit second", f"unit {unit} s").replace("speed 0.5", f"speed {thousandths / 1000:.3f}")
+    agent = read(text, "drives.pur").partial.agents[0]
+    low, high = agent.window_on(exact(Fraction(distance, 10)))
+    time = Fraction(distance, 10) / Fraction(thousandths, 1000) / unit
+    assert low <= time and time + 1 <= high and high - low <= Fraction(12, 10)
+    assert is_fine(low) and is_fine(high)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("unit second\n", "\n", "nothing says what a unit of time is"),
+        ("speed 0.5", "mobile 2 speed 0.5", "bot has mobile and speed"),
+        ("speed 0.5", "speed 0", "bot would never arrive"),
+    ],
+)
+def test_a_speed_that_cannot_be_meant(old: str, new: str, said: str) -> None:
+    found = check_reading(read(DRIVES.replace("30 s", "30").replace("2 min", "120").replace(old, new), "x.pur"))
+    assert [(each.code, said in each.message) for each in found] == [("PML423", True)]
+
+
+def test_a_way_with_a_time_of_its_own_is_not_rounded() -> None:
+    text = DRIVES.replace("0.5", "0.7").replace("distance 7", "distance 7 one_way")
+    (finding,) = check(parse(text, "drives.pur"))
+    assert finding.code == "PML424" and "about 17.143 s from desk to shelf: 17.1 s to 18.2 s" in finding.message
+    own = "travel bot from desk to shelf takes 17 s to 19 s\ntravel bot from shelf to desk takes 17 s to 19 s\n"
+    assert not check(parse(text.replace("reach_obj", own + "reach_obj"), "drives.pur"))
+
+
+def test_a_faster_robot_is_told_by_its_speed() -> None:
+    changes = [each for each in repairs(parse(DRIVES, "drives.pur"), Rules()) if each.what == "agent"]
+    assert [each.say(each.values[0]) for each in changes] == ["a faster bot, speed 0.55 instead of 0.5"]
+    made = changes[0].make(changes[0].values[0])
+    assert isinstance(made, Scenario) and made.agents[0].text.startswith('agent "bot" controllable speed 0.55')
+    assert parse(scenario_text(made), "x.pur").movements(made.agents[0]) == made.movements(made.agents[0])

@@ -13,8 +13,8 @@ syntax keyword pursueKeyword after agents all always and any at at_most avoid be
 syntax keyword pursueKeyword collaborative controllable distance do does doing duration each every except false_if from
 syntax keyword pursueKeyword holds hour human if in inflation initially label leaves location minute mobile never
 syntax keyword pursueKeyword never_with no none not of on_way one_way only_if or order patrol per place radius reacts_to
-syntax keyword pursueKeyword recharges robot robots second stays takes then times to together tolerance true_if two uses
-syntax keyword pursueKeyword waits way within
+syntax keyword pursueKeyword recharges robot robots second speed stays takes then times to together tolerance true_if
+syntax keyword pursueKeyword two uses waits way within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*\%([ \t]\+\%(s\|min\|h\)\>\%([ \t]\+\d[0-9.]*[ \t]\+\%(s\|min\|h\)\>\)*\)\?"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

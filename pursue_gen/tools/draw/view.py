@@ -190,7 +190,8 @@ def _agents(document: Draft) -> List[Dict[str, Any]]:
         name, parts = bare(one.name), parts_of(one)
         kind = "free" if "CONTROLLABLE" not in parts else "person" if "HUMAN" in parts else "robot"
         agent = {"name": name, "label": words_behind(one, "LABEL")[1:-1], "kind": kind}
-        agent.update(mobile=words_behind(one, "MOBILE"), location=words_behind(one, "LOCATION"))
+        agent.update(mobile=words_behind(one, "MOBILE"), speed=words_behind(one, "SPEED"))
+        agent.update(location=words_behind(one, "LOCATION"))
         agent["mark"] = mark(looks[name], 0, 0, 6.0)
         lists = {key: names_behind(one, key.upper()) for key in ("can_do", "reacts_to")}
         if name in known:  # groups are lists of their members
@@ -199,7 +200,8 @@ def _agents(document: Draft) -> List[Dict[str, Any]]:
     for each in made:
         kind = "free" if not each.controllable else "person" if each.human else "robot"
         agent = {"name": each.name, "label": each.label or "", "kind": kind, "location": each.location.name}
-        agent.update(mobile=str(each.mobile or ""), mark=mark(looks[each.name], 0, 0, 6.0))
+        agent.update(mobile="" if each.speed else str(each.mobile or ""), speed=str(each.speed or ""))
+        agent.update(mark=mark(looks[each.name], 0, 0, 6.0))
         lists = {key: [ref.name for ref in getattr(each, key)] for key in ("can_do", "reacts_to")}
         found.append({**agent, **lists, **_made(document, each.span)})
     return found

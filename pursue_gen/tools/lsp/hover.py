@@ -218,7 +218,8 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
     if agent.mobile is None:
         lines.append("- stays there")
     else:
-        lines.append(f"- needs {units_of_time(in_units(agent.mobile, scenario.unit))} for a unit of distance")
+        pace = f"needs {units_of_time(in_units(agent.mobile, scenario.unit))} for a unit of distance"
+        lines.append(f"- {pace}" if agent.speed is None else f"- moves {agent.speed} metres in a second")
         own = {travel.way for travel in scenario.travels if travel.agent.name == agent.name}
         known = {(way.a, way.b) for way in scenario.connections} | own  # the other direction takes as long
         movements = scenario.movements(agent).items()
@@ -237,9 +238,9 @@ def _number(document: Draft, part: Statement, start: int, time: Number) -> str:
     word = words[-1] if words else ""
     movers = [agent for agent in scenario.agents if agent.mobile is not None]
     if word == "DISTANCE":
-        lines = [f"A way of {units(number)} of distance.", ""]
-        times = [(agent.name, exact(number * (agent.mobile or 0))) for agent in movers]
-        needs = [f"- {name} needs {lasts((time, exact(time + 1)), scenario.unit)}" for name, time in times]
+        metres = any(agent.speed is not None for agent in movers)
+        lines = [f"A way of {number} metres." if metres else f"A way of {units(number)} of distance.", ""]
+        needs = [f"- {agent.name} needs {lasts(agent.window_on(number), scenario.unit)}" for agent in movers]
         return "\n".join(lines + _listed(needs))
     if word in ("DURATION", "TAKES", "TO"):
         begins = next(start_of(t) for t in part.tokens if t.type in ("DURATION", "TAKES"))
@@ -254,6 +255,12 @@ def _number(document: Draft, part: Statement, start: int, time: Number) -> str:
         lines = [f"It needs {pace} for a unit of distance; a larger number is slower.", ""]
         times = [(f"{way.a} to {way.b}", exact(way.distance * number)) for way in scenario.connections]
         ways = [f"- {name}: {lasts((time, exact(time + 1)), scenario.unit)}" for name, time in times]
+        return "\n".join(lines + _listed(ways))
+    if word == "SPEED":
+        here = [agent for agent in movers if agent.span.line == part.tokens[0].line and agent.speed is not None]
+        lines = [f"It moves {number} metres in a second.", ""]
+        windows = [(way, agent.window_on(way.distance)) for agent in here for way in scenario.connections]
+        ways = [f"- {way.a} to {way.b}: {lasts(window, scenario.unit)}" for way, window in windows]
         return "\n".join(lines + _listed(ways))
     if part.kind == "BATTERY":
         return _battery(scenario, part)

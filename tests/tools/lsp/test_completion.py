@@ -25,7 +25,7 @@ def labels(text: str, kind: str = "") -> List[str]:
 
 
 WHOLE = SMALL + "{}"
-SIZE = ["radius", "tolerance", "inflation"]
+SIZE = ["speed", "radius", "tolerance", "inflation"]
 
 
 @pytest.mark.parametrize(

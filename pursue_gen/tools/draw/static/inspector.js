@@ -102,6 +102,7 @@ function agent(thing) {
     field("field-kind", "is", thing.kind, set(thing, "kind"), { options: KINDS }),
     field("field-location", "starts at", thing.location, set(thing, "location"), { options: places() }),
     field("field-mobile", "time units per unit of distance (empty: stays)", thing.mobile, set(thing, "mobile"), { inputmode: "decimal" }),
+    field("field-speed", "or its speed in metres per second", thing.speed, set(thing, "speed"), { inputmode: "decimal" }),
     ...list(thing, "can_do", "can do", state.view.events),
     ...list(thing, "reacts_to", "reacts to", state.view.events.filter((one) => one.collaborative || thing.reacts_to.includes(one.name))),
   ];
