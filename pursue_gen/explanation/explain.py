@@ -22,6 +22,7 @@ from pursue_gen.explanation.play_lines import Attempt, TimedLine, attempt, descr
 from pursue_gen.explanation.together import Conflict, conflict
 from pursue_gen.language.numbers import time_text
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.times import unit_name
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.lost_promises import lost_to_one_walk, quoted
 from pursue_gen.solving.one_robot import lost_game
@@ -63,6 +64,7 @@ class Explanation:
     (empty: it is prevented in plays in which time passes, or that is not decided). `conflict`: of several objectives
     those that cannot be promised together. `preventing`: whom nobody controls and who acts in the play. `about`: all
     this is about these objectives alone, with nothing else promised; `others`: about others that are lost alone.
+    `times_in`: what the times of the play count.
     """
 
     changes: Tuple[Change, ...]
@@ -75,6 +77,7 @@ class Explanation:
     preventing: Tuple[str, ...] = ()
     about: Tuple[str, ...] = ()
     others: Tuple[Explanation, ...] = ()
+    times_in: str = "units"
 
 
 def explain(
@@ -137,7 +140,8 @@ def _explained(
         plays, main = [], ()
     attempts = tuple(attempt(scenario, play) for play in plays[1:])
     how = found.changes, found.lost, found.undecided, main, attempts, repeating, together
-    return Explanation(*how, preventing)
+    times_in = "units" if scenario.unit is None else unit_name(scenario.unit)
+    return Explanation(*how, preventing, times_in=times_in)
 
 
 def _is_small(scenario: Scenario, rules: Rules, budget: Budget) -> bool:
@@ -162,7 +166,7 @@ def render(explanation: Explanation, width: int = 110) -> str:
     texts += [explanation.conflict.in_words()] if explanation.conflict else []
     lines = [line for text in texts for line in textwrap.wrap(text, width)]
     if explanation.play:
-        lines += [f"{play_title(explanation)} (times in units):", *_told(explanation.play)]
+        lines += [f"{play_title(explanation)} (times in {explanation.times_in}):", *_told(explanation.play)]
     if explanation.changes:
         lines.append(f"Each of these alone would change that, the smallest change first ({how_found(explanation)}):")
         lines += [f"  - {_change(change)}" for change in explanation.changes]
@@ -249,7 +253,7 @@ def as_json(explanation: Explanation) -> Dict[str, Any]:
 
 def _change(change: Change) -> str:
     place = change.span.in_words if change.span else ""
-    limit = f"{change.next_lost} is not enough" if change.next_lost != change.before else ""
+    limit = f"{change.not_enough} is not enough" if change.not_enough else ""
     if not change.least:
         limit += "; what lies between was not decided" if limit else "less was not decided"
     notes = "; ".join(note for note in (limit, place) if note)
@@ -266,7 +270,7 @@ def _listed(title: str, entries: Tuple[str, ...], width: int) -> List[str]:
 
 
 def _change_json(change: Change) -> Dict[str, Any]:
-    values = {key: value for key, value in asdict(change).items() if key != "span"}
+    values = {key: value for key, value in asdict(change).items() if key not in ("span", "not_enough")}
     values.update({key: _value(values[key]) for key in ("before", "after", "next_lost")})
     if change.span is not None:
         values.update(file=change.span.file, line=change.span.line, column=change.span.column)

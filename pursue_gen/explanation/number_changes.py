@@ -61,12 +61,12 @@ def event_changes(scenario: Scenario, event: Event) -> Iterator[Repair]:
     doers = scenario.doers(name)
     if high - low > 1:
         yield Repair(
-            "latest", name, f"a {shown} that ends earlier", high, whole_below(high, floor(low) + 1),
+            "latest", name, f"a {shown} that ends earlier", like(high, first), whole_below(high, floor(low) + 1),
             lambda k: make(low, k), lambda k: say(low, k), span,
         )  # fmt: skip
     if high - low > 1 and doers and not any(agent.controllable for agent in doers):
         yield Repair(
-            "earliest", name, f"a {shown} that ends later", low, whole_above(low, ceil(high) - 1),
+            "earliest", name, f"a {shown} that ends later", like(low, first), whole_above(low, ceil(high) - 1),
             lambda k: make(k, high), lambda k: say(k, high), span,
         )  # fmt: skip
 
@@ -87,12 +87,13 @@ def travel_changes(scenario: Scenario, travel: Travel) -> Iterator[Repair]:
     if any(agent.controllable for agent in scenario.agents if agent.name == name):
         if high > 1:
             yield Repair(
-                "travel", name, f"{who} going faster from {a} to {b}", high, whole_below(high, 1),
+                "travel", name, f"{who} going faster from {a} to {b}", like(high, first), whole_below(high, 1),
                 lambda k: make(min(low, k - 1), k), lambda k: say(min(low, k - 1), k), span,
             )  # fmt: skip
     else:
         yield Repair(
-            "travel", name, f"{who} going slower from {a} to {b}", low, whole_above(low, SLOWER * max(low, 1)),
+            "travel", name, f"{who} going slower from {a} to {b}", like(low, first),
+            whole_above(low, SLOWER * max(low, 1)),
             lambda k: make(k, max(high, k + 1)), lambda k: say(k, max(high, k + 1)), span,
         )  # fmt: skip
 

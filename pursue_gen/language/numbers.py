@@ -59,9 +59,14 @@ def at_most(number: Number) -> str:
     return decimal_text(tenths_above(number))
 
 
-def at_least(number: Number) -> str:
+def tenths_below(number: Number) -> Number:
     """A lower bound for people, rounded down to tenths."""
-    return decimal_text(Fraction(floor(number * 10), 10))
+    return exact(Fraction(floor(number * 10), 10))
+
+
+def at_least(number: Number) -> str:
+    """The same as a text."""
+    return decimal_text(tenths_below(number))
 
 
 def read_number(text: str) -> Optional[Number]:

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any, List, NamedTuple, Optional
 
 from pursue_gen.diagnostics import units
-from pursue_gen.language.numbers import Decimal, Number, decimal_text, exact, read_number
+from pursue_gen.language.numbers import Decimal, Number, decimal_text, exact, read_number, time_text
 
 SECONDS = {"s": 1, "min": 60, "h": 3600}
 """Seconds of each unit that may stand behind a number; the smallest first."""
@@ -20,6 +20,7 @@ _OTHERS = {
 
 _PART = re.compile(r"(\S+)\s+([a-z]+)")
 _GLUED = re.compile(rf"([0-9.]+)({'|'.join((*SECONDS, *_OTHERS))})")
+_NAMES = {Fraction(1): "seconds", Fraction(60): "minutes", Fraction(3600): "hours"}
 _SMALLEST = 2
 """So many of a unit are told in it: from 2 min on, 127 s are 2 min 7 s."""
 
@@ -117,6 +118,32 @@ def words_for(number: Number, unit: Optional[Number]) -> str:
     if unit is None:
         return f"{decimal_text(number)} time unit{'' if number == 1 else 's'}"
     return duration_text(exact(Fraction(number) * unit))
+
+
+def unit_name(unit: Optional[Number]) -> str:
+    """What numbers of time units count, in the plural: `seconds`, `units of 10 s`; `time units` where `unit` (seconds)
+    is None."""
+    if unit is None:
+        return "time units"
+    return _NAMES.get(Fraction(unit)) or f"units of {duration_text(unit)}"
+
+
+def in_unit(amount: str, unit: Optional[Number]) -> str:
+    """So many of them: `5 units`, `1 second`, `5 units of 10 s`."""
+    name = "units" if unit is None else unit_name(unit)
+    first, *more = name.split(" ")
+    return " ".join((amount, first[:-1] if amount == "1" else first, *more))
+
+
+def time_units(number: Number) -> str:
+    """A time of a scenario in a sentence: `2 min`, or `120 time units`."""
+    return number.in_words if isinstance(number, Time) else words_for(number, None)
+
+
+def moment(at: Number, unit: Optional[Number]) -> str:
+    """A moment with at most three decimals, in time units, with the sign of the unit (`61.5 s`) where it has one."""
+    sign = next((sign for sign, size in SECONDS.items() if unit is not None and size == unit), "")
+    return f"{time_text(at)} {sign}".rstrip()
 
 
 def units_of_time(number: object) -> str:

@@ -5,15 +5,18 @@ from __future__ import annotations
 import copy
 import pickle
 from fractions import Fraction
-from typing import Tuple
+from pathlib import Path
+from typing import Optional, Tuple
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pursue_gen import api
 from pursue_gen.diagnostics import units
+from pursue_gen.explanation.explain import explain, render
 from pursue_gen.explanation.repairs import repairs
-from pursue_gen.language import parse
+from pursue_gen.language import load, parse
 from pursue_gen.language.checks import check, check_reading
 from pursue_gen.language.document import Document, edited, written
 from pursue_gen.language.formatter import format_text
@@ -22,7 +25,7 @@ from pursue_gen.language.parser import read
 from pursue_gen.language.rewriting import Rewriting
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.sentences import objective_words
-from pursue_gen.language.times import SECONDS, Time, duration_text, like, read_seconds
+from pursue_gen.language.times import SECONDS, Time, duration_text, in_unit, like, moment, read_seconds, unit_name
 from pursue_gen.language.writer import scenario_text
 from pursue_gen.solving.periods import with_period
 from pursue_gen.solving.rules import Rules
@@ -300,3 +303,44 @@ def test_a_faster_robot_is_told_by_its_speed() -> None:
     made = changes[0].make(changes[0].values[0])
     assert isinstance(made, Scenario) and made.agents[0].text.startswith('agent "bot" controllable speed 0.55')
     assert parse(scenario_text(made), "x.pur").movements(made.agents[0]) == made.movements(made.agents[0])
+
+
+# What gives times back -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("unit", "name", "five", "one", "at"),
+    [
+        (None, "time units", "5 units", "1 unit", "61.5"),
+        (1, "seconds", "5 seconds", "1 second", "61.5 s"),
+        (60, "minutes", "5 minutes", "1 minute", "61.5 min"),
+        (3600, "hours", "5 hours", "1 hour", "61.5 h"),
+        (10, "units of 10 s", "5 units of 10 s", "1 unit of 10 s", "61.5"),
+    ],
+)
+def test_numbers_of_time_units_are_told_with_what_they_count(
+    unit: Optional[int], name: str, five: str, one: str, at: str
+) -> None:
+    assert (unit_name(unit), in_unit("5", unit), in_unit("1", unit)) == (name, five, one)
+    assert moment(Fraction(123, 2), unit) == at
+
+
+def test_a_verdict_has_the_units_of_its_scenario() -> None:
+    home = load(str(Path(__file__).resolve().parents[2] / "scenarios" / "home" / "medicine.pur"))
+    solved = api.solve(home)
+    assert isinstance(solved, api.Solved)
+    assert "if call then give within 4 min: answered within 2 min 5.5 s of 4 min, at worst." in solved.in_words()
+    assert "time units" not in "\n".join([*solved.in_words(), solved.margin_text()])
+    reach = parse(DRIVES, "drives.pur")
+    timed = api.solve(reach, api.request(optimize="time"))
+    assert isinstance(timed, api.Solved)
+    assert "Time to the goal: at most 58.3 s; nothing below" in timed.in_words()[0]
+
+
+def test_what_would_change_a_verdict_has_the_units_of_its_scenario() -> None:
+    home = load(str(Path(__file__).resolve().parents[2] / "scenarios" / "home" / "wet_floor.pur"))
+    text = render(explain(home, Rules()), 200)
+    assert "(times in seconds):" in text and "(give is due by 181.1 s)" in text
+    assert "a deadline of 3 min 21 s instead of 3 min for give (3 min 20 s is not enough; line 22)" in text
+    assert "a faster medicine robot, speed 0.39 instead of 0.3 (0.36 is not enough; line 17)" in text
+    assert "load lasting 30 s to 39 s instead of 30 s to 1 min (40 s is not enough; line 12)" in text
