@@ -121,12 +121,15 @@ def _doubtful(scenario: Scenario) -> FrozenSet[str]:
 def _alone(scenario: Scenario) -> Iterator[Diagnostic]:
     """What is wrong with single statements."""
     parts = (*scenario.pois, *scenario.connections, *scenario.events, *scenario.states, *scenario.agents)
-    for part in (*scenario.units, *parts, *scenario.travels):
+    for part in (*scenario.units, *scenario.rests, *parts, *scenario.travels):
         yield from part.check()
 
 
 def _units(scenario: Scenario) -> Iterator[Diagnostic]:
-    """A unit of time that is said twice."""
+    """A unit of time, or a rest, that is said twice."""
+    for more in scenario.rests[1:]:
+        message = f"{scenario.rests[0].span.in_words} says already how long agents rest"
+        yield error("PML425", message, more.span, "delete one of the two: it is the same for all agents")
     for again in scenario.units[1:]:
         message = f"{scenario.units[0].span.in_words} says already what a unit of time is"
         yield error("PML422", message, again.span, "delete one of the two; times may have other units: 2 min, 8 h")

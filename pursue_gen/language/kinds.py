@@ -15,6 +15,7 @@ from pursue_gen.language.statements.group import ForEach, Group
 from pursue_gen.language.statements.headed import Assume, Objective, ReachObjective
 from pursue_gen.language.statements.optional import Optional
 from pursue_gen.language.statements.poi import Poi
+from pursue_gen.language.statements.rest import Rest
 from pursue_gen.language.statements.rule import Rule
 from pursue_gen.language.statements.state import State
 from pursue_gen.language.statements.travel import Travel
@@ -24,6 +25,7 @@ STATEMENTS: Mapping[str, Type[StatementKind]] = {
     kind.token(): kind
     for kind in (
         Unit,
+        Rest,
         Poi,
         Connection,
         Event,

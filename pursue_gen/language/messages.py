@@ -120,7 +120,7 @@ def _hint(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     text = str(token)
     if token.type == "STRAY":
         return _stray(chunk, index)
-    if token.type == "WORD" and "NAME" in expected:
+    if (token.type == "WORD" or token.type in MAY_BE_NAMES) and "NAME" in expected and token.line == chunk[0].line:
         meant, last = name_meant(chunk, index)
         name = shown(meant)
         if chunk[index - 1].type == "LABEL":

@@ -362,6 +362,8 @@ def _chunks(tokens: List[Token]) -> List[List[Token]]:
             begins = following == "NUMBER" or (opens_line and (ended or following in ("OBJECTIVE", "REACH_OBJECTIVE")))
         elif token.type == "UNIT":  # so may it, and it stands behind `per`
             begins = following in _LENGTHS or (opens_line and ended)
+        elif token.type == "REST":  # so may it; none is before a number
+            begins = following == "NUMBER" or (opens_line and ended)
         elif token.type == "GROUP":  # a name may be called so
             begins = goes_on or (opens_line and ended)
         elif token.type in ("OBJECTIVE", "REACH_OBJECTIVE") and _opened(found):

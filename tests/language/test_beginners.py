@@ -303,7 +303,7 @@ reach_objective: knock
         ("PML010", 4, "did you mean location?"),
         ("PML010", 5, "did you mean location?"),
         ("PML010", 6, "did you mean before?"),
-        ("PML010", 7, "did you mean mobile?"),
+        ("PML010", 7, "did you mean can_do?"),
         ("PML010", 8, "the form is: reach_objective: do e1 and e2 after 10 within 60"),
     ]),
     ("human in front", """\

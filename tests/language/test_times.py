@@ -27,6 +27,8 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.sentences import objective_words
 from pursue_gen.language.times import SECONDS, Time, duration_text, in_unit, like, moment, read_seconds, unit_name
 from pursue_gen.language.writer import scenario_text
+from pursue_gen.outcomes import Lost
+from pursue_gen.proof.checker import verify
 from pursue_gen.solving.periods import with_period
 from pursue_gen.solving.rules import Rules
 from pursue_gen.tga import scenario_objective, translate
@@ -344,3 +346,40 @@ def test_what_would_change_a_verdict_has_the_units_of_its_scenario() -> None:
     assert "a deadline of 3 min 21 s instead of 3 min for give (3 min 20 s is not enough; line 22)" in text
     assert "a faster medicine robot, speed 0.39 instead of 0.3 (0.36 is not enough; line 17)" in text
     assert "load lasting 30 s to 39 s instead of 30 s to 1 min (40 s is not enough; line 12)" in text
+
+
+# Rests ---------------------------------------------------------------------------------------------------------------
+
+HURRY = DRIVES.replace("unit second\n", "unit second\nrest 0.1 s\n").replace("within 2 min", "within 58 s")
+
+
+def test_a_short_rest_is_what_wins_a_game() -> None:
+    won = api.solve(parse(HURRY, "hurry.pur"))
+    assert won.worst_time is not None and won.worst_time < 57
+    assert verify(won.solution.network, won.solution.objective, won.solution.strategy, won.solution.reaction).ok
+    with pytest.raises(Lost):
+        api.solve(parse(HURRY.replace("rest 0.1 s\n", ""), "hurry.pur"))
+
+
+@given(stories(small=True))
+@settings(max_examples=15)
+def test_a_rest_of_one_time_unit_is_what_holds_without_it(story: Tuple[str, Scenario]) -> None:
+    text, plain = story
+    assert repr(game(parse(f"rest 1\n{text}", "story.pur", plain.name))) == repr(game(plain))
+
+
+@pytest.mark.parametrize(
+    ("new", "said"),
+    [("rest 0", "endlessly many things at once"), ("rest 0.1\nrest 0.1", "line 2 says already how long agents rest")],
+)
+def test_a_rest_that_cannot_be_meant(new: str, said: str) -> None:
+    found = check_reading(read(HURRY.replace("rest 0.1 s", new), "x.pur"))
+    assert [(each.code, said in each.message) for each in found] == [("PML425", True)]
+
+
+def test_who_leaves_in_time_has_time_to_rest() -> None:
+    text = TEXT.replace("unit second\n", "unit second\nrest 10 s\n").replace("stays 90 to 20 min", "stays 5 to {}")
+    assert not check(parse(text.format("20 s"), "x.pur"))
+    found = check_reading(read(text.format("19 s"), "x.pur"))
+    assert [each.code for each in found] == ["PML251"]
+    assert "whoever arrives rests for 10 s" in found[0].message and "write to 20 s or more" in found[0].hint

@@ -13,8 +13,8 @@ if exists('*PursueIndent')
 endif
 
 let s:statement = split('
-      \ agent assume battery connect event for group objective optional poi reach_objective rule state stateDependency
-      \ travel unit')
+      \ agent assume battery connect event for group objective optional poi reach_objective rest rule state
+      \ stateDependency travel unit')
 let s:goes_on = split('
       \ after agents all always and any at at_most avoid before between by can_do capacity collaborative controllable
       \ distance do does doing duration each every except false false_if from holds hour human if in inflation

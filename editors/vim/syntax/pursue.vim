@@ -6,8 +6,8 @@ endif
 syntax case match
 syntax iskeyword @,48-57,_
 
-syntax keyword pursueStatement agent assume battery connect event for group objective optional poi reach_objective rule
-syntax keyword pursueStatement state stateDependency travel unit
+syntax keyword pursueStatement agent assume battery connect event for group objective optional poi reach_objective rest
+syntax keyword pursueStatement rule state stateDependency travel unit
 syntax keyword pursueConstant false is_false is_true true
 syntax keyword pursueKeyword after agents all always and any at at_most avoid before between by can_do capacity
 syntax keyword pursueKeyword collaborative controllable distance do does doing duration each every except false_if from

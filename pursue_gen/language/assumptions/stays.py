@@ -13,7 +13,7 @@ from pursue_gen.language.numbers import Number, whole_below
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
-from pursue_gen.language.times import window_text, written_time
+from pursue_gen.language.times import like, time_units, window_text, written_time
 from pursue_gen.language.word import Form, Numbers, Word
 
 
@@ -49,10 +49,11 @@ class Stays(Departure):
         return self.least, self.most
 
     def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
-        if self.most < SHORTEST_STAY:
+        if self.most < setting.shortest_stay:
             message = f"to {written_time(self.most)} is too short"
-            message += ": whoever arrives rests for 1 time unit before it can set off"
-            return error("PML251", message, self.span, f"write to {SHORTEST_STAY} or more")
+            message += f": whoever arrives rests for {time_units(like(setting.rest, self.most))} before it can set off"
+            enough = written_time(like(setting.shortest_stay, self.most))
+            return error("PML251", message, self.span, f"write to {enough} or more")
         if self.most < self.least:
             message = f"stays {window_text(self.least, self.most)}: the second number is smaller than the first one"
             return error("PML200", message, self.span, f"write stays {window_text(self.most, self.least)}")
@@ -67,8 +68,8 @@ class Stays(Departure):
     def since(self) -> str:
         return f"{self.agent.shown}'s arrival"
 
-    def stronger(self, longest: Number) -> Sequence[int]:
-        return whole_below(self.most, max(SHORTEST_STAY, ceil(self.least)))
+    def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
+        return whole_below(self.most, max(1, ceil(shortest_stay), ceil(self.least)))
 
 
 def _visited(agent: Agent, setting: Setting) -> Sequence[str]:

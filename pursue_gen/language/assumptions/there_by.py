@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Dict, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units, warning
-from pursue_gen.language.assumptions.base import SHORTEST_STAY, AboutOne, Departure, Setting
+from pursue_gen.language.assumptions.base import AboutOne, Departure, Setting
 from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
@@ -41,17 +41,17 @@ class ThereBy(AboutOne):
     def since(self) -> str:
         return "the start"
 
-    def latest(self, ways: Mapping[Tuple[str, str], Number]) -> Dict[str, Number]:
+    def latest(self, ways: Mapping[Tuple[str, str], Number], stay: Number) -> Dict[str, Number]:
         """When it sets off at the latest from each other place from which these ways, with their longest times, lead
-        there: the nearest places first, with two time units at each place in between."""
+        there: the nearest places first, with `stay` time units at each place in between."""
         found: Dict[str, Number] = {}
-        pending: Dict[str, Number] = {self.place.name: exact(self.time + SHORTEST_STAY)}
+        pending: Dict[str, Number] = {self.place.name: exact(self.time + stay)}
         while pending:
             here = max(pending, key=lambda place: pending[place])
             found[here] = pending.pop(here)
             for (a, b), longest in ways.items():
                 if b == here and a not in found:
-                    moment = exact(found[here] - SHORTEST_STAY - longest)
+                    moment = exact(found[here] - stay - longest)
                     pending[a] = max(moment, pending.get(a, moment))
         del found[self.place.name]
         return found
@@ -63,12 +63,12 @@ class ThereBy(AboutOne):
             return error("PML251", message, self.span, "write the time, or take mobile away from it")
         if place == start and agent.mobile is None:
             return warning("PML254", f"{agent.name} is not mobile: it stays in {start} anyway", self.span, "delete it")
-        latest = self.latest(setting.open_ways(agent)).get(start)
+        latest = self.latest(setting.open_ways(agent), setting.shortest_stay).get(start)
         if place != start and latest is None:
             message = f"no way that is always open leads {agent.name} from {start} to {place}"
             return error("PML252", message, self.span, f"connect {start} and {place}, without only_if")
-        if latest is not None and latest < SHORTEST_STAY:
-            sooner = like(exact(self.time + SHORTEST_STAY - latest), self.time)
+        if latest is not None and latest < setting.shortest_stay:
+            sooner = like(exact(self.time + setting.shortest_stay - latest), self.time)
             message = f"{agent.name} may need {units(sooner)} from {start} to {place}"
             return error("PML252", message, self.span, f"write by {written_time(sooner)} or later")
         shared = {event.name for event in setting.events if event.is_shared}

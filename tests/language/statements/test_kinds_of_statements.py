@@ -22,6 +22,7 @@ from pursue_gen.language.word import HOLE
 
 STORY = """\
 unit second
+rest 0.5
 poi "a" label "the hall" //[1, 2, 0, 0, 0, 0, 1] bot [3, 4, 0, 0, 0, 0, 1]
 poi "b"
 connect a and b distance 3 one_way only_if open is_true
