@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -34,6 +35,7 @@ def test_a_unit_of_time_lasts_as_long_as_the_scenario_says(ros: Ros, tmp_path: P
     folder = write_workspace(read, won.network, won.objective, won.strategy, options, tmp_path / "ws")
     with launched(ros, lay_over(ros, folder), tmp_path, ("bot",), use_sim_time=True, speed=4) as run:
         assert run.until_over() == "won", run.output()
+        assert re.search(r"The goal is reached, after \d+\.\d units of 2 s\.", run.output())
         states = run.states()
     assert {float(state["unit"]) for state in states} == {2.0}
     came = {state["places"].get("bot"): float(state["stamp"]) for state in reversed(states)}
