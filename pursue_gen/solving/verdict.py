@@ -95,7 +95,8 @@ def periods_json(scenario: Scenario) -> Dict[str, Any]:
 
     It is `every` time units; nothing below `least` can be promised.
     """
-    found = [{"every": each.every, "least": each.least} for each in scenario.patrols if each.least is not None]
+    patrols = [each for each in scenario.patrols if each.least is not None]
+    found = [{"every": int(each.known_limit), "least": each.least} for each in patrols]
     return {"period": found[0]} if found else {}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import json
 import pickle
 from fractions import Fraction
 from pathlib import Path
@@ -214,6 +215,16 @@ def test_a_period_that_is_found_is_written_with_its_unit() -> None:
     assert "patrol shelf every 3 min 20 s by bot" in found.text
     assert objective_words(found)[1] == "bot is at shelf at least every 3 min 20 s."
     assert parse(found.text, "story.pur").patrols[0].every == 200
+
+
+def test_a_period_that_is_found_is_told_with_its_unit() -> None:
+    rounds = 'agent "bot" controllable speed 0.5 location desk'
+    text = DRIVES.split("event")[0] + f"{rounds}\n\nobjective: patrol desk, shelf by bot\n"
+    solved = api.solve(parse(text, "rounds.pur"))
+    every = solved.scenario.patrols[0].known_limit
+    assert f"patrol desk, shelf every {duration_text(every)} by bot" in solved.scenario.text
+    assert json.loads(json.dumps(solved.as_json()))["period"]["every"] == every
+    assert any(f"is {duration_text(every)}." in line for line in solved.in_words()), solved.in_words()
 
 
 def test_the_workspace_begins_with_the_unit_of_the_scenario() -> None:

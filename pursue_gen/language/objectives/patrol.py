@@ -14,7 +14,7 @@ from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective,
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.symbols import Role
 from pursue_gen.language.template import Filling, Template
-from pursue_gen.language.times import written_time
+from pursue_gen.language.times import like, written_time
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Numbers, Word
 
@@ -111,7 +111,7 @@ class Patrol(Safety):
             return every
         if self.least >= self.every:
             return f"{every}, the least that can be promised"
-        return f"{every}; nothing below {self.least} can be promised"
+        return f"{every}; nothing below {written_time(like(self.least, self.every))} can be promised"
 
     def period_found(self, won: bool) -> Iterator[str]:
         """A sentence where its period was found by solving, as far as the verdict says something about it."""
@@ -121,7 +121,8 @@ class Patrol(Safety):
         if won and least == every:
             yield f"The least period that can be promised for {who} is {units(every)}."
         elif won:
-            yield f"The least period for {who} is at most {units(every)}; nothing below {least} can be promised."
+            below = written_time(like(least, every))
+            yield f"The least period for {who} is at most {units(every)}; nothing below {below} can be promised."
         elif least > every:
             yield f"No period up to {units(every)} can be promised for {who}."
 
