@@ -104,8 +104,8 @@ def counted(number: object, noun: str) -> str:
 
 
 def units(amount: object) -> str:
-    """`1 unit`, `2 units`."""
-    return counted(amount, "unit")
+    """`1 unit`, `2 units`; of a time in a scenario that says what a unit is: `2 min`."""
+    return getattr(amount, "in_words", "") or counted(amount, "unit")
 
 
 def lines_in_words(spans: Iterable[Span]) -> str:

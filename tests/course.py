@@ -230,7 +230,7 @@ class Course:
 
     def set_off(self, agent: str, a: str, b: str) -> None:
         stay = self.stays[agent]
-        assert self.now - stay.rested > 1 - 1e-9, "it has to rest"
+        assert self.now - stay.rested > float(self.scenario.rest) - 1e-9, "it has to rest"
         for each in self.scenario.assumptions:
             if isinstance(each, Leaves) and (each.agent.name, each.place.name) == (agent, a):
                 assert self.now - stay.came <= each.time + 1e-9, "it is assumed to leave sooner"
@@ -275,7 +275,7 @@ class Course:
     def begin(self, agent: str, name: str) -> None:
         """It does the event, or begins it."""
         event, stay = self.events[name], self.stays[agent]
-        assert stay.to or self.now - stay.rested > 1 - 1e-9, "it has to rest"
+        assert stay.to or self.now - stay.rested > float(self.scenario.rest) - 1e-9, "it has to rest"
         for each in self.scenario.assumptions:
             if isinstance(each, Waits) and (each.agent.name, each.event.name) == (agent, name):
                 ends = [end for _, end in self.done.get((agent, name), ())]

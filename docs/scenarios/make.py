@@ -31,6 +31,7 @@ from pursue_gen.files import write_texts
 from pursue_gen.language import load, parse
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.language.sentences import periods_found, promise_words
+from pursue_gen.language.times import unit_name
 from pursue_gen.outcomes import Lost
 from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.least_time import Guarantee
@@ -154,7 +155,8 @@ def _verdict_part(found: Facts, number: int, pictures: Dict[str, str]) -> str:
         promise = "**It can be done**, whatever the others do, and for as long as one likes."
         promise += "".join(f" {text}" for text in periods_found(found.settled))
     else:
-        promise = f"**It can be done**, whatever the others do, within **{_time(found)}** time units at worst."
+        counts = unit_name(found.scenario.unit)
+        promise = f"**It can be done**, whatever the others do, within **{_time(found)}** {counts} at worst."
     see = f"    pursue-gen sim {file}\n    ./run mission {file} web:=true"
     says = "".join(f"\n- {sentence}" for sentence in promise_words(found.settled))
     return f"{promise} {has}\n{says and says + chr(10)}\n{command}\n{see}"

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Optional, Tuple
 from pursue_gen.api.requests import File, default_request
 from pursue_gen.api.scenarios import Game, game, settle
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.outcomes import LimitHit, Lost
 
@@ -54,6 +55,11 @@ class SolvedGame:
             return None if known is None else known.worst
         return guaranteed(self.solution, limits=self.request.options.limits).worst
 
+    @property
+    def _unit(self) -> Optional[Number]:
+        """The seconds of a time unit; None: nothing says that."""
+        return None
+
     def margins(self, thorough: bool = False) -> Margins:
         """How late commands may come, as far as it is quickly found; `thorough`: all of it, and for the game, too."""
         from pursue_gen.solving.verdict import margins
@@ -64,7 +70,7 @@ class SolvedGame:
         """The margins, by default those that are quickly found, in sentences."""
         from pursue_gen.solving.verdict import margin_text
 
-        return margin_text(self.solution, *(margins or self.margins()))
+        return margin_text(self.solution, *(margins or self.margins()), unit=self._unit)
 
     def in_words(self) -> List[str]:
         """The verdict, and what else there is to know, in lines for people."""
@@ -72,7 +78,7 @@ class SolvedGame:
         from pursue_gen.solving.verdict import verdict_text
 
         if self.request.plan is None:
-            return [verdict_text(self.solution)]
+            return [verdict_text(self.solution, self._unit)]
         return [] if self.solution.warnings else [f"{self.request.plan} wins: {rules_text(self.solution.rules)}"]
 
     def as_json(self, margins: Optional[Margins] = None) -> Dict[str, Any]:
@@ -87,6 +93,10 @@ class Solved(SolvedGame):
     """A scenario that is won: `scenario` has what is promised, `given_up` in it is what is optional and is not."""
 
     scenario: Scenario
+
+    @property
+    def _unit(self) -> Optional[Number]:
+        return self.scenario.unit
 
     @cached_property
     def answers(self) -> List[Answer]:

@@ -48,7 +48,9 @@ def survey(
     speed: List[str] = typer.Option(
         [], metavar="[ROBOT=]M/S", help="The speed of all robots, or of this one: gives it travel times; repeatable."
     ),
-    time_unit: float = typer.Option(1.0, metavar="SECONDS", help="A time unit of the mission (~time_unit)."),
+    time_unit: Optional[float] = typer.Option(
+        None, metavar="SECONDS", help="A time unit of the mission (~time_unit): the scenario's, or 1."
+    ),
     turning: float = typer.Option(0.5, metavar="RAD/S", help="How fast robots turn on the spot."),
     acceleration: float = typer.Option(0.5, metavar="M/S^2", help="How fast robots start and stop."),
     start: float = typer.Option(2.0, metavar="SECONDS", help="How long planning may take in a movement."),
@@ -84,7 +86,7 @@ def survey(
     from pursue_gen.survey.times import Drive
     from pursue_gen.workspace.robot_size import read_sizes
 
-    drive = Drive({}, time_unit, turning, acceleration, start, reserve / 100, tolerance)
+    drive = Drive({}, time_unit or 0.0, turning, acceleration, start, reserve / 100, tolerance)
     options = Options(clearance=clearance, unit=unit, ways=ways, keep=tuple(map(_pair, keep)), drive=drive)
     given = _Given(floor, scenario, read_sizes(robot), radius, speed, "" if dry_run else str(target))
     read, copy, found, size = _surveyed(given, options)
@@ -134,7 +136,10 @@ def _surveyed(given: _Given, options: Options) -> Tuple[Scenario, bytes, Survey,
     scenario = read_placed(text, file)
     scenario = read_placed(with_sizes(scenario, sizes_of(scenario, given.sizes)), file)
     robots = [agent.name for agent in scenario.agents if agent.is_robot and agent.mobile is not None]
-    drive = replace(options.drive, speeds=_speeds(given.speed, robots))
+    if options.unit != 1 and any(agent.speed is not None for agent in scenario.agents):
+        raise usage_error(f"--unit is {options.unit:g}, and robots have a speed", "distances are metres: leave it out")
+    unit = _time_unit(options.drive.time_unit, scenario)
+    drive = replace(options.drive, speeds=_speeds(given.speed, robots), time_unit=unit)
     sizes = sizes_of(scenario).with_radius(given.radius)
     ground = read_ground(given.floor, whole=True)
     found = surveyed(scenario, ground, given.floor.name, replace(options, robots=sizes, drive=drive), given.copy)
@@ -176,6 +181,15 @@ def _pair(text: str) -> Tuple[str, str]:
     if len(places) != 2:
         raise usage_error(f"--keep {text} is no way", "expected two places, such as desk,shelf")
     return places[0], places[1]
+
+
+def _time_unit(asked: float, scenario: Scenario) -> float:
+    """The seconds of a time unit; `asked`: 0 where nothing was. Raises PursueError where the scenario has another."""
+    said = float(scenario.unit or 0)
+    if said and asked and asked != said:
+        hint = "leave the option out: what is written counts in the scenario's unit"
+        raise usage_error(f"--time-unit is {asked:g}, and the scenario says unit {scenario.units[0].written}", hint)
+    return asked or said or 1.0
 
 
 def _speeds(texts: List[str], robots: List[str]) -> Dict[str, float]:

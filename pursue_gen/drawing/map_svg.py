@@ -8,6 +8,7 @@ from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.drawing.look import QUIET, AgentLook, agent_looks, mark, svg, tag, text
 from pursue_gen.language.conditions import condition_words
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Agent, Connection, Event, Pose, Scenario
 from pursue_gen.language.sentences import speed_words, window_words
 
@@ -69,7 +70,7 @@ def draw(
 def margin_of(scenario: Scenario) -> float:
     """How much room the labels beside places at the rim need, in pixels."""
     bound = (event for event in scenario.events if event.location is not None)
-    labels = [f"⚙ {event.shown}{_lasts(event)}" for event in bound if event.label]
+    labels = [f"⚙ {event.shown}{_lasts(event, scenario.unit)}" for event in bound if event.label]
     labels += [poi.label for poi in scenario.pois if poi.label]
     labels += [f"{agent.label}    " for agent in scenario.agents if agent.label]  # its mark is before it
     return min(max([_MARGIN, *(_LETTER * len(label) / 2 + _RIM for label in labels)]), _WIDTH / 3)
@@ -169,7 +170,7 @@ def _happening(scenario: Scenario, places: Mapping[str, Point]) -> List[str]:
         name = event.location.name
         x, y = places[name]
         first = 31 if len(scenario.shown(name)) <= 3 else 47
-        words = f"⚙ {event.shown}{_lasts(event)}"
+        words = f"⚙ {event.shown}{_lasts(event, scenario.unit)}"
         parts.append(text(x, y + first + 15 * rows.get(name, 0), words, "pg-small pg-halo"))
         rows[name] = rows.get(name, 0) + 1
     return parts
@@ -222,14 +223,14 @@ def _description(agent: Agent, scenario: Scenario) -> str:
 
 def _anywhere(scenario: Scenario) -> str:
     """Events that are bound to no place."""
-    free = [event.shown + _lasts(event) for event in scenario.events if event.location is None]
+    free = [event.shown + _lasts(event, scenario.unit) for event in scenario.events if event.location is None]
     return f"Anywhere: {', '.join(free)}" if free else ""
 
 
-def _lasts(event: Event) -> str:
+def _lasts(event: Event, unit: Optional[Number]) -> str:
     """How long an event takes, in brackets; nothing where it takes no time. Then how often it can happen."""
     times = "" if event.at_most is None else f" at most {event.at_most}"
-    return ("" if event.window is None else f" ({window_words(*event.window)})") + times
+    return ("" if event.window is None else f" ({window_words(event.window, unit)})") + times
 
 
 def _conditions(scenario: Scenario) -> Iterator[str]:

@@ -10,16 +10,20 @@ from pursue_gen.language.assumption_checks import setting_of
 from pursue_gen.language.assumptions import KINDS, Assumption
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.times import written_time
 
 
 def assumption_changes(scenario: Scenario, longest: Number) -> Iterator[Repair]:
     """Assumptions with another number, and those that may be missing; times are up to `longest` time units."""
+    setting = setting_of(scenario)
     for known in scenario.assumptions:
-        if known.stronger(longest):
-            label, before, instead = f"more than {known.text}", known.known_number, f" instead of {known.known_number}"
-            yield _change(scenario, known, known.stronger(longest), label, before, instead)
+        stronger = known.stronger(longest, setting.shortest_stay)
+        if stronger:
+            before = known.known_number
+            label, instead = f"more than {known.text}", f" instead of {written_time(before)}"
+            yield _change(scenario, known, stronger, label, before, instead)
     for kind in KINDS.values():
-        for one, values in kind.missing(setting_of(scenario), longest):
+        for one, values in kind.missing(setting, longest):
             with_it = replace(scenario, assumptions=(*scenario.assumptions, one))
             yield _change(with_it, one, values, one.subject)
 

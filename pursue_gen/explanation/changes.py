@@ -9,12 +9,13 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Dict, Optional, Tuple
+from typing import Any, Dict, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span
 from pursue_gen.explanation.number_changes import Repair
 from pursue_gen.explanation.repairs import repairs
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.times import Time, like, written_time
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of
@@ -43,7 +44,8 @@ class Change:
     `what` is ends, reaction, slack, game, deadline, after, agent (its pace), duration, latest or earliest (an end of an
     event's window), times, room, travel, distance, direction, whom, rule, dependency, assumption or control; `name`
     whose; `before` and `after` its values as text; `sentence` describes it; `next_lost` is a smaller change, or what is
-    now, that does not win: the next smaller one, where the change is known to be the `least`.
+    now, that does not win: the next smaller one, where the change is known to be the `least`; `not_enough`: the same
+    for people, "" where it is what is now.
     """
 
     what: str
@@ -54,6 +56,7 @@ class Change:
     span: Optional[Span] = None
     next_lost: str = ""
     least: bool = True
+    not_enough: str = ""
 
 
 @dataclass(frozen=True)
@@ -157,7 +160,10 @@ def _least(repair: Repair, scenario: Scenario, rules: Rules, budget: Budget) -> 
 def _change(repair: Repair, win: _Win) -> Change:
     value, next_lost = repair.values[win.high], repair.values[win.low] if win.low >= 0 else repair.before
     texts, least = (str(repair.before), str(value), repair.say(value)), win.high - win.low == 1
-    return Change(repair.what, repair.name, *texts, repair.span, str(next_lost), least)
+    other: Any = next_lost
+    worse = like(other, repair.before) if isinstance(repair.before, Time) else other
+    lost = "" if str(next_lost) == str(repair.before) else written_time(worse)
+    return Change(repair.what, repair.name, *texts, repair.span, str(next_lost), least, lost)
 
 
 def _price(change: Change) -> Tuple[int, Fraction]:

@@ -1,7 +1,7 @@
 """Losses that need no time: an agent of the environment acts again and again at one moment, and nobody else gets to.
 
 On a way an agent may do what takes no time as often as it likes (an edge that stays where it is and resets no clock);
-at a place it has to wait for more than a time unit in between. Where the objective can be met once that holds on ways
+at a place it has to rest in between. Where the objective can be met once that holds on ways
 too, it is only such plays that prevent it, in which no time passes.
 """
 
@@ -11,12 +11,10 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Dict, Sequence, Tuple
 
+from pursue_gen.language.numbers import Number
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.cone import cone_of_influence
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Objective
-
-PAUSE = 1
-"""Time units that an agent waits at a place before it acts again (at least, and a little more). Not measured."""
 
 _PAUSE_OF = "@pause_"
 
@@ -29,18 +27,22 @@ class Endless:
     events: Tuple[str, ...]
 
 
-def endless(network: Network, objective: Objective, reaction: Fraction, budget: Budget) -> Tuple[Endless, ...]:
+def endless(
+    network: Network, objective: Objective, reaction: Fraction, budget: Budget, rest: Number = 1
+) -> Tuple[Endless, ...]:
     """Whose actions without end alone prevent the objective of a lost game; empty if it is lost without them too.
+
+    `rest`: how long agents rest at places, in time units.
 
     Raises LimitHit where that is not decided within the budget.
     """
     agents = _repeating(cone_of_influence(network, objective))
-    if not objective.reaches or not _won_with_pauses(network, objective, reaction, tuple(agents), budget):
+    if not objective.reaches or not _won_with_pauses(network, objective, reaction, tuple(agents), budget, rest):
         return ()
     needed = tuple(agents)
     for name in agents:
         fewer = tuple(other for other in needed if other != name)
-        if _won_with_pauses(network, objective, reaction, fewer, budget):
+        if _won_with_pauses(network, objective, reaction, fewer, budget, rest):
             needed = fewer
     return tuple(Endless(name, agents[name]) for name in needed)
 
@@ -63,19 +65,19 @@ def _repeating(network: Network) -> Dict[str, Tuple[str, ...]]:
 
 
 def _won_with_pauses(
-    network: Network, objective: Objective, reaction: Fraction, agents: Sequence[str], budget: Budget
+    network: Network, objective: Objective, reaction: Fraction, agents: Sequence[str], budget: Budget, rest: Number
 ) -> bool:
     """True if the game is won where each of these agents waits before it acts again."""
     if not agents:
         return False  # it is lost as it is
-    automata = tuple(_pausing(a) if a.name in agents else a for a in network.automata)
+    automata = tuple(_pausing(a, rest) if a.name in agents else a for a in network.automata)
     clocks = (*network.clocks, *(_PAUSE_OF + name for name in agents))
     return budget.verdict(replace(network, clocks=clocks, automata=automata), objective, reaction).won
 
 
-def _pausing(automaton: Automaton) -> Automaton:
+def _pausing(automaton: Automaton, rest: Number) -> Automaton:
     clock = _PAUSE_OF + automaton.name
-    bound = ClockBound(clock, ">", PAUSE)
+    bound = ClockBound(clock, ">", rest)
 
     def pausing(edge: Edge) -> Edge:
         guard = replace(edge.guard, clocks=(*edge.guard.clocks, bound))

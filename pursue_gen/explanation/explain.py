@@ -15,13 +15,14 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.changes import Change, findings
-from pursue_gen.explanation.endless import PAUSE, Endless, endless
+from pursue_gen.explanation.endless import Endless, endless
 from pursue_gen.explanation.part import part_of_scenario, rules_for, statements_of, with_one_robot
 from pursue_gen.explanation.play import Play, counter_plays
 from pursue_gen.explanation.play_lines import Attempt, TimedLine, attempt, describe
 from pursue_gen.explanation.together import Conflict, conflict
 from pursue_gen.language.numbers import time_text
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.times import unit_name, words_for
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.lost_promises import lost_to_one_walk, quoted
 from pursue_gen.solving.one_robot import lost_game
@@ -63,6 +64,7 @@ class Explanation:
     (empty: it is prevented in plays in which time passes, or that is not decided). `conflict`: of several objectives
     those that cannot be promised together. `preventing`: whom nobody controls and who acts in the play. `about`: all
     this is about these objectives alone, with nothing else promised; `others`: about others that are lost alone.
+    `times_in`: what the times of the play count; `rest`: how long agents rest at places.
     """
 
     changes: Tuple[Change, ...]
@@ -75,6 +77,8 @@ class Explanation:
     preventing: Tuple[str, ...] = ()
     about: Tuple[str, ...] = ()
     others: Tuple[Explanation, ...] = ()
+    times_in: str = "units"
+    rest: str = "1 time unit"
 
 
 def explain(
@@ -121,7 +125,7 @@ def _explained(
     repeating: Tuple[Endless, ...] = ()
     plays: List[Play] = []
     with suppress(LimitHit):
-        repeating = endless(network, objective, rules.reaction, budget.split(_FOR_ENDLESS))
+        repeating = endless(network, objective, rules.reaction, budget.split(_FOR_ENDLESS), scenario.rest)
     smaller: Optional[Network] = None
     if objective.goal:  # who wins by one walk shows it best
         smaller = lost_to_one_walk(network, objective, rules.reaction, budget.part())
@@ -137,7 +141,8 @@ def _explained(
         plays, main = [], ()
     attempts = tuple(attempt(scenario, play) for play in plays[1:])
     how = found.changes, found.lost, found.undecided, main, attempts, repeating, together
-    return Explanation(*how, preventing)
+    times_in = "units" if scenario.unit is None else unit_name(scenario.unit)
+    return Explanation(*how, preventing, times_in=times_in, rest=words_for(scenario.rest, scenario.unit))
 
 
 def _is_small(scenario: Scenario, rules: Rules, budget: Budget) -> bool:
@@ -162,7 +167,7 @@ def render(explanation: Explanation, width: int = 110) -> str:
     texts += [explanation.conflict.in_words()] if explanation.conflict else []
     lines = [line for text in texts for line in textwrap.wrap(text, width)]
     if explanation.play:
-        lines += [f"{play_title(explanation)} (times in units):", *_told(explanation.play)]
+        lines += [f"{play_title(explanation)} (times in {explanation.times_in}):", *_told(explanation.play)]
     if explanation.changes:
         lines.append(f"Each of these alone would change that, the smallest change first ({how_found(explanation)}):")
         lines += [f"  - {_change(change)}" for change in explanation.changes]
@@ -212,7 +217,7 @@ def endless_texts(explanation: Explanation) -> List[str]:
     """A sentence for each agent without whose actions without end the objective could be met."""
     return [
         f"Only actions without end prevent it: on its ways {one.agent} may do {' and '.join(one.events)} again and "
-        f"again, without time passing. If it had to wait for more than {PAUSE} time unit in between, as at places, it "
+        f"again, without time passing. If it had to wait for more than {explanation.rest} in between, as at places, it "
         "could be met; give such an event a duration or a location."
         for one in explanation.endless
     ]
@@ -249,7 +254,7 @@ def as_json(explanation: Explanation) -> Dict[str, Any]:
 
 def _change(change: Change) -> str:
     place = change.span.in_words if change.span else ""
-    limit = f"{change.next_lost} is not enough" if change.next_lost != change.before else ""
+    limit = f"{change.not_enough} is not enough" if change.not_enough else ""
     if not change.least:
         limit += "; what lies between was not decided" if limit else "less was not decided"
     notes = "; ".join(note for note in (limit, place) if note)
@@ -266,7 +271,7 @@ def _listed(title: str, entries: Tuple[str, ...], width: int) -> List[str]:
 
 
 def _change_json(change: Change) -> Dict[str, Any]:
-    values = {key: value for key, value in asdict(change).items() if key != "span"}
+    values = {key: value for key, value in asdict(change).items() if key not in ("span", "not_enough")}
     values.update({key: _value(values[key]) for key in ("before", "after", "next_lost")})
     if change.span is not None:
         values.update(file=change.span.file, line=change.span.line, column=change.span.column)

@@ -14,8 +14,9 @@ from typing import Dict, Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.document import Document, statement_text, written
-from pursue_gen.language.numbers import Number, decimal_text
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Scenario, StatedObjective
+from pursue_gen.language.times import like, written_time
 from pursue_gen.outcomes import LimitHit, Lost, NotProven
 from pursue_gen.solving.answers import answers
 from pursue_gen.solving.options import SolveOptions
@@ -41,7 +42,7 @@ class Longer:
 
     def in_words(self) -> str:
         """The statement in a line, with what was asked for."""
-        return f"  line {self.line}, {self.text} ({decimal_text(self.asked)} is asked for)"
+        return f"  line {self.line}, {self.text} ({written_time(self.asked)} is asked for)"
 
 
 def longer(scenario: Scenario, rules: Rules, limits: Limits, progress: Optional[Listener] = None) -> Tuple[Longer, ...]:
@@ -111,4 +112,5 @@ def _written_with(objective: StatedObjective, limit: int, text: str) -> str:
     """The statement of an objective as it stands in the text, for each of a group, with another limit."""
     document = Document(statement_text(text, objective.span.written))
     pair = document.statements[0].pair(objective.limit_word.upper())
-    return document.changed(written(pair[1], str(limit))).text if pair else document.text
+    number = written_time(like(limit, objective.limit))
+    return document.changed(written(pair[1], number)).text if pair else document.text

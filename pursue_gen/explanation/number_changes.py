@@ -8,10 +8,11 @@ from typing import Any, Callable, Iterator, Optional, Sequence, Union
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.clauses import Domains
-from pursue_gen.language.numbers import Number, whole_above, whole_below
+from pursue_gen.language.numbers import Number, Window, whole_above, whole_below
 from pursue_gen.language.objectives.holds import Holds
 from pursue_gen.language.scenario import Battery, Event, Scenario, Travel
 from pursue_gen.language.statements.event import MOST_TIMES
+from pursue_gen.language.times import like, window_text
 from pursue_gen.solving.rules import Rules
 
 SLOWER = 32
@@ -38,27 +39,34 @@ class Repair:
     """How well a strategy that wins the changed game serves in the game as it is; 0: not at all."""
 
 
+def _instead(new: Window, old: Window, first: object) -> str:
+    """`5 s to 8 s instead of 5 s to 9 s`, written as the first time is."""
+    now, before = (window_text(*(like(end, first) for end in ends)) for ends in (new, old))
+    return f"{now} instead of {before}"
+
+
 def event_changes(scenario: Scenario, event: Event) -> Iterator[Repair]:
     """An event that ends earlier at the latest; one of the environment that ends later at the earliest."""
     if event.window is None:
         return
-    name, shown, span, (low, high) = event.name, event.shown, event.span, event.window
+    name, shown, span, (low, high), first = event.name, event.shown, event.span, event.window, event.duration
 
     def make(earliest: Number, latest: Number) -> Scenario:
-        return scenario.with_instead(event, replace(event, duration=earliest, latest=latest))
+        changed = replace(event, duration=like(earliest, first), latest=like(latest, first))
+        return scenario.with_instead(event, changed)
 
     def say(earliest: Number, latest: Number) -> str:
-        return f"{shown} lasting {earliest} to {latest} instead of {low} to {high}"
+        return f"{shown} lasting {_instead((earliest, latest), (low, high), first)}"
 
     doers = scenario.doers(name)
     if high - low > 1:
         yield Repair(
-            "latest", name, f"a {shown} that ends earlier", high, whole_below(high, floor(low) + 1),
+            "latest", name, f"a {shown} that ends earlier", like(high, first), whole_below(high, floor(low) + 1),
             lambda k: make(low, k), lambda k: say(low, k), span,
         )  # fmt: skip
     if high - low > 1 and doers and not any(agent.controllable for agent in doers):
         yield Repair(
-            "earliest", name, f"a {shown} that ends later", low, whole_above(low, ceil(high) - 1),
+            "earliest", name, f"a {shown} that ends later", like(low, first), whole_above(low, ceil(high) - 1),
             lambda k: make(k, high), lambda k: say(k, high), span,
         )  # fmt: skip
 
@@ -66,24 +74,26 @@ def event_changes(scenario: Scenario, event: Event) -> Iterator[Repair]:
 def travel_changes(scenario: Scenario, travel: Travel) -> Iterator[Repair]:
     """A way that an agent takes in less time; one that is not controllable: in more."""
     low, high = travel.window
-    name, who, span = travel.agent.name, travel.agent.shown, travel.span
+    name, who, span, first = travel.agent.name, travel.agent.shown, travel.span, travel.earliest
     a, b = travel.a.shown, travel.b.shown
 
     def make(earliest: Number, latest: Number) -> Scenario:
-        return scenario.with_instead(travel, replace(travel, earliest=earliest, latest=latest))
+        changed = replace(travel, earliest=like(earliest, first), latest=like(latest, first))
+        return scenario.with_instead(travel, changed)
 
     def say(earliest: Number, latest: Number) -> str:
-        return f"{who} going from {a} to {b} in {earliest} to {latest} instead of {low} to {high}"
+        return f"{who} going from {a} to {b} in {_instead((earliest, latest), (low, high), first)}"
 
     if any(agent.controllable for agent in scenario.agents if agent.name == name):
         if high > 1:
             yield Repair(
-                "travel", name, f"{who} going faster from {a} to {b}", high, whole_below(high, 1),
+                "travel", name, f"{who} going faster from {a} to {b}", like(high, first), whole_below(high, 1),
                 lambda k: make(min(low, k - 1), k), lambda k: say(min(low, k - 1), k), span,
             )  # fmt: skip
     else:
         yield Repair(
-            "travel", name, f"{who} going slower from {a} to {b}", low, whole_above(low, SLOWER * max(low, 1)),
+            "travel", name, f"{who} going slower from {a} to {b}", like(low, first),
+            whole_above(low, SLOWER * max(low, 1)),
             lambda k: make(k, max(high, k + 1)), lambda k: say(k, max(high, k + 1)), span,
         )  # fmt: skip
 

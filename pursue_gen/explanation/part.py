@@ -46,7 +46,7 @@ def with_one_robot(scenario: Scenario, rules: Rules) -> Scenario:
     if robot is None:
         return scenario
     agents = (
-        replace(agent, mobile=None, can_do=()) if agent.controllable and agent.name != robot else agent
+        replace(agent, mobile=None, speed=None, can_do=()) if agent.controllable and agent.name != robot else agent
         for agent in scenario.agents
     )
     return replace(scenario, agents=tuple(agents))

@@ -10,8 +10,8 @@ from pursue_gen.diagnostics import listed
 from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.play import CounterStep, Play
 from pursue_gen.language import network_names as names
-from pursue_gen.language.numbers import time_text
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.times import moment
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga.objectives import stated
 from pursue_gen.vocabulary.agents import deed
@@ -59,9 +59,9 @@ def attempt(scenario: Scenario, play: Play) -> Attempt:
         who, text = _deed(scenario, play, step.owner, step.edges)
         owner = play.game.automata[step.owner].name
         if owner in others and text and not play.game.origins[step.edges[0]].is_end:
-            done.append(f"{who} {text} at {time_text(step.at)}")
+            done.append(f"{who} {text} at {moment(step.at, scenario.unit)}")
     ending = _ending(scenario, play)[0]
-    return Attempt(first, "; ".join([*done[-_MOST_OTHERS:], f"{ending.text} ({time_text(ending.at)})"]))
+    return Attempt(first, "; ".join([*done[-_MOST_OTHERS:], f"{ending.text} ({moment(ending.at, scenario.unit)})"]))
 
 
 def _deed(scenario: Scenario, play: Play, owner: int, edges: Sequence[int]) -> Tuple[str, str]:
@@ -79,7 +79,7 @@ def _remarks(scenario: Scenario, play: Play, step: CounterStep) -> Iterator[str]
         if objective is None or objective.limit is None:
             continue
         if play.game.origins[k].target == names.AT_RISK:
-            yield f" ({objective.words.must} by {time_text(step.at + objective.limit)})"
+            yield f" ({objective.words.must} by {moment(step.at + objective.limit, scenario.unit)})"
         elif play.game.origins[k].target == names.IDLE and objective.words.in_time:
             yield f" ({objective.words.in_time})"
 
@@ -89,7 +89,7 @@ def _ending(scenario: Scenario, play: Play) -> Tuple[TimedLine, ...]:
         "bad": _loss,
         "overdue": _loss,
         "idle": lambda s, p: f"nobody has to do anything any more{_goal_clause(s, ', and ', ' need never come')}",
-        "again": lambda s, p: f"all is as it was at {time_text(p.since)}, and so it can go on for ever"
+        "again": lambda s, p: f"all is as it was at {moment(p.since, s.unit)}, and so it can go on for ever"
         f"{_goal_clause(s, ': ', ' can always be prevented')}",
         "endless": _endless,
         "open": lambda s, p: "and so on: from here, too, it can be prevented whatever the robots do",

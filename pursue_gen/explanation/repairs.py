@@ -19,9 +19,10 @@ from pursue_gen.explanation.number_changes import (
     room_changes,
     travel_changes,
 )
-from pursue_gen.language.numbers import Number, decimal_text, whole_above, whole_below
+from pursue_gen.language.numbers import Number, decimal_text, exact, whole_above, whole_below
 from pursue_gen.language.objectives.holds import Holds
 from pursue_gen.language.scenario import Agent, Connection, Event, Poi, Reach, Scenario, StatedObjective
+from pursue_gen.language.times import instead, like
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
 from pursue_gen.tga.counts import counted
 
@@ -114,7 +115,7 @@ def _of_limit(scenario: Scenario, objective: StatedObjective) -> Iterator[Repair
     yield Repair(
         change, about, label, before, whole_above(before, before + max(before, 2 * _all_time(scenario))),
         lambda k: scenario.with_each(lambda each: each.with_limit(k) if each in together else each),
-        lambda k: f"{begins} {k} instead of {before}{ends}", objective.span, 1,
+        lambda k: f"{begins} {instead(k, before)}{ends}", objective.span, 1,
     )  # fmt: skip
 
 
@@ -122,8 +123,8 @@ def _earlier(scenario: Scenario, reach: Reach) -> Repair:
     due, names, before = reach.words.due, listed(ref.name for ref in reach.events), reach.after
     return Repair(
         "after", names, f"an earlier {due}", before, whole_below(before, 0),
-        lambda k: scenario.with_instead(reach, replace(reach, after=k)),
-        lambda k: f"{due} after {k} instead of {before}", reach.span, 1,
+        lambda k: scenario.with_instead(reach, replace(reach, after=like(k, before))),
+        lambda k: f"{due} after {instead(k, before)}", reach.span, 1,
     )  # fmt: skip
 
 
@@ -132,12 +133,26 @@ def _of_agent(scenario: Scenario, agent: Agent) -> Iterator[Repair]:
     if pace is None or not scenario.connections:
         return
     what = f"a {'faster' if agent.controllable else 'slower'} {agent.shown}"
+    if agent.speed is not None:
+        yield _of_speed(scenario, agent, agent.speed, what)
+        return
     values = whole_below(pace, 1) if agent.controllable else whole_above(pace, pace * SLOWER)
     if values:
         yield Repair(
             "agent", agent.name, what, pace, values, lambda k: scenario.with_instead(agent, replace(agent, mobile=k)),
             lambda k: f"{what}, mobile {k} instead of {pace}", agent.span,
         )  # fmt: skip
+
+
+def _of_speed(scenario: Scenario, agent: Agent, speed: Number, what: str) -> Repair:
+    """Tenths of its speed more, up to four times as fast; less, for one that is not controlled."""
+    tenths = range(11, 41) if agent.controllable else range(9, 0, -1)
+    pace = Fraction(agent.mobile or 0) * Fraction(speed)
+    return Repair(
+        "agent", agent.name, what, speed, [exact(Fraction(speed) * k / 10) for k in tenths],
+        lambda k: scenario.with_instead(agent, replace(agent, speed=k, mobile=exact(pace / k))),
+        lambda k: f"{what}, speed {k} instead of {speed}", agent.span,
+    )  # fmt: skip
 
 
 def _of_duration(scenario: Scenario, event: Event) -> Iterator[Repair]:
@@ -149,8 +164,8 @@ def _of_duration(scenario: Scenario, event: Event) -> Iterator[Repair]:
     def lasting(word: str, values: Sequence[int], helps: int = 2) -> Repair:
         return Repair(
             "duration", event.name, f"a {word} {event.shown}", duration, values,
-            lambda k: scenario.with_instead(event, replace(event, duration=k)),
-            lambda k: f"{event.shown} lasting {k} instead of {duration or 'no time'}", event.span, helps,
+            lambda k: scenario.with_instead(event, replace(event, duration=like(k, duration))),
+            lambda k: f"{event.shown} lasting {instead(k, duration or 'no time')}", event.span, helps,
         )  # fmt: skip
 
     if event.duration is None:

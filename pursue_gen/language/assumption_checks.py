@@ -29,7 +29,7 @@ def setting_of(scenario: Scenario) -> Setting:
     return Setting(
         scenario.agents, scenario.events, scenario.states, scenario.safety, scenario.assumptions,
         lambda place, agent: destinations_from(scenario, place, agent), next_to,
-        lambda agent: open_ways(scenario, agent), at_start,
+        lambda agent: open_ways(scenario, agent), at_start, scenario.rest,
     )  # fmt: skip
 
 

@@ -17,12 +17,16 @@ from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.numbers import MOST_DIGITS, exact, is_fine
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
-from pursue_gen.language.scenario import Poi, Scenario
+from pursue_gen.language.scenario import Agent, Poi, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
+from pursue_gen.language.times import in_units, written_time
 from pursue_gen.language.tokens import shown
 
 _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
 """Codes of findings that need a scenario that was read as a whole."""
+
+_UNREAD = frozenset(("PML014", "PML280", "PML420"))
+"""Codes of findings on numbers that could not be read."""
 
 MOST_OPTIONAL = 6
 """So many different numbers stand behind `optional` at most: each takes a game of its own."""
@@ -63,7 +67,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
     findings += check_references(scenario, reading.lost)
     findings += check_labels(scenario)
     findings += _beside(scenario)
-    for part in (_alone, _starts, _too_long, _too_fine, _connections, _travels, _missing, _order):
+    for part in (_alone, _units, _starts, _too_long, _too_fine, _connections, _travels, _missing, _order):
         findings += part(scenario)
     codes = {f.code for f in findings}
     if reading.scenario is None:
@@ -85,7 +89,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
 
 def _of_what_was_read(reading: Reading, findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Without what checks find in the line of a number that could not be read: they saw another one in its place."""
-    unread = {f.span.line for f in reading.diagnostics if f.code == "PML014" and f.span is not None}
+    unread = {f.span.line for f in reading.diagnostics if f.code in _UNREAD and f.span is not None}
     return (f for f in findings if f in reading.diagnostics or f.span is None or f.span.line not in unread)
 
 
@@ -117,8 +121,18 @@ def _doubtful(scenario: Scenario) -> FrozenSet[str]:
 def _alone(scenario: Scenario) -> Iterator[Diagnostic]:
     """What is wrong with single statements."""
     parts = (*scenario.pois, *scenario.connections, *scenario.events, *scenario.states, *scenario.agents)
-    for part in (*parts, *scenario.travels):
+    for part in (*scenario.units, *scenario.rests, *parts, *scenario.travels):
         yield from part.check()
+
+
+def _units(scenario: Scenario) -> Iterator[Diagnostic]:
+    """A unit of time, or a rest, that is said twice."""
+    for more in scenario.rests[1:]:
+        message = f"{scenario.rests[0].span.in_words} says already how long agents rest"
+        yield error("PML425", message, more.span, "delete one of the two: it is the same for all agents")
+    for again in scenario.units[1:]:
+        message = f"{scenario.units[0].span.in_words} says already what a unit of time is"
+        yield error("PML422", message, again.span, "delete one of the two; times may have other units: 2 min, 8 h")
 
 
 def _starts(scenario: Scenario) -> Iterator[Diagnostic]:
@@ -144,6 +158,9 @@ def _too_fine(scenario: Scenario) -> Iterator[Diagnostic]:
     for agent in scenario.agents:
         if not isinstance(agent.mobile, Fraction):  # then no time has more digits than the author wrote
             continue
+        if agent.speed is not None:
+            yield from _rounded(scenario, agent)
+            continue
         for (a, b), (time, _) in scenario.movements(agent).items():
             if not is_fine(time):
                 digits = f"more than {MOST_DIGITS} digits after the point"
@@ -152,6 +169,21 @@ def _too_fine(scenario: Scenario) -> Iterator[Diagnostic]:
                 hint = f"round its mobile or the distance, or write travel {agent.name} from {a} to {b} takes {rounded}"
                 yield error("PML281", message, agent.span, hint)
                 break
+
+
+def _rounded(scenario: Scenario, agent: Agent) -> Iterator[Diagnostic]:
+    """A way whose time, which comes of a speed, is rounded."""
+    own = {travel.way for travel in scenario.travels if travel.agent.name == agent.name}
+    for way in scenario.ways_of(agent.name):
+        time = exact(way.distance * (agent.mobile or 0))
+        for a, b in way.directions:
+            if (a, b) not in own and not is_fine(time):
+                low, high = (written_time(in_units(end, scenario.unit)) for end in agent.window_on(way.distance))
+                about = written_time(in_units(exact(round(Fraction(time), MOST_DIGITS)), scenario.unit))
+                message = f"{agent.name} needs about {about} from {a} to {b}: {low} to {high} is taken"
+                hint = f"that is on the safe side; for another window write travel {agent.name} from {a} to {b} takes …"
+                yield warning("PML424", message, agent.span, hint)
+                return
 
 
 def _travels(scenario: Scenario) -> Iterator[Diagnostic]:

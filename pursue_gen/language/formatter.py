@@ -81,6 +81,7 @@ def _items(document: Document) -> Iterator[List[_Item]]:
         items = []
         for token in block:
             text = "\n".join(part.rstrip(" \t\f") for part in token.split("\n"))
+            text = " ".join(text.split()) if token.type == "NUMBER" else text
             items.append(_Item(_COMMENTS.get(token.type, token.type), text, (token.line or line) - line))
             line = token.end_line or line
         yield items

@@ -15,13 +15,17 @@ from pursue_gen.language.statements.group import ForEach, Group
 from pursue_gen.language.statements.headed import Assume, Objective, ReachObjective
 from pursue_gen.language.statements.optional import Optional
 from pursue_gen.language.statements.poi import Poi
+from pursue_gen.language.statements.rest import Rest
 from pursue_gen.language.statements.rule import Rule
 from pursue_gen.language.statements.state import State
 from pursue_gen.language.statements.travel import Travel
+from pursue_gen.language.statements.unit import Unit
 
 STATEMENTS: Mapping[str, Type[StatementKind]] = {
     kind.token(): kind
     for kind in (
+        Unit,
+        Rest,
         Poi,
         Connection,
         Event,

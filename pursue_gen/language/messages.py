@@ -29,7 +29,7 @@ _MEANT = {
     "place": "poi", "room": "poi", "point": "poi", "robot": "agent", "person": "agent", "path": "connect",
     "way": "connect", "road": "connect", "action": "event", "task": "event", "order": "rule", "goal": "reach_objective",
     "dependency": "stateDependency", "at": "location", "in": "location", "takes": "duration", "time": "duration",
-    "speed": "mobile", "moves": "mobile", "length": "distance", "can": "can_do", "reacts": "reacts_to",
+    "moves": "mobile", "length": "distance", "can": "can_do", "reacts": "reacts_to",
     "never": "never_with", "is": "is_true", "to": "and", "then": "before", "starts": "location",
 }  # fmt: skip
 """Other words that people try, and the word of the language they most likely mean."""
@@ -55,7 +55,7 @@ def unknown_statement(chunk: Sequence[Token], span: Span) -> Diagnostic:
     unread = _unread(token, span)
     if unread is not None:
         return unread
-    if token.type in ("HUMAN", "CONTROLLABLE", "MOBILE", "RADIUS", "TOLERANCE", "INFLATION"):
+    if token.type in ("HUMAN", "CONTROLLABLE", "MOBILE", "SPEED", "RADIUS", "TOLERANCE", "INFLATION"):
         hint = f"it belongs to an agent: {STATEMENTS['AGENT'].form()}"
     elif token.type in KEYWORDS and _MEANT.get(str(token)) not in _STARTERS:
         hint = f"{token} stands inside a statement; one begins with " + _list(list(_STARTERS))
@@ -120,7 +120,7 @@ def _hint(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     text = str(token)
     if token.type == "STRAY":
         return _stray(chunk, index)
-    if token.type == "WORD" and "NAME" in expected:
+    if (token.type == "WORD" or token.type in MAY_BE_NAMES) and "NAME" in expected and token.line == chunk[0].line:
         meant, last = name_meant(chunk, index)
         name = shown(meant)
         if chunk[index - 1].type == "LABEL":

@@ -19,7 +19,7 @@ _LONGEST = 100
 """Letters of a number: far more than any that is not too large."""
 
 
-class _Decimal(Fraction):
+class Decimal(Fraction):
     """A fraction that is shown as people write it, like 2.5."""
 
     __slots__ = ()
@@ -30,7 +30,7 @@ class _Decimal(Fraction):
 
 def exact(number: Number) -> Number:
     """The number as an int where it is whole, else as a fraction that is shown as a decimal where it is one."""
-    return int(number) if number.denominator == 1 else _Decimal(number)
+    return int(number) if number.denominator == 1 else Decimal(number)
 
 
 def decimal_text(number: Number) -> str:
@@ -59,9 +59,14 @@ def at_most(number: Number) -> str:
     return decimal_text(tenths_above(number))
 
 
-def at_least(number: Number) -> str:
+def tenths_below(number: Number) -> Number:
     """A lower bound for people, rounded down to tenths."""
-    return decimal_text(Fraction(floor(number * 10), 10))
+    return exact(Fraction(floor(number * 10), 10))
+
+
+def at_least(number: Number) -> str:
+    """The same as a text."""
+    return decimal_text(tenths_below(number))
 
 
 def read_number(text: str) -> Optional[Number]:
@@ -96,4 +101,4 @@ Window = Tuple[Number, Number]
 
 def window_of(low: Number, high: Optional[Number]) -> Window:
     """The window of something for which the author wrote one number or two: one alone leaves one time unit."""
-    return low, exact(low + 1) if high is None else high
+    return exact(low), exact(low + 1 if high is None else high)

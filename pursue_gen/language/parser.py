@@ -13,7 +13,9 @@ from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, error, in_
 from pursue_gen.language import scenario as pml
 from pursue_gen.language.document import Document
 from pursue_gen.language.kinds import BY_RULE
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.statements.base import Labelled
+from pursue_gen.language.statements.unit import Unit, seconds_in
 from pursue_gen.language.syntax import MOST_LETTERS, too_large
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.tree_reader import TreeReader
@@ -95,7 +97,7 @@ def read(text: str, file: str, name: Optional[str] = None) -> Reading:
 def read_document(document: Document, name: Optional[str] = None) -> Reading:
     """As `read`."""
     syntax, file = document.syntax, document.file
-    reader = TreeReader(file, dict(_labels(syntax.trees)))
+    reader = TreeReader(file, dict(_labels(syntax.trees)), _unit(document))
     parts: Dict[str, List[Any]] = defaultdict(list)
     for tree in syntax.trees:
         for part in _parts(tree, reader):
@@ -128,6 +130,12 @@ def _parts(tree: Any, reader: TreeReader) -> Tuple[Any, ...]:
     reader.member = getattr(tree.meta, "member", "")
     found = BY_RULE[tree.data].read(reader, *tree.children, span=reader.span(tree))
     return found if isinstance(found, tuple) else (found,)
+
+
+def _unit(document: Document) -> Optional[Number]:
+    """The seconds of a time unit, where a statement says that, be it right or wrong; the first one counts."""
+    found = [part.tokens[1:2] for part in document.statements if part.kind == Unit.token()]
+    return next((seconds_in(word) or 1 for words in found for word in words), 1 if found else None)
 
 
 def _labels(trees: Iterable[Tree[Token]]) -> Iterator[Tuple[str, str]]:

@@ -15,12 +15,13 @@ from lark import Token
 from pursue_gen.diagnostics import Span, error
 from pursue_gen.language.document import Document, Edit, behind, written
 from pursue_gen.language.kinds import KEYWORDS, STATEMENTS
-from pursue_gen.language.numbers import Number, decimal_text
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.occurrences import are_names
 from pursue_gen.language.poses import end_of_poses, pose_text
 from pursue_gen.language.scenario import Agent, Connection, Event, Poi, Pose, Scenario
 from pursue_gen.language.statements.agent import SIZE
 from pursue_gen.language.syntax import Statement
+from pursue_gen.language.times import has_unit, in_units, written_time
 from pursue_gen.language.tokens import end_of, start_of
 from pursue_gen.outcomes import Invalid
 
@@ -42,6 +43,7 @@ class Rewriting:
 
     def __init__(self, scenario: Scenario) -> None:
         self._document, self._travels = Document(scenario.text, scenario.file), scenario.travels
+        self._unit = scenario.unit
 
     # Numbers ----------------------------------------------------------------------------------------------------------
 
@@ -59,7 +61,7 @@ class Rewriting:
                 edits += self._window(travels[movement], "TAKES", (low, high), remark)
             else:
                 agent, a, b = movement
-                takes = f"takes {decimal_text(low)} to {decimal_text(high)}"
+                takes = f"takes {self._times(low, high)}"
                 lines.append(f"travel {agent} from {a} to {b} {takes} // {remark}")
         return [*edits, *self.statements(("TRAVEL", "AGENT"), lines)]
 
@@ -85,8 +87,14 @@ class Rewriting:
         here = next(k for k in range(len(kinds)) if kinds[k : k + 2] == [word, "NUMBER"])
         last = here + 3 if kinds[here + 2 : here + 4] == ["TO", "NUMBER"] else here + 1
         place = start_of(statement.tokens[here + 1]), end_of(statement.tokens[last])
-        edit = Edit(*place, " to ".join(map(str, numbers)))
+        units = word != "DISTANCE" and has_unit(statement.tokens[here + 1])
+        edit = Edit(*place, self._times(*numbers, units=units))
         return [edit, *self._remarked(statement, remark)]
+
+    def _times(self, *numbers: Number, units: bool = True) -> str:
+        """A window in words of the language; with `units`, where the scenario says what a unit of time is."""
+        unit = self._unit if units else None
+        return " to ".join(written_time(in_units(number, unit)) for number in numbers)
 
     # Spots and new statements -----------------------------------------------------------------------------------------
 

@@ -12,7 +12,7 @@ from pursue_gen.language import objectives as kinds_of_objectives
 from pursue_gen.language.assumptions import *
 from pursue_gen.language.assumptions.base import Assumption
 from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Condition, Doing, Holds, Not, OnWay, Who
-from pursue_gen.language.numbers import Window, exact, window_of
+from pursue_gen.language.numbers import Number, Window, exact
 from pursue_gen.language.objectives import *
 from pursue_gen.language.objectives import GivenUp, Patrol, Reach, Safety, StatedObjective, WhyGivenUp
 from pursue_gen.language.objectives.patrol import patrols_in
@@ -24,14 +24,16 @@ from pursue_gen.language.statements.connect import Connection
 from pursue_gen.language.statements.dependency import Dependency
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.statements.poi import Poi
+from pursue_gen.language.statements.rest import Rest
 from pursue_gen.language.statements.rule import Both, Choice, Rule, RuleBody, Sequence
 from pursue_gen.language.statements.state import State
 from pursue_gen.language.statements.travel import Travel
+from pursue_gen.language.statements.unit import Unit
 
 __all__ = [
     "Agent", "AllOf", "AnyOf", "At", "AtMostOf", "Battery", "Both", "Choice", "Condition", "Connection", "Dependency",
-    "Doing", "Event", "Holds", "Not", "OnWay", "Poi", "Pose", "Ref", "Rule", "RuleBody", "Scenario", "Sequence",
-    "Spot", "State", "Travel", "Who", "Window",
+    "Doing", "Event", "Holds", "Not", "OnWay", "Poi", "Pose", "Ref", "Rest", "Rule", "RuleBody", "Scenario", "Sequence",
+    "Spot", "State", "Travel", "Unit", "Who", "Window",
 ]
 __all__ += kinds_of_assumptions.__all__
 __all__ += kinds_of_objectives.__all__
@@ -64,10 +66,22 @@ class Scenario:
     assumptions: Tuple[Assumption, ...] = ()
     given_up: Tuple[GivenUp, ...] = ()
     batteries: Tuple[Battery, ...] = ()
+    units: Tuple[Unit, ...] = ()
+    rests: Tuple[Rest, ...] = ()
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
         """Show it in a notebook."""
         printer.text(self.text or repr(self))
+
+    @property
+    def unit(self) -> Optional[Number]:
+        """The seconds of a time unit; None: it does not say."""
+        return self.units[0].seconds if self.units else None
+
+    @property
+    def rest(self) -> Number:
+        """The time units that an agent rests at a place after an action or a movement, before it can begin the next."""
+        return exact(self.rests[0].time) if self.rests else 1
 
     @property
     def optional(self) -> Tuple[int, ...]:
@@ -164,7 +178,7 @@ class Scenario:
             return {}
         own = {travel.way: travel.window for travel in self.travels if travel.agent.name == agent.name}
         return {
-            way: own.get(way) or window_of(exact(connection.distance * agent.mobile), None)
+            way: own.get(way) or agent.window_on(connection.distance)
             for connection in self.ways_of(agent.name)
             for way in connection.directions
         }

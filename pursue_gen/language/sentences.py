@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Dict, List
+from typing import Dict, List, Optional
 
-from pursue_gen.language.numbers import Number
+from pursue_gen.language.numbers import Number, Window
 from pursue_gen.language.scenario import Agent, Scenario, StatedObjective
+from pursue_gen.language.times import in_units, window_text, words_for
 
 
 def objective_words(scenario: Scenario) -> List[str]:
@@ -51,12 +52,17 @@ def speed_words(agent: Agent, scenario: Scenario) -> str:
     batteries = [battery.in_words for battery in scenario.batteries if battery.agent.name == agent.name]
     if agent.mobile is None:
         return ", ".join(["stays there", *batteries])
-    words = [f"{agent.mobile} time unit{'' if agent.mobile == 1 else 's'} per unit of distance"]
+    pace = f"{words_for(agent.mobile, scenario.unit)} per unit of distance"
+    words = [pace if agent.speed is None else f"{agent.speed} m/s"]
     own = [travel for travel in scenario.travels if travel.agent.name == agent.name]
-    words += [f"{travel.a.shown} to {travel.b.shown} in {window_words(*travel.window)}" for travel in own]
+    words += [f"{travel.a.shown} to {travel.b.shown} in {window_words(travel.window, scenario.unit)}" for travel in own]
     return ", ".join(words + batteries)
 
 
-def window_words(low: Number, high: Number) -> str:
-    """Between which times something ends; a window of one time unit, which is the usual one, by its first time."""
-    return str(low) if high == low + 1 else f"{low} to {high}"
+def window_words(window: Window, unit: Optional[Number]) -> str:
+    """Between which times something ends; a window of one time unit, which is the usual one, by its first time.
+
+    `unit`: the seconds of a time unit, None: the scenario does not say.
+    """
+    low, high = window
+    return window_text(in_units(low, unit), None if high == low + 1 else in_units(high, unit))

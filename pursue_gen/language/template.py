@@ -13,6 +13,7 @@ from typing import Any, Callable, Dict, Iterable, Iterator, Mapping, NamedTuple,
 
 from pursue_gen.language.conditions import Condition, Who, condition_text, some_text
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.times import window_text, written_time
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.tree_reader import TreeReader
 
@@ -72,10 +73,6 @@ def event_or_condition_text(what: Any) -> str:
     return what.name if isinstance(what, Ref) else condition_text(what)
 
 
-def _window(low: object, high: object) -> str:
-    return f"{low}" if high is None else f"{low} to {high}"
-
-
 FILLINGS: Mapping[str, Filling] = {
     **{thing: Filling("ref", TreeReader.ref, name_text, thing) for thing in ("agent", "event", "state", "POI")},
     '"agent"': Filling("(ref | NAME)", TreeReader.agent_ref, lambda ref: f'"{ref.name}"', "agent"),
@@ -87,8 +84,9 @@ FILLINGS: Mapping[str, Filling] = {
     ),
     "name": Filling("NAME", lambda _, token: bare(token), '"{}"'.format),
     "number": Filling("NUMBER", TreeReader.number),
+    "time": Filling("NUMBER", TreeReader.time, written_time),
     "count": Filling("NUMBER", TreeReader.count),
-    "window": Filling("window", TreeReader.window, _window),
+    "window": Filling("window", TreeReader.window, window_text),
     "some": Filling("some", TreeReader.some, some_text, "agent", ("of",)),
     "condition": Filling("condition", TreeReader.condition, condition_text, is_condition=True),
     "bracketed": Filling("_plain", TreeReader.condition, lambda one: f"({condition_text(one)})", is_condition=True),

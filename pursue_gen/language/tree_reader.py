@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any, List, Mapping, Optional, Tuple
 
 from lark import Token
@@ -23,8 +24,9 @@ from pursue_gen.language.conditions import (
     OnWay,
     Who,
 )
-from pursue_gen.language.numbers import MOST_DIGITS, Number, is_fine, read_number
+from pursue_gen.language.numbers import MOST_DIGITS, Number, decimal_text, exact, is_fine, read_number
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.times import Time, apart, has_unit, read_seconds
 from pursue_gen.language.tokens import bare, shown, span_of
 
 MOST = 1_000_000
@@ -38,11 +40,12 @@ class TreeReader:
     """Reads pieces of statements; `findings`: what is wrong with those that were read. `member`: as in `Span`, of the
     statement that is read."""
 
-    def __init__(self, file: str, labels: Mapping[str, str]) -> None:
-        """`labels`: of the names that have one."""
+    def __init__(self, file: str, labels: Mapping[str, str], unit: Optional[Number] = None) -> None:
+        """`labels`: of the names that have one; `unit`: the seconds of a time unit, None: the scenario does not say."""
         self.file = file
         self._labels = labels
         self.member = ""
+        self.unit = unit
         self.findings: List[Diagnostic] = []
 
     def at(self, token: Token) -> Span:
@@ -88,6 +91,38 @@ class TreeReader:
         self.findings.append(finding)
         return 1
 
+    def time(self, token: Token) -> Number:
+        """The token's time units, as in `20` or `2 min`; 1 after a complaint."""
+        if not has_unit(token):
+            value = self.number(token)
+            return value if self.unit is None else Time(value, self.unit, decimal_text(value))
+        seconds = self.seconds(token)
+        if seconds is None:
+            return 1
+        if self.unit is None:
+            message = f"{_blanks(token)} is a time, and the scenario does not say what a unit of time is"
+            hint = "write a line above all others: unit second (then a number without a unit is one of seconds)"
+            self.findings.append(error("PML420", message, self.at(token), hint))
+            return 1
+        value = exact(Fraction(seconds) / Fraction(self.unit))
+        if value > MOST:
+            return self._too_large(token)
+        if not is_fine(value):
+            message = f"{_blanks(token)} is {decimal_text(value)} units of time: more than {MOST_DIGITS} digits"
+            message += " after the point"
+            hint = "nothing is rounded: write another time, or a unit of which it is a whole number, as in unit second"
+            self.findings.append(error("PML280", message, self.at(token), hint))
+            return 1
+        return Time(value, self.unit, _blanks(token))
+
+    def seconds(self, token: Token) -> Optional[Number]:
+        """The seconds of a time with its unit; None after a complaint."""
+        seconds, instead = read_seconds(token)
+        if seconds is None:
+            hint = f"write {instead or 'a number and s, min or h behind it: 30 s, 2 min, 1 h 30 min'}"
+            self.findings.append(error("PML014", f"expected a time, found {shown(token)}", self.at(token), hint))
+        return seconds
+
     def count(self, token: Token) -> int:
         """The token's value, which says how often, or a rank; 1 after a complaint."""
         value = read_number(token)
@@ -107,7 +142,7 @@ class TreeReader:
     def window(self, tree: Any) -> Tuple[Number, Optional[Number]]:
         """The numbers of `5 to 8`; one alone has no second one."""
         low, _, high = tree.children
-        return self.number(low), None if high is None else self.number(high)
+        return self.time(low), None if high is None else self.time(high)
 
     def condition(self, tree: Any) -> Condition:
         """A condition."""
@@ -156,6 +191,11 @@ class TreeReader:
         return self.ref(tree) if tree.data == "ref" else self.condition(tree)
 
 
+def _blanks(text: str) -> str:
+    """The text with one blank between its words."""
+    return " ".join(text.split())
+
+
 def _instead(text: str) -> str:
     """What to write in place of what is no number."""
     if re.fullmatch(r"[0-9]{1,9}\.", text):
@@ -165,6 +205,11 @@ def _instead(text: str) -> str:
     power = re.fullmatch(r"([1-9])[eE]([0-9])", text)
     if power and int(power.group(2)) <= _LARGEST_POWER:
         return f"write {power.group(1)}{'0' * int(power.group(2))}: all digits of it"
+    time = apart(text)
+    if time:
+        return f"write {time}, with a blank, where it is a time; else the number alone"
+    if has_unit(text):
+        return f"write {text.split()[0]}: a unit stands behind times only"
     unit = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,9})?)[^\W\d]+", text)
     if unit:
         return f"write {unit.group(1)}: a number stands alone, in the unit of your choice"

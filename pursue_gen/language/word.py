@@ -38,4 +38,4 @@ class Form(NamedTuple):
 
 
 Numbers = Mapping[str, Callable[[str, Number], str]]
-"""What numbers mean, by the word before each: a sentence from the number in units, and from the number itself."""
+"""What numbers mean, by the word before each: a sentence from the number as a time, and from the number itself."""

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Callable, Dict, Optional
 
+from pursue_gen.language.numbers import Number
+from pursue_gen.language.times import words_for
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.proof.checker import LIMIT, verify
 from pursue_gen.proof.independence import named_part
@@ -119,13 +121,18 @@ def in_words(margin: Margin) -> str:
     return f"{_decimal(margin.wins)}, not {_decimal(margin.fails)}"
 
 
-def describe(margin: Margin, strategy: Strategy) -> str:
-    """What the margin of the strategy means, in one or two sentences; what no robot can play is called so."""
+def describe(margin: Margin, strategy: Strategy, unit: Optional[Number] = None) -> str:
+    """What the margin of the strategy means, in one or two sentences; what no robot can play is called so.
+
+    `unit`: the seconds of a time unit, where the scenario says that.
+    """
     if margin.wins == 0 and margin.fails is not None:
-        late = f"Margin 0: it loses when a command takes effect {_decimal(margin.fails)} time units late"
+        late = f"Margin 0: it loses when a command takes effect {_late(margin.fails, unit)} late"
         return f"{late}; this is an ideal strategy that no real robot can play."
-    rest = "and perhaps later" if margin.fails is None else f"not {_decimal(margin.fails)}"
-    late = f"Margin: it still wins when commands take effect {_decimal(margin.wins)} time units late, {rest}."
+    rest = "and perhaps later"
+    if margin.fails is not None:
+        rest = f"not {_decimal(margin.fails) if unit is None else words_for(margin.fails, unit)}"
+    late = f"Margin: it still wins when commands take effect {_late(margin.wins, unit)} late, {rest}."
     if decides_ends(strategy):
         return f"{late} But it decides when movements and actions end, which no real robot lets it do."
     return late
@@ -134,6 +141,10 @@ def describe(margin: Margin, strategy: Strategy) -> str:
 def decides_ends(strategy: Strategy) -> bool:
     """True if it commands ends of movements or actions, as the original's do; a real robot reports them."""
     return any(command.moves[0].edge.is_end for block in strategy.blocks for command in block.commands)
+
+
+def _late(value: Fraction, unit: Optional[Number]) -> str:
+    return f"{_decimal(value)} time units" if unit is None else words_for(value, unit)
 
 
 def _decimal(value: Fraction) -> str:

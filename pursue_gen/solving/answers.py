@@ -7,8 +7,9 @@ from fractions import Fraction
 from typing import Any, Dict, List
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.numbers import Number, decimal_text, tenths_above
+from pursue_gen.language.numbers import Number, tenths_above
 from pursue_gen.language.scenario import Safety, Scenario, StatedObjective
+from pursue_gen.language.times import like, written_time
 from pursue_gen.proof.worst_case import answer_times
 from pursue_gen.solving.solution import Solution
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
@@ -31,7 +32,8 @@ class Answer:
 
     def in_words(self) -> str:
         """A line for people, in tenths that hold."""
-        worst, deadline = decimal_text(told(self.worst, self.promise)), decimal_text(self.promise.known_limit)
+        limit = self.promise.known_limit
+        worst, deadline = written_time(like(told(self.worst, self.promise), limit)), written_time(limit)
         return f"{self.promise.text}: {self.promise.words.kept} within {worst} of {deadline}, at worst."
 
     def as_json(self) -> Dict[str, Any]:

@@ -21,7 +21,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Dict, Mapping, Optional, Tuple
 
-from pursue_gen.language.numbers import at_least, at_most
+from pursue_gen.language.numbers import Number, at_least, tenths_above, tenths_below
+from pursue_gen.language.times import words_for
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.proof.worst_case import with_counter, with_deadline
 from pursue_gen.solving.options import DEFAULT, SolveOptions
@@ -61,10 +62,11 @@ class Guarantee:
         """True if v is known."""
         return self.least == self.most
 
-    def in_words(self) -> str:
-        """A line for people, in tenths that hold."""
-        here = "not found out" if self.worst is None else f"at most {at_most(self.worst)} time units"
-        return f"Time to the goal: {here}; nothing below {at_least(self.least)} can be promised."
+    def in_words(self, unit: Optional[Number] = None) -> str:
+        """A line for people, in tenths that hold. `unit`: the seconds of a time unit, where the scenario says that."""
+        here = "not found out" if self.worst is None else f"at most {words_for(tenths_above(self.worst), unit)}"
+        least = at_least(self.least) if unit is None else words_for(tenths_below(self.least), unit)
+        return f"Time to the goal: {here}; nothing below {least} can be promised."
 
     def as_json(self) -> Dict[str, Any]:
         """For programs: numbers of time units; null where it was not found out."""

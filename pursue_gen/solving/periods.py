@@ -17,8 +17,10 @@ from pursue_gen.diagnostics import Span
 from pursue_gen.language.document import Document, Edit, edited
 from pursue_gen.language.for_each import without_owners
 from pursue_gen.language.lines import Lines
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Patrol, Scenario
 from pursue_gen.language.sentences import periods_found
+from pursue_gen.language.times import in_units, written_time
 from pursue_gen.language.tokens import end_of
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.options import DEFAULT, SolveOptions
@@ -55,20 +57,21 @@ def with_period(scenario: Scenario, every: int, least: Optional[int] = None) -> 
 
     `least`: nothing below it can be promised, where that is known.
     """
-    changed = {id(each): replace(each, every=every, least=least) for each in without_period(scenario)}
-    edits = {_every(scenario.text, each.span, every) for each in without_period(scenario)}
+    written = in_units(every, scenario.unit)
+    changed = {id(each): replace(each, every=written, least=least) for each in without_period(scenario)}
+    edits = {_every(scenario.text, each.span, written) for each in without_period(scenario)}
     text = edited(scenario.text, edits)
     return replace(scenario.with_each(lambda each: changed.get(id(each), each)), text=text)
 
 
-def _every(text: str, span: Span, every: int) -> Edit:
+def _every(text: str, span: Span, every: Number) -> Edit:
     """Writes the period into the statement of a patrol, before the word behind which the robots stand."""
     begin, end = Lines(text).of_span(span)
     words = Document(text[begin:end]).statements[0].tokens
     *_, first, second, _ = without_owners(words)
     by = next(n for n, word in enumerate(words) if word is (second if second.type == "BY" else first))  # by any robot
     at = begin + end_of(words[by - 1])
-    return Edit(at, at, f" every {every}")
+    return Edit(at, at, f" every {written_time(every)}")
 
 
 def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAULT) -> Scenario:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any, Dict, List, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import PursueError, as_json, counted
-from pursue_gen.language.numbers import decimal_text
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives import WhyGivenUp
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.times import words_for
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.proof.checker import LIMIT
 from pursue_gen.proof.margin import USUAL, Margin, decides_ends, describe, game_margin, strategy_margin
@@ -26,21 +27,26 @@ def margins(won: Solution, thorough: bool, limits: Limits) -> Tuple[Margin, Opti
     return margin, game_margin(won.network, won.objective, won.reaction, limits=limits) if thorough else None
 
 
-def verdict_text(won: Solution) -> str:
-    """The verdict of a game that is won: what it took, and how long a play takes, where that is known."""
+def verdict_text(won: Solution, unit: Optional[Number] = None) -> str:
+    """The verdict of a game that is won: what it took, and how long a play takes, where that is known.
+
+    `unit`: the seconds of a time unit, where the scenario says that.
+    """
     stats = won.stats
     took = f"; {stats.discrete_states} states in {stats.seconds:.3f} s, {stats.engine} engine" if stats else ""
-    kept = "" if won.within is None else f" within {decimal_text(won.within)} time units"
+    kept = "" if won.within is None else f" within {words_for(won.within, unit)}"
     stages, shares, passages = (len(some) for some in (won.strategy.stages, won.strategy.shares, won.strategy.passages))
     order = f" in {counted(stages, 'stage')}" if stages else f" in {counted(shares, 'share')}" if shares else ""
     order = f" with the order of passage at {counted(passages, 'place')}" if passages else order
     text = f"won{kept}: {rules_text(won.rules)}{took}; {counted(won.strategy.size, 'command')}{order}, proven"
-    return text if won.guarantee is None else f"{text}\n{won.guarantee.in_words()}"
+    return text if won.guarantee is None else f"{text}\n{won.guarantee.in_words(unit)}"
 
 
-def margin_text(won: Solution, margin: Margin, game: Optional[Margin] = None) -> str:
-    """Lines about how late commands may come; `game` is the game's margin, where it was computed."""
-    lines = [describe(margin, won.strategy)]
+def margin_text(
+    won: Solution, margin: Margin, game: Optional[Margin] = None, unit: Optional[Number] = None
+) -> str:
+    """Lines about how late commands may come; `game` is the game's margin, where it was computed. `unit` as above."""
+    lines = [describe(margin, won.strategy, unit)]
     if game is not None:
         lines.append(f"Margin of the game, with a strategy that is made for it (--reaction): {margin_in_words(game)}.")
     return "\n".join(lines)
@@ -89,7 +95,8 @@ def periods_json(scenario: Scenario) -> Dict[str, Any]:
 
     It is `every` time units; nothing below `least` can be promised.
     """
-    found = [{"every": each.every, "least": each.least} for each in scenario.patrols if each.least is not None]
+    patrols = [each for each in scenario.patrols if each.least is not None]
+    found = [{"every": int(each.known_limit), "least": each.least} for each in patrols]
     return {"period": found[0]} if found else {}
 
 

@@ -216,7 +216,8 @@ def _with_ways(scenario: Scenario, new: Sequence[Pair], plan: Plan, map_name: st
 
 
 def _mobiles(scenario: Scenario) -> List[Number]:
-    return [agent.mobile for agent in scenario.agents if agent.mobile is not None]
+    """Those of the agents whose times are not rounded."""
+    return [agent.mobile for agent in scenario.agents if agent.mobile is not None and agent.speed is None]
 
 
 def _measured(metres: float, map_name: str, unit: float) -> str:

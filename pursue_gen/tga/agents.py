@@ -18,9 +18,6 @@ from pursue_gen.tga.rules import Turns
 Assign = Tuple[Tuple[str, int], ...]
 """Variables with the values that an edge gives them."""
 
-PAUSE = 1
-"""Time units that an agent rests after an action or a movement, before it can begin the next."""
-
 
 @dataclass(frozen=True)
 class Surroundings:
@@ -144,6 +141,11 @@ class _Shape:
         theirs = {poi for doer in others for poi in self.around.pois(doer)}
         return tuple(poi for poi in self.places(event) if poi in theirs)
 
+    @property
+    def rest(self) -> Number:
+        """So long the agent rests at a place before its next step."""
+        return self.around.scenario.rest
+
     def within(self, window: Window) -> ClockBound:
         """The invariant of something that ends in that window."""
         return ClockBound(self.clock, "<=", window[1])
@@ -156,7 +158,7 @@ class _Shape:
         condition = self.around.conditions.setting_off(name, a, b)
         if condition is None:
             return (end,)
-        begin = self._edge(names.at(a), on_the_way, names.movement(name, a, b), PAUSE, condition, codes.going(a, b))
+        begin = self._edge(names.at(a), on_the_way, names.movement(name, a, b), self.rest, condition, codes.going(a, b))
         return begin, end
 
     def lasting(self, event: Event, window: Window, poi: str) -> Tuple[Edge, ...]:
@@ -168,7 +170,7 @@ class _Shape:
         conditions = self._conditions(event, codes.at(poi), Value("at", poi))
         if conditions is None:
             return (ending,)
-        start = self._edge(poi, at_work, names.event(event.name), PAUSE, conditions, codes.doing(poi))
+        start = self._edge(poi, at_work, names.event(event.name), self.rest, conditions, codes.doing(poi))
         start = start.plus(assign=working.begins(self.agent.name, event.name, poi))
         if not self.around.is_contested(event):
             return start, ending
@@ -202,7 +204,7 @@ class _Shape:
         for poi in self.places(event):
             conditions = self._conditions(event, codes.at(poi), Value("at", poi))
             if conditions is not None:
-                yield self._edge(poi, poi, names.event(event.name), PAUSE, conditions, None)
+                yield self._edge(poi, poi, names.event(event.name), self.rest, conditions, None)
         if event.location is None:
             for a, b in ways:
                 here = names.going(a, b)

@@ -11,6 +11,7 @@ from typing import Any, Callable, Dict, List, Mapping, Tuple, Type
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.assumption_checks import open_ways
+from pursue_gen.language.assumptions.base import SHORTEST_STAY
 from pursue_gen.language.clauses import Clauses, clauses_of
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import (
@@ -27,7 +28,6 @@ from pursue_gen.language.scenario import (
     Waits,
 )
 from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
-from pursue_gen.tga.agents import PAUSE
 from pursue_gen.tga.changes import Change, beginning, setting_off, states_set
 from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Location, Test
@@ -127,7 +127,7 @@ def _at_most(automaton: Automaton, number: int, assumption: AtMost, *_: object) 
 
 def _not_before(automaton: Automaton, number: int, assumption: NotBefore, *_: object) -> Automaton:
     """A clock that nothing resets has to be past the time."""
-    late = ClockBound(names.assumption_clock(number), ">", assumption.time)
+    late = ClockBound(names.assumption_clock(number), ">", exact(assumption.time))
 
     def edges(edge: Edge) -> List[Edge]:
         return [edge.plus(bounds=(late,)), _when_broken(edge, number)] if edge.sent == assumption.event.name else [edge]
@@ -146,16 +146,16 @@ def _waits(automaton: Automaton, number: int, assumption: Waits, *_: object) -> 
         if edge.sent != event:
             return [edge]
         begun = edge if lasts else edge.plus(resets=(clock,))
-        again = begun.plus((Test(count, 1),), bounds=(ClockBound(clock, ">=", assumption.time),))
+        again = begun.plus((Test(count, 1),), bounds=(ClockBound(clock, ">=", exact(assumption.time)),))
         return [begun.plus((Test(count, 0),), assign=((count, 1),)), again, _when_broken(begun, number)]
 
     return automaton.with_each(edges)
 
 
-def _departs(automaton: Automaton, number: int, assumption: Departure, *_: object) -> Automaton:
+def _departs(automaton: Automaton, number: int, assumption: Departure, scenario: Scenario, *_: object) -> Automaton:
     """An invariant where it stands; what it does there begins only where it can set off in time afterwards."""
     clock, (least, most) = names.assumption_clock(number), assumption.window
-    latest, earliest = ClockBound(clock, "<=", most), ClockBound(clock, ">=", least)
+    latest, earliest = ClockBound(clock, "<=", exact(most)), ClockBound(clock, ">=", exact(least))
     pois = {each.name for each in automaton.locations if role_of(each.name) is Role.AT}
     places = {assumption.only_at} if assumption.only_at else pois
 
@@ -171,9 +171,9 @@ def _departs(automaton: Automaton, number: int, assumption: Departure, *_: objec
         if edge.source not in places:
             return [edge]
         if edge.enters is Role.WAY:
-            return [edge.plus(bounds=(earliest,)), _when_broken(edge, number)] if least > PAUSE else [edge]
+            return [edge.plus(bounds=(earliest,)), _when_broken(edge, number)] if least > scenario.rest else [edge]
         lasts = 0 if edge.target in places else automaton.longest.get(edge.target, 0)
-        in_time = edge.plus(bounds=(ClockBound(clock, "<", exact(most - PAUSE - lasts)),))
+        in_time = edge.plus(bounds=(ClockBound(clock, "<", exact(most - scenario.rest - lasts)),))
         return [in_time, _when_broken(edge, number)]
 
     return automaton.with_locations(bounded).with_each(edges)
@@ -183,7 +183,7 @@ def _there_by(automaton: Automaton, number: int, assumption: ThereBy, scenario: 
     """An invariant at each other place; it begins only that from which it gets there in time afterwards."""
     clock, place = names.assumption_clock(number), assumption.place.name
     agent = next(each for each in scenario.agents if each.name == automaton.name)
-    latest = assumption.latest(open_ways(scenario, agent))
+    latest = assumption.latest(open_ways(scenario, agent), SHORTEST_STAY * scenario.rest)
     ends = {edge.source: edge.target for edge in automaton.edges if edge.leaves in UNDER_WAY and edge.is_end}
 
     def bounded(location: Location) -> Location:
@@ -197,7 +197,7 @@ def _there_by(automaton: Automaton, number: int, assumption: ThereBy, scenario: 
             return [edge]
         if end != place and end not in latest:
             return [_when_broken(edge, number)]
-        moment = assumption.time if end == place else latest[end] - 2 * PAUSE
+        moment = assumption.time if end == place else latest[end] - SHORTEST_STAY * scenario.rest
         in_time = ClockBound(clock, "<=", exact(moment - automaton.longest.get(edge.target, 0)))
         return [edge.plus(bounds=(in_time,)), _when_broken(edge, number)]
 

@@ -8,6 +8,7 @@ from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Seque
 from pursue_gen.diagnostics import error
 from pursue_gen.language import network_names as names
 from pursue_gen.language.network_names import IDLE, LOSE, agent_position
+from pursue_gen.language.numbers import exact
 from pursue_gen.language.objectives.base import Breaks
 from pursue_gen.language.scenario import Patrol, Reach, Respond, Safety, Scenario, StatedObjective
 from pursue_gen.language.symbols import Role, Symbol
@@ -67,8 +68,8 @@ def reach_automaton(reach: Reach, happened: Happened, number: int = 0, unlocking
     the channel of the first step, if others are unlocked with it.
     """
     clock = names.reach_clock(number)
-    passed = (ClockBound(clock, ">", reach.after),) if unlocking is None or unlocking.sends else ()
-    limit = () if reach.within is None else (ClockBound(clock, "<=", reach.within),)
+    passed = (ClockBound(clock, ">", exact(reach.after)),) if unlocking is None or unlocking.sends else ()
+    limit = () if reach.within is None else (ClockBound(clock, "<=", exact(reach.within)),)
     count = len(reach.events)
     places = [Location(names.START, limit), Location(names.UNLOCKED, limit, named=False)]
     edges = [Edge(names.START, names.UNLOCKED, Guard(passed), unlocking)]

@@ -7,6 +7,7 @@ from typing import Dict, FrozenSet, Iterator, List, Sequence, Tuple
 from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Domains
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
+from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import Agent, Patrol, Scenario
 from pursue_gen.language.symbols import Role
 from pursue_gen.tga.agents import Surroundings
@@ -65,7 +66,7 @@ def patrol_automaton(patrol: Patrol, around: Surroundings, number: int) -> Autom
     """
     scenario, clock, place = around.scenario, names.safety_clock(number), patrol.place.name
     agents = scenario.on_patrol(patrol)
-    due = Location(AT_RISK, (ClockBound(clock, "<=", patrol.known_limit),))
+    due = Location(AT_RISK, (ClockBound(clock, "<=", exact(patrol.known_limit)),))
     there = any(agent.location.name == place for agent in agents)
     guard, assign = Guard(), _NOTHING
     if patrol.order:

@@ -13,6 +13,7 @@ from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Clauses, Domains, clauses_of, holds_at_start
 from pursue_gen.language.conditions import At, Condition, Holds, OnWay, atoms
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
+from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import Ref, Respond, Scenario
 from pursue_gen.tga.agents import Surroundings
 from pursue_gen.tga.changes import Change, arriving, happening, setting_off
@@ -53,7 +54,7 @@ def respond_automaton(respond: Respond, around: Surroundings, number: int) -> Au
             edges.append(Edge(AT_RISK, IDLE, Guard(integers=conditions.tests(answers)), sync))
     # The deadline is the invariant of atRisk; this is what remains to do when it is reached.
     edges.append(Edge(AT_RISK, LOSE))
-    locations = (Location(IDLE), Location(LOSE), Location(AT_RISK, (ClockBound(clock, "<=", respond.deadline),)))
+    locations = (Location(IDLE), Location(LOSE), Location(AT_RISK, (ClockBound(clock, "<=", exact(respond.deadline)),)))
     waits = _holds_first(trigger, scenario, domains) and not _holds_first(response, scenario, domains)
     return Automaton(names.safety_objective(number), locations, AT_RISK if waits else IDLE, tuple(edges))
 

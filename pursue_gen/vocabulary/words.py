@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, Iterator, Mapping, Optional
 
-from pursue_gen.diagnostics import units
 from pursue_gen.language import network_names as names
-from pursue_gen.language.numbers import decimal_text
+from pursue_gen.language.numbers import Number, decimal_text
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.language.symbols import Role, Symbol
+from pursue_gen.language.times import in_unit
 from pursue_gen.synthesis.strategy import Constraint, Zone
 from pursue_gen.tga.network import Edge, Network
 from pursue_gen.tga.objectives import clock_of, stated
@@ -68,7 +68,7 @@ class Words:
             lower = next((c for c in zone if c.right == clock and c.left is None), None)
             upper = next((c for c in zone if c.left == clock and c.right is None), None)
             if lower or upper:
-                yield f"{_span(lower, upper)} after {since}"
+                yield f"{_span(lower, upper, self.scenario.unit)} after {since}"
         done = set()
         for c in zone:
             if c.left is None or c.right is None or (c.right, c.left) in done:
@@ -85,15 +85,14 @@ class Words:
             if c.bound == 0:
                 return f"{left} and {right} were at the same moment"
             early, late = (left, right) if c.bound > 0 else (right, left)
-            return f"{early} was exactly {units(decimal_text(abs(c.bound)))} before {late}"
+            return f"{early} was exactly {in_unit(decimal_text(abs(c.bound)), self.scenario.unit)} before {late}"
         phrase = self._bounded(c, left, right)
         return phrase if back is None else f"{phrase}, and {self._bounded(back, right, left)}"
 
-    @staticmethod
-    def _bounded(c: Constraint, left: str, right: str) -> str:
+    def _bounded(self, c: Constraint, left: str, right: str) -> str:
         if c.bound == 0:
             return f"{left} was {'later than' if c.strict else 'no earlier than'} {right}"
-        amount = units(decimal_text(abs(c.bound)))
+        amount = in_unit(decimal_text(abs(c.bound)), self.scenario.unit)
         if c.bound > 0:
             return f"{left} was {'less than' if c.strict else 'at most'} {amount} before {right}"
         return f"{right} was {'more than' if c.strict else 'at least'} {amount} before {left}"
@@ -114,11 +113,11 @@ def words_of(scenario: Scenario, network: Network) -> Words:
     return Words(scenario, clocks, texts, objectives)
 
 
-def _span(lower: Optional[Constraint], upper: Optional[Constraint]) -> str:
+def _span(lower: Optional[Constraint], upper: Optional[Constraint], unit: Optional[Number]) -> str:
     """`more than 1 and at most 5 units`."""
     parts, amount = [], ""
     if lower is not None and upper is not None and lower.bound == -upper.bound:
-        return f"exactly {units(decimal_text(upper.bound))}" if upper.bound else "right"
+        return f"exactly {in_unit(decimal_text(upper.bound), unit)}" if upper.bound else "right"
     if lower is not None and upper is None and lower.bound == 0:
         return "some time"
     if lower is not None:
@@ -129,4 +128,4 @@ def _span(lower: Optional[Constraint], upper: Optional[Constraint]) -> str:
         if upper.bound == 0:
             return "right"
         parts.append(f"{'less than' if upper.strict else 'at most'} {amount}")
-    return f"{' and '.join(parts)} {'unit' if amount == '1' else 'units'}"
+    return " and ".join([*parts[:-1], f"{parts[-1][: -len(amount)]}{in_unit(amount, unit)}"])

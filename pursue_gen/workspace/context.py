@@ -47,10 +47,10 @@ class Options:
     `floor`: a floor plan that lies under the map of the UI's page.
     `guarantee`: in how many time units the strategy comes to the goal at worst; None where that is not known.
     `answers`: by automata, how many time units after they are due promises are kept at worst, as far as it is known.
-    `time_unit`: the default length of a time unit in seconds. `machines`: which machine runs which node; `docker` and
-    `systemd`: with files for containers, and for services. `spot_distance`: metres between the robots at one place
-    where the scenario does not say where they stand; `spare`: robot → place → pose that it alone may take if need be.
-    The rest goes into the manifests.
+    `time_unit`: the default length of a time unit in seconds; None: as the scenario says, 1 where it does not.
+    `machines`: which machine runs which node; `docker` and `systemd`: with files for containers, and for services.
+    `spot_distance`: metres between the robots at one place where the scenario does not say where they stand; `spare`:
+    robot → place → pose that it alone may take if need be. The rest goes into the manifests.
     """
 
     controllers: str = "distributed"
@@ -64,7 +64,7 @@ class Options:
     guarantee: Optional[Fraction] = None
     answers: Mapping[str, Fraction] = field(default_factory=dict)
     floor: Optional[Floor] = None
-    time_unit: float = 1.0
+    time_unit: Optional[float] = None
     machines: Machines = ONE_MACHINE
     docker: bool = False
     systemd: bool = False
@@ -108,7 +108,7 @@ def common(
         "reported": [agent.name for agent in scenario.agents if agent.name not in decided],
         "reaches": objective.reaches,
         "bringup": bringup_of(scenario),
-        "time_unit": options.time_unit,
+        "time_unit": float(options.time_unit or scenario.unit or 1),
         "machines": [(node, options.machines.of(node)) for node in nodes_of([sub.controller for sub in controllers])],
         "docker": options.docker,
         "systemd": options.systemd,

@@ -18,6 +18,7 @@ from pursue_gen.language.document import statement_text
 from pursue_gen.language.labels import in_markdown
 from pursue_gen.language.scenario import Reach, Safety, Scenario
 from pursue_gen.language.sentences import condition_of_promise
+from pursue_gen.language.times import time_units
 from pursue_gen.outcomes import Invalid
 from pursue_gen.partition import SubStrategy, partition, strategy_file, unneeded
 from pursue_gen.partition.yaml_text import inline, yaml_text
@@ -261,8 +262,8 @@ def _promise(scenario: Scenario) -> str:
 
 def _reaches(reach: Reach) -> str:
     goal = "reaches " + listed(f"`{ref.name}`" for ref in reach.events)
-    goal += f" after {reach.after} time units" if reach.after else ""
-    return goal if reach.within is None else f"{goal} within {reach.within} time units"
+    goal += f" after {time_units(reach.after)}" if reach.after else ""
+    return goal if reach.within is None else f"{goal} within {time_units(reach.within)}"
 
 
 def _source(scenario: Scenario, safety: Safety) -> str:

@@ -89,7 +89,7 @@ def make_workspace(
     force: bool = False,
 ) -> Made:
     """Writes the workspace; `folder` and `force` as for `write_workspace`. Raises as it and `machines_for`."""
-    margin = margin_text(won, margins(won, False, request.options.limits)[0])
+    margin = margin_text(won, margins(won, False, request.options.limits)[0], unit=scenario.unit)
     options = options_for(request, won, margin, extras)
     findings = spots_in_one(scenario, extras.spot_distance)
     if extras.machines is not None:

@@ -10,6 +10,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.language.scenario import Connection, Scenario
 from pursue_gen.language.sentences import objective_sentence, objective_words
+from pursue_gen.language.times import unit_name
 from pursue_gen.partition import SubStrategy
 from pursue_gen.partition.strategy_data import number, strategy_data
 from pursue_gen.partition.yaml_text import inline, yaml_text
@@ -35,8 +36,9 @@ def render(
     idle: Sequence[str] = (),
 ) -> bytes:
     """The text of ui.yaml: the nodes that the UI waits for, the agents whose ends are `reported`, the connections of
-    the map with their lengths, what is to be achieved and in which time, the robots' spots that are not the pose of
-    their place, what all but agents is at, in words, and the `idle` agents that the strategy does without."""
+    the map with their lengths, what is to be achieved and in which time, what times count, the robots' spots that are
+    not the pose of their place, what all but agents is at, in words, and the `idle` agents that the strategy does
+    without."""
     spots = {
         robot: {name: inline([pose.x, pose.y]) for name, pose in table.items() if pose != where.places[name]}
         for robot, table in where.spots.items()
@@ -49,6 +51,8 @@ def render(
         "spots": {robot: table for robot, table in spots.items() if table},
         "objectives": inline(_objectives(scenario, options.answers)),
     }
+    if scenario.unit is not None:
+        data["counts"] = unit_name(scenario.unit)
     if options.guarantee is not None:
         data["guarantee"] = number(Fraction(ceil(options.guarantee * 1000), 1000))  # a decimal, and never too little
     if idle:

@@ -197,7 +197,7 @@ class UI(UIState):
         if self.finish_received is not None and real >= self.finish_received + VANISHED:
             self.finish_received = None
             if self.states.get_num_connections() == 0:
-                after = f"after {self.mission.elapsed(now):.1f} time units"
+                after = f"after {self.mission.elapsed(now):.1f} {self.mission.counts}"
                 self.conclude(WON, f"The observer published {FINISH} and is gone, {after}.")
                 return
         for word in self.mission.due(now, real):
@@ -292,6 +292,7 @@ def main(package: Package) -> int:
         player = make_player(options, model)
         drop_interrupted(options.verdict)
         ui = UI(options, membership, ending, player, model, reporters(model, options.ends, settings))
+        ui.mission.counts = str(settings.get("counts", ui.mission.counts))
         ui.page.open(settings)
     except (DataError, TraceError) as problem:
         print(f"UI: {problem}", file=sys.stderr)

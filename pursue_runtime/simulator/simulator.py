@@ -7,12 +7,13 @@ follows is the receipt.
 
 from __future__ import annotations
 
+import math
 import random
 from dataclasses import dataclass
 from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Tuple
 
 from pursue_runtime.event_words import Word, format_word
-from pursue_runtime.locations import action, is_end, is_movement
+from pursue_runtime.locations import action, is_end, is_movement, is_under_way
 from pursue_runtime.model import Automaton, Edge, Model
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.state import LIVE, SystemState, older, rewinds
@@ -21,7 +22,7 @@ ACTING = ("robot", "human", "agent")
 DELAYS = ("random", "early", "middle", "late")
 
 INSIDE = (0.1, 0.2)  # time units: how far inside its window an end stays; more where being late would break it
-SAME = 0.5  # time units: starts that are closer than this are one start (no two can follow that fast)
+SAME = 0.5  # time units: starts that are closer than this, and than half a rest, are one start
 EARLY = 1.5  # time units by which an order may seem older than the start it is for: two nodes have two clocks
 
 
@@ -52,6 +53,13 @@ class Activity:
     sends: int = 0
     sent: float = 0.0
     at_once: bool = False
+
+
+def _rest(automaton: Automaton) -> float:
+    """How long the agent rests, in time units, before it begins anything; infinite for one that only takes part."""
+    begins = (edge for edge in automaton.edges if is_under_way(edge.target) and not is_under_way(edge.source))
+    rests = (-bound.bound for edge in begins for bound in edge.when if bound.right and not bound.left)
+    return min((rest for rest in rests if rest > 0), default=math.inf)
 
 
 def end_window(model: Model, automaton: Automaton, location: str) -> Optional[EndWindow]:
@@ -139,6 +147,7 @@ class Simulator:
         if unknown:
             known = ", ".join(automaton.name for automaton in model.of_kind(*ACTING))
             raise ValueError(f"~reports names {', '.join(sorted(unknown))}; the agents are {known}")
+        self._same = {automaton.name: min(SAME, _rest(automaton) / 2) for automaton in self._agents}
         self._model = model
         self._delays = delays
         self._state: Optional[SystemState] = None
@@ -220,7 +229,8 @@ class Simulator:
             return
         since = state.stamp - state.clocks[window.clock] * state.unit
         known = self._activities.get(name)
-        if known is not None and known.location == location and abs(known.since - since) < SAME * state.unit:
+        same = self._same[name] * state.unit
+        if known is not None and known.location == location and abs(known.since - since) < same:
             return
         number = self._counts[name] = self._counts.get(name, 0) + 1
         activity = Activity(

@@ -161,6 +161,7 @@ class MissionView:
         """`orders`: the part of the strategy that people carry out."""
         self.state: Optional[SystemState] = None
         self.start: Optional[float] = None
+        self.counts = "time units"  # what times count, as people say it
         self._model, self._told = model, Told()
         self._environment = player
         self._orders = None if orders is None else Plans(orders)
@@ -241,7 +242,7 @@ class MissionView:
         state = self.state
         if state is None or state.status not in ENDED:
             return None
-        after = f"after {self.elapsed(state.stamp):.1f} time units"
+        after = f"after {self.elapsed(state.stamp):.1f} {self.counts}"
         reason = in_words(state.reason, self._model.shown)
         if state.status == WON:
             several = len(self._model.says) > 1

@@ -112,6 +112,7 @@ class Page:
         nobody controls."""
         return {
             "scenario": self._model.scenario,
+            "counts": self._promise.counts or "time units",
             "labels": self._model.labels,
             "places": {name: list(place) for name, place in self._plan.places.items()},
             "floor": None if self._floor is None else self._floor.scene(),

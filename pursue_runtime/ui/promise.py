@@ -31,19 +31,22 @@ class Objective(NamedTuple):
     of: Tuple[str, ...]
     worst: Optional[float] = None
 
-    def now(self, state: SystemState) -> str:
-        """The sentence, with that time while the workspace's own strategy is in force."""
-        return self.says if self.worst is None or state.plan else f"{self.says} At worst after {self.worst:g}."
+    def now(self, state: SystemState, counts: str = "") -> str:
+        """The sentence, with that time while the workspace's own strategy is in force. `counts`: as in `Promise`."""
+        if self.worst is None or state.plan:
+            return self.says
+        return f"{self.says} At worst after {f'{self.worst:g} {counts}'.rstrip()}."
 
 
 class Promise(NamedTuple):
     """The objectives of a mission. `most`: in how many time units the workspace's own strategy comes to the goal at
     worst, if everybody keeps to the model; None where that is not known. `unneeded`: the agents that it never commands,
-    and that nobody needs."""
+    and that nobody needs; `counts`: what times count, as in `seconds`, "" where the scenario does not say that."""
 
     objectives: Tuple[Objective, ...] = ()
     most: Optional[float] = None
     unneeded: Tuple[str, ...] = ()
+    counts: str = ""
 
 
 NOTHING = Promise()
@@ -52,14 +55,15 @@ NOTHING = Promise()
 
 def read_promise(settings: Mapping[str, Any]) -> Promise:
     """The promise in ui.yaml; an empty one where it is of a version that had none. Raises DataError."""
-    with reading("ui.yaml", "objectives, guarantee or not_needed"):
+    with reading("ui.yaml", "objectives, guarantee, counts or not_needed"):
         given = [_objective(each) for each in settings.get("objectives", ())]
         most = settings.get("guarantee")
         number = None if most is None else float(most)
         unneeded = tuple(map(str, settings.get("not_needed", ())))
+        counts = str(settings.get("counts", ""))
     if number is not None and not (math.isfinite(number) and number >= 0):
         raise DataError(f"ui.yaml: guarantee is {most!r}; expected a number of time units")
-    return Promise(tuple(given), number, unneeded)
+    return Promise(tuple(given), number, unneeded, counts)
 
 
 def _objective(data: Mapping[str, Any]) -> Objective:
@@ -78,7 +82,7 @@ def objectives_now(
         texts = dict.fromkeys(status_texts(own, model, state, at).values())
         become = _become(objective, model, state)
         now = [text for text in texts if text != become]
-        found.append({"says": objective.now(state), "is": become, "now": "; ".join(now)})
+        found.append({"says": objective.now(state, promise.counts), "is": become, "now": "; ".join(now)})
     return found
 
 

@@ -137,8 +137,8 @@ agent "bot" controllable mobile 0.5 location desk can_do knock
 reach_objective: do knock after 10 seconds
 """, [
         ("PML014", 3, "write 3: a number stands alone, in the unit of your choice"),
-        ("PML010", 4, "delete it: a number stands alone, in the unit of your choice; "),
-        ("PML010", 6, "delete it: a number stands alone, in the unit of your choice; "),
+        ("PML420", 4, "write a line above all others: unit second"),
+        ("PML014", 6, "write 10 s"),
     ]),
     ("missing commas, colons and words", """\
 poi "desk"
@@ -303,7 +303,7 @@ reach_objective: knock
         ("PML010", 4, "did you mean location?"),
         ("PML010", 5, "did you mean location?"),
         ("PML010", 6, "did you mean before?"),
-        ("PML010", 7, "did you mean mobile?"),
+        ("PML010", 7, "did you mean can_do?"),
         ("PML010", 8, "the form is: reach_objective: do e1 and e2 after 10 within 60"),
     ]),
     ("human in front", """\

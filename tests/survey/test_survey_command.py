@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from pursue_gen.language import check, load
+from pursue_gen.language.times import duration_text
 from tests.conftest import ROOT
 from tests.survey.maps import drawn, three_rooms, write
 from tests.tools.authoring.commands import Outcome, pursue
@@ -359,3 +360,14 @@ def test_robots_that_shut_each_other_in_are_reported(folder: Path) -> None:
     done = surveyed(text=text)
     assert "MAP009" in codes(done) and "cannot leave desk while all others stand there" in done.err
     assert "MAP009" not in codes(surveyed(text=text.replace("//[1.0, 1.5,", "//[6.0, 1.0,")))
+
+
+def test_travel_times_count_in_the_scenarios_unit() -> None:
+    surveyed("--speed", "0.5")
+    low, high = map(int, re.findall(r"travel bot2 from desk to hall takes (\d+) to (\d+)", copied())[0])
+    surveyed("--speed", "0.5", text="unit 2 s\n" + TEXT)
+    found = re.findall(r"travel bot2 from desk to hall takes (.*) to (.*) //", copied())
+    shown = [[duration_text(2 * (half + more)) for more in (-1, 0, 1)] for half in (low // 2, high // 2)]
+    assert len(found) == 1 and all(text in texts for text, texts in zip(found[0], shown)), (found, low, high)
+    done = surveyed("--speed", "0.5", "--time-unit", "1", text="unit 2 s\n" + TEXT, status=2)
+    assert "the scenario says unit 2 s" in done.err

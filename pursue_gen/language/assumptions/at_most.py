@@ -58,5 +58,5 @@ class AtMost(AboutOne):
         done = {str(times): f"{times} of {self.times} times" for times in range(self.times + 1)}
         return (f"{self.event.shown} by {self.agent.shown}", done) if self.times else ("", {})
 
-    def stronger(self, longest: Number) -> Sequence[int]:
+    def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
         return range(self.times - 1, 0, -1)

@@ -19,16 +19,17 @@ from typing import (
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
 from pursue_gen.language.conditions import Condition
-from pursue_gen.language.numbers import Number, whole_above
+from pursue_gen.language.numbers import Number, exact, whole_above
 from pursue_gen.language.objectives import Safety
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.statements.base import Written
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.statements.state import State
+from pursue_gen.language.times import like
 
 SHORTEST_STAY = 2
-"""Time units: an agent rests for one before it may set off."""
+"""Rests: an agent rests once before it may set off, and needs some time to do so."""
 
 
 class Setting(NamedTuple):
@@ -43,6 +44,12 @@ class Setting(NamedTuple):
     next_to: Callable[[str, str], AbstractSet[str]]  # those to which a single way leads it from there
     open_ways: Callable[[Agent], Mapping[Tuple[str, str], Number]]  # nothing keeps it from them: how long they take
     at_start: Callable[[Condition], bool]  # whether a condition holds at the start
+    rest: Number  # so many time units agents rest between two steps
+
+    @property
+    def shortest_stay(self) -> Number:
+        """So many time units are enough to come to a place and set off again."""
+        return exact(SHORTEST_STAY * self.rest)
 
 
 class Assumption(Written):
@@ -121,10 +128,11 @@ class Assumption(Written):
     def with_number(self, number: int) -> Any:
         """The same with another number, where it has one."""
         changed: Any = self
-        return replace(changed, **{self.number: number}) if self.number else self
+        return replace(changed, **{self.number: like(number, self.known_number)}) if self.number else self
 
-    def stronger(self, longest: Number) -> Sequence[int]:
-        """Numbers with which it would say more, the smallest change first; times up to `longest` units."""
+    def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
+        """Numbers with which it would say more, the smallest change first; times up to `longest` units.
+        `shortest_stay`: as in `Setting`."""
         return ()
 
     @classmethod
@@ -226,5 +234,5 @@ class NotSooner(AboutOne):
             return error("PML251", message, self.span, "write the time, or delete the assumption")
         return self.never_does(agent, self.event)
 
-    def stronger(self, longest: Number) -> Sequence[int]:
+    def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
         return whole_above(self.time, longest)

@@ -21,9 +21,9 @@ class NotBefore(NotSooner):
     event: Ref
     time: Number
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=guest} does {event=call} after {time:number=60}")
+    template: ClassVar[Template] = Template("{agent=guest} does {event=call} after {time:time=60}")
     forms: ClassVar[Tuple[Form, ...]] = (Form("from when on somebody does something", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {"after": "It begins that later than {} of time after the start.".format}
+    numbers: ClassVar[Numbers] = {"after": "It begins that later than {} after the start.".format}
 
     @property
     def clause(self) -> str:

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from typing import ClassVar, Dict, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units, warning
-from pursue_gen.language.assumptions.base import SHORTEST_STAY, AboutOne, Departure, Setting
+from pursue_gen.language.assumptions.base import AboutOne, Departure, Setting
 from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
+from pursue_gen.language.times import like, written_time
 from pursue_gen.language.word import Form, Numbers
 
 
@@ -22,9 +23,9 @@ class ThereBy(AboutOne):
     place: Ref
     time: Number
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=visitor} at {place:POI=exit} by {time:number=300}")
+    template: ClassVar[Template] = Template("{agent=visitor} at {place:POI=exit} by {time:time=300}")
     forms: ClassVar[Tuple[Form, ...]] = (Form("by when somebody has gone", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {"by": "It is there {} of time after the start, and stays there.".format}
+    numbers: ClassVar[Numbers] = {"by": "It is there {} after the start, and stays there.".format}
     number: ClassVar[str] = "time"
     nearest: ClassVar[int] = 1
 
@@ -40,17 +41,17 @@ class ThereBy(AboutOne):
     def since(self) -> str:
         return "the start"
 
-    def latest(self, ways: Mapping[Tuple[str, str], Number]) -> Dict[str, Number]:
+    def latest(self, ways: Mapping[Tuple[str, str], Number], stay: Number) -> Dict[str, Number]:
         """When it sets off at the latest from each other place from which these ways, with their longest times, lead
-        there: the nearest places first, with two time units at each place in between."""
+        there: the nearest places first, with `stay` time units at each place in between."""
         found: Dict[str, Number] = {}
-        pending: Dict[str, Number] = {self.place.name: exact(self.time + SHORTEST_STAY)}
+        pending: Dict[str, Number] = {self.place.name: exact(self.time + stay)}
         while pending:
             here = max(pending, key=lambda place: pending[place])
             found[here] = pending.pop(here)
             for (a, b), longest in ways.items():
                 if b == here and a not in found:
-                    moment = exact(found[here] - SHORTEST_STAY - longest)
+                    moment = exact(found[here] - stay - longest)
                     pending[a] = max(moment, pending.get(a, moment))
         del found[self.place.name]
         return found
@@ -62,14 +63,14 @@ class ThereBy(AboutOne):
             return error("PML251", message, self.span, "write the time, or take mobile away from it")
         if place == start and agent.mobile is None:
             return warning("PML254", f"{agent.name} is not mobile: it stays in {start} anyway", self.span, "delete it")
-        latest = self.latest(setting.open_ways(agent)).get(start)
+        latest = self.latest(setting.open_ways(agent), setting.shortest_stay).get(start)
         if place != start and latest is None:
             message = f"no way that is always open leads {agent.name} from {start} to {place}"
             return error("PML252", message, self.span, f"connect {start} and {place}, without only_if")
-        if latest is not None and latest < SHORTEST_STAY:
-            sooner = exact(self.time + SHORTEST_STAY - latest)
+        if latest is not None and latest < setting.shortest_stay:
+            sooner = like(exact(self.time + setting.shortest_stay - latest), self.time)
             message = f"{agent.name} may need {units(sooner)} from {start} to {place}"
-            return error("PML252", message, self.span, f"write by {sooner} or later")
+            return error("PML252", message, self.span, f"write by {written_time(sooner)} or later")
         shared = {event.name for event in setting.events if event.is_shared}
         for event in (ref.name for ref in agent.reacts_to if ref.name in shared):
             message = f"{agent.name} takes part in {event}, and could be kept from going to {place} in time"

@@ -22,12 +22,10 @@ class Waits(NotSooner):
     event: Ref
     time: Number
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=guest} waits {time:number=5} between {event=call}")
-    own_words: ClassVar[Tuple[Word, ...]] = (
-        Word("waits", "How many units of time it waits at least.", True),
-    )
+    template: ClassVar[Template] = Template("{agent=guest} waits {time:time=5} between {event=call}")
+    own_words: ClassVar[Tuple[Word, ...]] = (Word("waits", "How many units of time it waits at least.", True),)
     forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody waits in between", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {"waits": "The next one begins {} of time after the end of the last, or later.".format}
+    numbers: ClassVar[Numbers] = {"waits": "The next one begins {} after the end of the last, or later.".format}
     counts: ClassVar[bool] = True  # whether it has happened: the first time is free
 
     @property

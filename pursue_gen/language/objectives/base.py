@@ -11,6 +11,7 @@ from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import Written
 from pursue_gen.language.symbols import Role, role_of
+from pursue_gen.language.times import like
 
 Stated = TypeVar("Stated", bound="StatedObjective")
 
@@ -109,7 +110,7 @@ class StatedObjective(Written):
 
     def with_limit(self: Stated, limit: int) -> Stated:
         """The same with another limit."""
-        return cast(Stated, replace(cast(Any, self), **{self.limited_by: limit}))
+        return cast(Stated, replace(cast(Any, self), **{self.limited_by: like(limit, self.limit)}))
 
     @property
     def words(self) -> Words:

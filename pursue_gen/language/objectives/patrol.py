@@ -14,6 +14,7 @@ from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective,
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.symbols import Role
 from pursue_gen.language.template import Filling, Template
+from pursue_gen.language.times import like, written_time
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Numbers, Word
 
@@ -44,7 +45,7 @@ class Patrol(Safety):
     limited_by: ClassVar[str] = "every"
 
     template: ClassVar[Template] = Template(
-        "patrol {place:POIs=a, b} [in order] [every {every:number=60}] by {who:patroller=bot1}",
+        "patrol {place:POIs=a, b} [in order] [every {every:time=60}] by {who:patroller=bot1}",
         patroller=Filling("patroller", _read_who, who_text, "agent", rules="patroller: ref | ANY ROBOT"),
     )
     note: ClassVar[str] = "or: by any robot; in order and every are optional"
@@ -65,7 +66,7 @@ class Patrol(Safety):
         Word("by", "Who has to be there: an agent, or any robot.", True),
     )
     numbers: ClassVar[Numbers] = {
-        "every": "Somebody is there again {} of time after the last one left, or after the start.".format,
+        "every": "Somebody is there again {} after the last one left, or after the start.".format,
     }
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("somebody who comes again and again", "patrol {POI} every {=60} by {agent}"),
@@ -110,7 +111,7 @@ class Patrol(Safety):
             return every
         if self.least >= self.every:
             return f"{every}, the least that can be promised"
-        return f"{every}; nothing below {self.least} can be promised"
+        return f"{every}; nothing below {written_time(like(self.least, self.every))} can be promised"
 
     def period_found(self, won: bool) -> Iterator[str]:
         """A sentence where its period was found by solving, as far as the verdict says something about it."""
@@ -120,12 +121,13 @@ class Patrol(Safety):
         if won and least == every:
             yield f"The least period that can be promised for {who} is {units(every)}."
         elif won:
-            yield f"The least period for {who} is at most {units(every)}; nothing below {least} can be promised."
+            below = written_time(like(least, every))
+            yield f"The least period for {who} is at most {units(every)}; nothing below {below} can be promised."
         elif least > every:
             yield f"No period up to {units(every)} can be promised for {who}."
 
     def broken(self, beside: Callable[[str], str]) -> str:
-        return f"not {self.words.due_by} for {self.every}"
+        return f"not {self.words.due_by} for {written_time(self.every)}"
 
     def check(self) -> Iterator[Diagnostic]:
         again = next((name for k, name in enumerate(self.order) if name in self.order[:k]), "")
@@ -136,7 +138,7 @@ class Patrol(Safety):
             message = "in order says nothing about one place: expected two or more"
             yield error("PML260", message, self.span, "name the other places, or delete in order")
         if self.every is not None and self.every < 2:
-            message = f"every {self.every} leaves no time to go away and come back: expected 2 or more"
+            message = f"every {written_time(self.every)} leaves no time to go away and come back: expected 2 or more"
             yield error("PML143", message, self.span, "write the time units between two visits")
 
     @property

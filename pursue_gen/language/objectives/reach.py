@@ -11,6 +11,7 @@ from pursue_gen.language.objectives.base import StatedObjective, Whole, Words
 from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.language.template import Filling, Template
+from pursue_gen.language.times import like, units_of_time, written_time
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Numbers, Word
 
@@ -38,7 +39,7 @@ class Reach(StatedObjective):
     once: ClassVar[bool] = True
 
     template: ClassVar[Template] = Template(
-        "do {events:things=e1 and e2} [after {after:number=10}] [within {within:number=60}]",
+        "do {events:things=e1 and e2} [after {after:time=10}] [within {within:time=60}]",
         things=Filling(
             "things", TreeReader.refs, _things_text, "event", ("do", "and"), 'things: ref ("and" ref)*'
         ),
@@ -50,9 +51,9 @@ class Reach(StatedObjective):
     )
     numbers: ClassVar[Numbers] = {
         "after": lambda time, number: (
-            f"It counts when it happens {f'later than {time} of time after the start' if number else 'at any time'}."
+            f"It counts when it happens {f'later than {time} after the start' if number else 'at any time'}."
         ),
-        "within": "It must have happened {} of time after the start at most.".format,
+        "within": "It must have happened {} after the start at most.".format,
     }
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("achieve something once", "do {event}"),
@@ -67,7 +68,7 @@ class Reach(StatedObjective):
         return f"{self.words.due} {verb}{when}".rstrip(",") + "."
 
     def broken(self, beside: Callable[[str], str]) -> str:
-        return f"{self.words.due} not done within {self.within} of the start"
+        return f"{self.words.due} not done within {written_time(self.within)} of the start"
 
     def check(self) -> Iterator[Diagnostic]:
         for ref in twice(self.events):
@@ -76,8 +77,10 @@ class Reach(StatedObjective):
             message = f"more than {MOST_EVENTS} events behind one do"
             yield error("PML224", message, self.span, "write several lines: all reach_objectives have to be reached")
         if self.within is not None and self.within <= self.after:
-            message = f"within {self.within} ends before it counts, which is later than {self.after}"
-            hint = f"both count from the start of the mission: write within {exact(self.after + 1)} or more"
+            within, after = written_time(self.within), written_time(self.after)
+            enough = written_time(like(exact(self.after + 1), self.within))
+            message = f"within {within} ends before it counts, which is later than {after}"
+            hint = f"both count from the start of the mission: write within {enough} or more"
             yield error("PML223", message, self.span, hint)
 
     def statement(self, objectives: Sequence[StatedObjective]) -> Whole:
@@ -96,6 +99,6 @@ class Reach(StatedObjective):
 
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if kind == "event" and any(ref.name == name for ref in self.events):
-            after = f", later than {units(self.after)} of time after the start" if self.after else ""
-            within = "" if self.within is None else f", {units(self.within)} of time after the start at most"
+            after = f", later than {units_of_time(self.after)} after the start" if self.after else ""
+            within = "" if self.within is None else f", {units_of_time(self.within)} after the start at most"
             yield f"is to be achieved once{after}{within}"

@@ -12,6 +12,7 @@ from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective,
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.symbols import Role
 from pursue_gen.language.template import Template, event_or_condition_text
+from pursue_gen.language.times import units_of_time, written_time
 from pursue_gen.language.word import Form, Numbers, Word
 
 
@@ -36,7 +37,7 @@ class Respond(Safety):
     limited_by: ClassVar[str] = "deadline"
 
     template: ClassVar[Template] = Template(
-        "if {trigger:event or condition=e1} then {response:event or condition=e2} within {deadline:number=20}"
+        "if {trigger:event or condition=e1} then {response:event or condition=e2} within {deadline:time=20}"
     )
     note: ClassVar[str] = "or conditions: if bot1 at a then open is_true within 20"
     own_words: ClassVar[Tuple[Word, ...]] = (
@@ -44,7 +45,7 @@ class Respond(Safety):
         Word("then", "The event that has to follow, or the condition that has to hold at some moment."),
         Word("within", "How many units of time later the answer must have come."),
     )
-    numbers: ClassVar[Numbers] = {"within": "The answer must have come {} of time later at most.".format}
+    numbers: ClassVar[Numbers] = {"within": "The answer must have come {} later at most.".format}
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("an answer in time", "if {event} then {event} within {=20}"),
         Form("an answer to what comes to hold", "if {agent} at {POI} then {agent} at {POI} within {=20}"),
@@ -61,7 +62,7 @@ class Respond(Safety):
 
     def broken(self, beside: Callable[[str], str]) -> str:
         no = "no" if isinstance(self.response, Ref) else "not once"
-        return f"{no} {_shown(self.response)} within {self.deadline} of {_shown(self.trigger)}"
+        return f"{no} {_shown(self.response)} within {written_time(self.deadline)} of {_shown(self.trigger)}"
 
     def check(self) -> Iterator[Diagnostic]:
         if self.deadline <= 0:
@@ -91,6 +92,6 @@ class Respond(Safety):
 
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if kind == "event" and name == event_or_condition_text(self.trigger):
-            yield f"must be answered by {event_or_condition_text(self.response)} within {units(self.deadline)} of time"
+            yield f"must be answered by {event_or_condition_text(self.response)} within {units_of_time(self.deadline)}"
         if kind == "event" and name == event_or_condition_text(self.response):
-            yield f"is the answer to {event_or_condition_text(self.trigger)}, within {units(self.deadline)} of time"
+            yield f"is the answer to {event_or_condition_text(self.trigger)}, within {units_of_time(self.deadline)}"

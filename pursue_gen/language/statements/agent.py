@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar, Iterator, Optional, Tuple
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import ceil, floor
+from typing import Any, ClassVar, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, warning
-from pursue_gen.language.numbers import Number
+from pursue_gen.language.numbers import Number, Window, exact, is_fine, window_of
 from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.statements.base import Labelled
 from pursue_gen.language.template import Template
+from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word
 
 SIZE = ("radius", "tolerance", "inflation")
@@ -23,9 +26,9 @@ MOST_METRES = 100
 class Agent(Labelled):
     """A robot (controllable), a human ally (controllable and human) or an uncontrollable agent.
 
-    `mobile` is the time units per unit of distance (the inverse of its speed), None: it never moves. `label`: what
-    people read; None: the name. `radius`, `tolerance`, `inflation`: of a robot, in metres, as `workspace.robot_size`
-    has them; None: not said.
+    `mobile` is the time units per unit of distance (the inverse of its speed), None: it never moves. `speed`: the
+    metres per second from which it was computed; None: it was written itself. `label`: what people read; None: the
+    name. `radius`, `tolerance`, `inflation`: of a robot, in metres, as `workspace.robot_size` has them; None: not said.
     """
 
     name: str
@@ -40,6 +43,7 @@ class Agent(Labelled):
     radius: Optional[Number] = None
     tolerance: Optional[Number] = None
     inflation: Optional[Number] = None
+    speed: Optional[Number] = None
 
     listed_in: ClassVar[str] = "agents"
     symbol: ClassVar[str] = "Class"
@@ -55,6 +59,7 @@ class Agent(Labelled):
             "The program decides what this agent does. Without it, the agent does as it likes, also the worst.",
         ),
         Word("mobile", "It moves, and needs so many units of time for a unit of distance. A larger number is slower."),
+        Word("speed", "It moves so many metres in a second, and distances are metres: in place of mobile.", True),
         Word("radius", "Metres from the middle of the robot to its farthest part: what it needs to turn.", True),
         Word("tolerance", "Metres by which the robot stops beside its goal, at most (xy_goal_tolerance).", True),
         Word("inflation", "Metres around obstacles that the robot's planners avoid (inflation_radius).", True),
@@ -63,12 +68,12 @@ class Agent(Labelled):
     )
     template: ClassVar[Template] = Template(
         'agent {name="bot"} [label {label:name}] [human] [controllable] [mobile {mobile:number=3}]'
-        " [radius {radius:number}] [tolerance {tolerance:number}] [inflation {inflation:number}]"
+        " [speed {speed:number}] [radius {radius:number}] [tolerance {tolerance:number}] [inflation {inflation:number}]"
         " location {location:POI=a} [can_do {can_do:events=e1, e2}] [reacts_to {reacts_to:events=e3}]"
     )
     note: ClassVar[str] = (
-        'location is required; behind the name: label "Porter 1"; before location, of a robot: radius 0.2 '
-        "tolerance 0.1 inflation 0.5"
+        'location is required; behind the name: label "Porter 1"; in place of mobile: speed 0.5; before location, of a '
+        "robot: radius 0.2 tolerance 0.1 inflation 0.5"
     )
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("a robot", 'agent "{=bot}" controllable mobile {=1} location {POI} can_do {event}'),
@@ -79,10 +84,40 @@ class Agent(Labelled):
     shortest: ClassVar[str] = 'agent "{name}" location {place}'
     parts: ClassVar[Tuple[str, ...]] = template.begins
 
+    @classmethod
+    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Agent:
+        made: Agent = super().read(reader, *children, **at)
+        if made.speed is None:
+            return made
+        message, hint = "", "write speed and metres per second, such as speed 0.5"
+        if made.mobile is not None:
+            message, hint = f"{made.name} has mobile and speed", "delete one: both say how fast it moves"
+        elif reader.unit is None:
+            message = f"{made.name} has a speed in metres per second, and nothing says what a unit of time is"
+            hint = "write a line above all others: unit second (and distances in metres)"
+        elif not made.speed:
+            message, hint = f"{made.name} would never arrive: its speed is 0", f"{hint}, or delete it: it stays there"
+        if message:
+            reader.findings.append(error("PML423", message, made.span, hint))
+            return replace(made, mobile=made.mobile or 1, speed=None)
+        return replace(made, mobile=exact(1 / (Fraction(made.speed) * Fraction(reader.unit or 1))))
+
+    @property
+    def text(self) -> str:
+        return self.template.written(self if self.speed is None else replace(self, mobile=None))
+
     @property
     def is_robot(self) -> bool:
         """True for an agent that gets a controller of its own."""
         return self.controllable and not self.human
+
+    def window_on(self, distance: Number) -> Window:
+        """Between which times it arrives on a way; one that comes of a speed and has more than MOST_DIGITS digits is
+        rounded outwards, to tenths. It has to be mobile."""
+        earliest, latest = window_of(exact(distance * (self.mobile or 0)), None)
+        if self.speed is None or is_fine(earliest):
+            return earliest, latest
+        return exact(Fraction(floor(earliest * 10), 10)), exact(Fraction(ceil(latest * 10), 10))
 
     @property
     def kind_words(self) -> str:

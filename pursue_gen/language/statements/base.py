@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Any, Callable, ClassVar, Dict, Iterator, Optional, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, Span, error, listed, units
+from pursue_gen.diagnostics import Diagnostic, Span, error, listed
 from pursue_gen.language.conditions import Condition, names_in
 from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.template import Template
+from pursue_gen.language.times import like, units_of_time, window_text, written_time
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Numbers, Word
 
@@ -41,7 +42,7 @@ class Written:
     @classmethod
     def number_words(cls, word: str, number: Number) -> str:
         """What a number means behind a word; "": nothing is said of that."""
-        return cls.numbers[word](units(number), number) if word in cls.numbers else ""
+        return cls.numbers[word](units_of_time(number), number) if word in cls.numbers else ""
 
     @property
     def text(self) -> str:
@@ -172,6 +173,8 @@ class ForSome(StatementKind):
 def check_window(name: str, low: Number, high: Number, word: str, span: Span) -> Iterator[Diagnostic]:
     """An error where nothing lies between the two numbers behind a word."""
     if high <= low:
-        message = f"{name} ends later than {low} and at {high} at the latest: there is no such time"
-        hint = f"write the smaller number first: {word} {high} to {max(low, exact(high + 1))}"
+        message = f"{name} ends later than {written_time(low)} and at {written_time(high)} at the latest"
+        message += ": there is no such time"
+        later = low if low > high else like(exact(high + 1), high)
+        hint = f"write the smaller number first: {word} {window_text(high, later)}"
         yield error("PML200", message, span, hint)

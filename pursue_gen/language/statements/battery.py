@@ -39,7 +39,6 @@ class Battery(StatementKind):
         Word("capacity", "What the battery holds when it is full, as it is at the start.", True),
         Word("uses", "What the robot uses in a unit of time on its way or at work. To stand still uses nothing.", True),
         Word("per", "For each unit of time.", True),
-        Word("unit", "A unit of time.", True),
         Word("recharges", "What is added in a unit of time in which the robot does something at the dock.", True),
     )
     template: ClassVar[Template] = Template(

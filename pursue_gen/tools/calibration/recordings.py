@@ -37,7 +37,7 @@ def samples_in(
         findings += _warnings(part, file)
         parts.append(part)
     if unit is None:
-        unit = _unit(files, parts)
+        unit = _unit(files, parts, scenario)
     found = replace(together(parts), unit=unit)
     if not found.measured:
         begun = len(found.unused)
@@ -73,14 +73,22 @@ def _check_names(part: Samples, scenario: Scenario, file: Path) -> None:
     raise PursueError([error("CAL001", message, hint="name the scenario that was played, or other recordings")])
 
 
-def _unit(files: Sequence[Path], parts: Sequence[Samples]) -> float:
+def _unit(files: Sequence[Path], parts: Sequence[Samples], scenario: Scenario) -> float:
+    """The seconds of a time unit that all of them have, and the scenario, if it says that."""
+    said = scenario.unit
     units = {part.unit: file.name for part, file in zip(parts, files) if part.unit is not None}
     if len(units) > 1:
         each = ", ".join(f"{unit:g} s in {name}" for unit, name in units.items())
         message = f"the recordings have different time units: {each}"
         hint = "say how many seconds a time unit is to be: --time-unit SECONDS"
         raise PursueError([error("CAL003", message, hint=hint)])
-    return next((unit for unit in units if unit is not None), 1.0)
+    for unit, file in units.items():
+        if said is not None and unit is not None and unit != float(said):
+            message = f"{file} has time units of {unit:g} s, and the scenario says {scenario.units[0].text}"
+            hint = f"--time-unit {unit:g} counts as the mission did (as of simulated ones), "
+            hint += f"--time-unit {float(said):g} in real seconds"
+            raise PursueError([error("CAL003", message, hint=hint)])
+    return next((unit for unit in units if unit is not None), float(said or 1))
 
 
 def _warnings(part: Samples, file: Path) -> Iterator[Diagnostic]:

@@ -9,6 +9,7 @@ from typing import Any, Dict, Optional, Tuple
 from pursue_gen import api
 from pursue_gen.language.numbers import Number, at_most
 from pursue_gen.language.scenario import Patrol, Scenario
+from pursue_gen.language.times import written_time
 from pursue_gen.outcomes import LimitHit, Lost
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.synthesis.limits import Listener
@@ -39,7 +40,7 @@ class Verdict:
             worst = "not found out" if self.takes is None else f"at most {at_most(self.takes)} time units"
             text += f", to the goal {worst}"
         if self.period is not None:
-            text += f", patrols every {self.period}"
+            text += f", patrols every {written_time(self.period)}"
         if self.given_up:
             text += f", without optional {', '.join(map(str, self.given_up))}"
         return text

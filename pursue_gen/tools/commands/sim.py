@@ -113,7 +113,7 @@ def _print(summary: Summary, facts: Dict[str, Any], as_json_: bool) -> None:
         print(json.dumps(as_json(summary, facts), indent=1))
     else:
         guarantee = summary.case.won.guarantee
-        print(table(summary, guarantee.in_words() if guarantee else None))
+        print(table(summary, guarantee.in_words(summary.case.scenario.unit) if guarantee else None))
     if summary.failed:
         info(f"{counted(summary.failed, 'mission')} of {summary.missions} failed; the first:")
         for outcome in summary.failures:

@@ -9,6 +9,7 @@ from typing import Any, List, Mapping
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.labels import why_no_label
 from pursue_gen.language.numbers import read_number
+from pursue_gen.language.times import has_unit, read_seconds
 
 Values = Mapping[str, Any]
 
@@ -59,11 +60,17 @@ def number_of(values: Values, field: str) -> str:
     return value
 
 
+def time_of(values: Values, field: str) -> str:
+    """A time as it is written in a scenario, with its unit or without."""
+    value = " ".join(text_of(values, field).split())
+    return value if has_unit(value) and read_seconds(value).seconds is not None else number_of(values, field)
+
+
 def window_of(values: Values, field: str) -> str:
-    """One number, or two as in `3 to 5`."""
+    """One time, or two as in `3 to 5` or `30 s to 2 min`."""
     first, to, second = text_of(values, field).partition(" to ")
     texts = [first, second] if to else [first]
-    return " to ".join(number_of({field: one}, field) for one in texts)
+    return " to ".join(time_of({field: one}, field) for one in texts)
 
 
 def label_of(values: Values, field: str) -> str:

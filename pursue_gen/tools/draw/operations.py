@@ -214,6 +214,13 @@ def _kind(values: Values, field: str) -> Parts:
     return kinds[value]
 
 
+def _pace(part: str, other: str) -> Callable[[Values, str], Parts]:
+    """How fast an agent is, said in one of two ways."""
+    return lambda values, field: (
+        {part: fields.number_of(values, field), other: None} if values.get(field) else {part: None}
+    )
+
+
 def _times(values: Values, field: str) -> Parts:
     return {"AT_MOST": f"{fields.number_of(values, field)} times" if values.get(field) else None}
 
@@ -240,7 +247,8 @@ _FIELDS: Mapping[str, Mapping[str, Callable[[Values, str], Parts]]] = {
     "AGENT": {
         "label": _text("LABEL", fields.label_of),
         "kind": _kind,
-        "mobile": _text("MOBILE", fields.number_of),
+        "mobile": _pace("MOBILE", "SPEED"),
+        "speed": _pace("SPEED", "MOBILE"),
         "location": _needed("LOCATION", fields.name_of),
         "can_do": _list("CAN_DO"),
         "reacts_to": _list("REACTS_TO"),
@@ -272,7 +280,7 @@ def filled(form: Form, given: Any) -> str:
         field = {"value": value}
         is_number = bool(example) and what.replace(".", "").isdigit()
         if is_number:
-            text = fields.number_of(field, "value")
+            text = fields.time_of(field, "value")
         elif what == "agent" and value in ANYBODY:
             text = str(value)
         else:

@@ -134,7 +134,7 @@ def _promise(found: Promised) -> List[str]:
     scenario: Scenario = found.scenario
     lines = objective_words(scenario)
     if found.solution.guarantee is not None:
-        lines += [found.solution.guarantee.in_words()]
+        lines += [found.solution.guarantee.in_words(scenario.unit)]
     lines += [answer.in_words() for answer in answers(scenario, found.solution)]
     lines += [*periods_found(scenario), *(f"{sentence}." for sentence in promise_words(scenario))]
     assumed = condition_of_promise(scenario)

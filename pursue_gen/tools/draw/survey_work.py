@@ -52,7 +52,8 @@ def _measured(given: SurveyWork, floor: Path) -> Dict[str, Any]:
     scenario = read_placed(with_sizes(scenario, sizes_of(scenario, given.told)), given.file)
     robots = [agent.name for agent in scenario.agents if agent.is_robot and agent.mobile is not None]
     speeds = {} if given.speed is None else dict.fromkeys(robots, given.speed)
-    options = Options(sizes_of(scenario).with_radius(given.radius), ways=given.ways, drive=Drive(speeds))
+    drive = Drive(speeds, float(scenario.unit or 1))
+    options = Options(sizes_of(scenario).with_radius(given.radius), ways=given.ways, drive=drive)
     found = surveyed(scenario, read_ground(floor, whole=True), floor.name, options)
     lines = [*sentences(found.findings), *table(found)]
     paths = [{"a": way.a, "b": way.b, "line": way.line} for way in found.ways if way.line]

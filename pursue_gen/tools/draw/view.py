@@ -18,6 +18,7 @@ from pursue_gen.language.scenario import Connection, Poi
 from pursue_gen.language.sentences import objective_words
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.template import names_text
+from pursue_gen.language.times import window_text
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.word import HOLE
 from pursue_gen.solving.inputs import findings_of
@@ -189,7 +190,8 @@ def _agents(document: Draft) -> List[Dict[str, Any]]:
         name, parts = bare(one.name), parts_of(one)
         kind = "free" if "CONTROLLABLE" not in parts else "person" if "HUMAN" in parts else "robot"
         agent = {"name": name, "label": words_behind(one, "LABEL")[1:-1], "kind": kind}
-        agent.update(mobile=words_behind(one, "MOBILE"), location=words_behind(one, "LOCATION"))
+        agent.update(mobile=words_behind(one, "MOBILE"), speed=words_behind(one, "SPEED"))
+        agent.update(location=words_behind(one, "LOCATION"))
         agent["mark"] = mark(looks[name], 0, 0, 6.0)
         lists = {key: names_behind(one, key.upper()) for key in ("can_do", "reacts_to")}
         if name in known:  # groups are lists of their members
@@ -198,7 +200,8 @@ def _agents(document: Draft) -> List[Dict[str, Any]]:
     for each in made:
         kind = "free" if not each.controllable else "person" if each.human else "robot"
         agent = {"name": each.name, "label": each.label or "", "kind": kind, "location": each.location.name}
-        agent.update(mobile=str(each.mobile or ""), mark=mark(looks[each.name], 0, 0, 6.0))
+        agent.update(mobile="" if each.speed else str(each.mobile or ""), speed=str(each.speed or ""))
+        agent.update(mark=mark(looks[each.name], 0, 0, 6.0))
         lists = {key: [ref.name for ref in getattr(each, key)] for key in ("can_do", "reacts_to")}
         found.append({**agent, **lists, **_made(document, each.span)})
     return found
@@ -219,7 +222,7 @@ def _events(document: Draft) -> List[Dict[str, Any]]:
         if each.span.member:
             event = {"name": each.name, "label": each.label or "", "at_most": str(each.at_most or "")}
             event.update(location=each.location.name if each.location else "", only_if=_condition(each.only_if))
-            event["duration"] = " to ".join(str(end) for end in (each.duration, each.latest) if end is not None)
+            event["duration"] = "" if each.duration is None else window_text(each.duration, each.latest)
             ticks = {key: getattr(each, key) for key in ("collaborative", "together")}
             found.append({**event, **ticks, **_made(document, each.span)})
     return found

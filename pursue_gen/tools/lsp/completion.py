@@ -14,6 +14,8 @@ from pursue_gen.language.kinds import DECLARED, KEYWORDS, MAY_BE_NAMES, MEANINGS
 from pursue_gen.language.occurrences import GROUP, MEMBERS, SUBJECTS, VARIABLE, are_names, condition_start, kinds_behind
 from pursue_gen.language.poses import robots_in
 from pursue_gen.language.syntax import accepts, statements_of, tokens_of
+from pursue_gen.language.template import FILLINGS, Template
+from pursue_gen.language.times import has_unit
 from pursue_gen.language.tokens import bare, start_of
 from pursue_gen.language.word import HOLE
 
@@ -23,8 +25,17 @@ _WORD_BEFORE = re.compile(r"[\w-]*\Z")
 _BEHIND_POSE = re.compile(r"\][ \t]*,?[ \t]*(\w*)\Z")
 _WORD_AFTER = re.compile(r"\w*")
 _SPECIAL = re.compile(r"[$},|\\]")
+_UNITS = {"s": "seconds", "min": "minutes", "h": "hours"}
 _MOST_CHOICES = 50
 _DECLARING = {GROUP: STATEMENTS["GROUP"], **{kind.declares: kind for kind in STATEMENTS.values() if kind.declares}}
+_TIMED = frozenset(
+    hole.behind.upper()
+    for statement in STATEMENTS.values()
+    for kind in getattr(statement, "kinds", {"": statement}).values()
+    for hole in getattr(kind, "template", Template("")).holes
+    if hole.filling in (FILLINGS["time"], FILLINGS["window"])
+) | {"TO"}
+"""The words behind which a time stands."""
 _EXAMPLES = {thing: kind.form().split('"')[1] for thing, kind in _DECLARING.items()}
 
 
@@ -57,7 +68,9 @@ def complete(document: Draft, offset: int) -> Tuple[Completion, ...]:
         return tuple(_missing(document, place, place.quoted))
     expected = accepts(place.behind)
     grouped = bool(document.syntax.groups)
-    items = list(_names(document, place, expected)) + list(_words(place, expected, grouped))
+    items = [*_names(document, place, expected), *_words(place, expected, grouped)]
+    if document.scenario.unit is not None:
+        items += _units(place)
     if not place.behind or "$END" in expected or place.opens_line:
         items += _statements(document, place)
     return tuple(items)
@@ -235,6 +248,14 @@ def _words(place: _Place, expected: FrozenSet[str], grouped: bool) -> Iterator[C
     for token, sign in _SIGNS.items():
         if token in expected:
             yield Completion(sign, sign, token, "sign", *span)
+
+
+def _units(place: _Place) -> Iterator[Completion]:
+    """What may stand behind the number of a time."""
+    *_, word, number = (None, None, *place.behind)
+    if word is not None and number is not None and word.type in _TIMED and number.type == "NUMBER":
+        for unit, about in () if has_unit(number) else _UNITS.items():
+            yield Completion(unit, unit, "NUMBER", "value", place.start, place.end, about)
 
 
 def _statements(document: Draft, place: _Place) -> List[Completion]:

@@ -22,6 +22,7 @@ _PROPOSERS: Dict[str, _Proposer] = {
     "PML011": syntax.did_you_mean,
     "PML012": syntax.close_name,
     "PML013": syntax.close_comment,
+    "PML014": numbers.time_with_unit,
     "PML015": syntax.visible_blank,
     "PML017": syntax.delete_finding,
     "PML022": meaning.delete_spot,
@@ -68,6 +69,8 @@ _PROPOSERS: Dict[str, _Proposer] = {
     "PML253": meaning.delete_statement,
     "PML254": meaning.delete_statement,
     "PML320": meaning.delete_listed,
+    "PML420": numbers.say_unit,
+    "PML422": meaning.delete_statement,
 }
 
 

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.assumptions import NUMBERED
+from pursue_gen.language.assumptions.base import Departure
 from pursue_gen.language.document import Edit, behind, written
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.numbers import exact, read_number
+from pursue_gen.language.numbers import exact
 from pursue_gen.language.statements.event import MOST_TIMES
 from pursue_gen.language.syntax import Statement
+from pursue_gen.language.times import apart, has_unit, like, read_seconds, written_time
 from pursue_gen.language.tokens import bare, start_of
 from pursue_gen.tools.lsp.fixes_syntax import Proposals
+from pursue_gen.tools.lsp.hover import read_time
 
 
 def later_end(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
@@ -19,10 +22,11 @@ def later_end(document: Draft, finding: Diagnostic, part: Statement, at: int) ->
     for low, to, high in zip(tokens, tokens[1:], tokens[2:]):
         if (low.type, to.type, high.type) != ("NUMBER", "TO", "NUMBER"):
             continue
-        earliest, latest = read_number(high), read_number(low)
+        earliest, latest = read_time(document, high), read_time(document, low)
         if earliest is not None and latest is not None:
-            latest = exact(earliest + 1) if earliest == latest else latest
-            yield f"Write {earliest} to {latest}", (written(low, str(earliest)), written(high, str(latest)))
+            latest = like(exact(earliest + 1), earliest) if earliest == latest else latest
+            first, last = written_time(earliest), written_time(latest)
+            yield f"Write {first} to {last}", (written(low, first), written(high, last))
         return
     takes = part.pair("TAKES")
     if takes is not None:
@@ -102,10 +106,10 @@ def done_or_avoided(document: Draft, finding: Diagnostic, part: Statement, at: i
 def later_deadline(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
     """A deadline that ends after what is to be done begins to count."""
     after, within = part.pair("AFTER"), part.pair("WITHIN")
-    start = read_number(after[1]) if after is not None else None
+    start = read_time(document, after[1]) if after is not None else None
     if start is not None and within is not None:
-        number = exact(start + 1)
-        yield f"Write within {number}", (written(within[1], str(number)),)
+        number = written_time(like(exact(start + 1), start))
+        yield f"Write within {number}", (written(within[1], number),)
 
 
 def without_condition(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
@@ -122,5 +126,21 @@ def possible_number(document: Draft, finding: Diagnostic, part: Statement, at: i
     for word, kind in NUMBERED.items():
         found = part.pair(word)
         if found is not None:
-            yield f"Write {found[0]} {kind.nearest}", (written(found[1], str(kind.nearest)),)
+            often = document.scenario.rest if issubclass(kind, Departure) else 1
+            nearest = written_time(like(exact(kind.nearest * often), read_time(document, found[1])))
+            yield f"Write {found[0]} {nearest}", (written(found[1], nearest),)
     yield "Delete this statement", (document.deleted(part),)
+
+
+def say_unit(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
+    """Says what a unit of time is."""
+    yield "Add unit second", (document.inserted("unit second"),)
+
+
+def time_with_unit(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
+    """A time as it is written here, where the number is another one."""
+    token = next((token for token in part.tokens if token.start_pos == at), None)
+    if token is not None and token.type == "NUMBER":
+        text = read_seconds(token).instead if has_unit(token) else apart(token)
+        if text:
+            yield f"Write {text}", (written(token, text),)

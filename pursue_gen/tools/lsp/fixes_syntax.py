@@ -10,7 +10,7 @@ from lark import Token
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.document import Edit, behind, written
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.kinds import DECLARED, KEYWORDS, RESERVED
+from pursue_gen.language.kinds import DECLARED, KEYWORDS, MAY_BE_NAMES, RESERVED
 from pursue_gen.language.messages import QUOTES, name_meant
 from pursue_gen.language.syntax import Statement, accepts
 from pursue_gen.language.tokens import bare, end_of, start_of
@@ -45,7 +45,7 @@ def unexpected(document: Draft, finding: Diagnostic, part: Statement, at: int) -
         return
     token = part.tokens[wrong]
     expected = accepts(part.tokens[:wrong])
-    if "NAME" in expected and token.type == "WORD":
+    if "NAME" in expected and (token.type == "WORD" or token.type in MAY_BE_NAMES):
         name, last = name_meant(list(part.tokens), wrong)
         what = "label" if part.tokens[wrong - 1].type == "LABEL" else "name"
         yield f'Put the {what} in quotes: "{name}"', (Edit(at, end_of(last), f'"{name}"'),)

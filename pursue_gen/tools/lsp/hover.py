@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Callable, Dict, List, Optional, Tuple
 
+from lark import Token
+
 from pursue_gen.diagnostics import listed, units
 from pursue_gen.language.batteries import levels
 from pursue_gen.language.conditions import condition_words
@@ -13,7 +15,7 @@ from pursue_gen.language.draft import Draft
 from pursue_gen.language.for_each import ranges_of
 from pursue_gen.language.kinds import KEYWORDS, MEANINGS, STATEMENTS
 from pursue_gen.language.labels import in_markdown, markdown
-from pursue_gen.language.numbers import Number, exact, read_number
+from pursue_gen.language.numbers import Number, exact, window_of
 from pursue_gen.language.occurrences import GROUP, MEMBERS, VARIABLE, Occurrence
 from pursue_gen.language.scenario import (
     Agent,
@@ -31,8 +33,9 @@ from pursue_gen.language.scenario import (
 from pursue_gen.language.statements.base import Written
 from pursue_gen.language.statements.battery import MOST_CAPACITY
 from pursue_gen.language.syntax import Statement
+from pursue_gen.language.times import in_units, units_of_time, written_time
 from pursue_gen.language.tokens import start_of
-from pursue_gen.language.tree_reader import MOST
+from pursue_gen.language.tree_reader import TreeReader
 
 _MOST_LINES = 12
 _PLURALS = {"POI": "places", "agent": "agents", "event": "events", "state": "states"}
@@ -63,16 +66,24 @@ def hover(document: Draft, offset: int) -> Optional[Hover]:
     if token.type in KEYWORDS:
         form = f"\n\n```pursue\n{STATEMENTS[token.type].form()}\n```" if token.type in STATEMENTS else ""
         return Hover(f"**{token}**: {MEANINGS[token.type]}{form}", start, start + len(token))
-    number = read_number(token) if token.type == "NUMBER" else None
-    if number is not None and part is not None and number <= MOST:
-        text = _number(document.scenario, part.body, start, number)
+    number = read_time(document, token) if token.type == "NUMBER" else None
+    if number is not None and part is not None:
+        text = _number(document, part.body, start, number)
         return Hover(text, start, start + len(token)) if text else None
     return None
 
 
-def lasts(window: Window) -> str:
-    """How long something takes."""
-    return f"{window[0]} to {window[1]} units of time"
+def read_time(document: Draft, token: Token) -> Optional[Number]:
+    """The number of a token, as a time; None where it cannot be read."""
+    reader = TreeReader(document.file, {}, document.scenario.unit)
+    number = reader.time(token)
+    return None if reader.findings else number
+
+
+def lasts(window: Window, unit: Optional[Number]) -> str:
+    """How long something takes. `unit`: the seconds of a time unit, None: the scenario does not say."""
+    first, last = (in_units(end, unit) for end in window)
+    return f"{written_time(first)} to {units_of_time(last)}"
 
 
 def _about_members(document: Draft, here: Occurrence) -> str:
@@ -121,7 +132,7 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
         there = (poi.name, other) in way.directions
         words, direction = (f"to {other}", (poi.name, other)) if there else (f"from {other} only", (other, poi.name))
         movers = [(agent.name, scenario.movements(agent).get(direction)) for agent in scenario.agents]
-        times = ", ".join(f"{name} {lasts(window)}" for name, window in movers if window is not None)
+        times = ", ".join(f"{name} {lasts(window, scenario.unit)}" for name, window in movers if window is not None)
         only = f", only while {in_markdown(scenario, condition_words(way.only_if))}" if way.only_if is not None else ""
         whom = f", {in_markdown(scenario, way.whom_words)}" if way.whom_words else ""
         lines.append(f"- {words}: distance {way.distance}" + (f" ({times})" if times else "") + whom + only)
@@ -142,7 +153,7 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
 def _event(scenario: Scenario, event: Event) -> List[str]:
     where = f"at {event.location.name}" if event.location else "wherever the agent is"
     lines = [f"**{event.name}**: an event{_read_as(event.label)}", "", f"- happens {where}"]
-    lines.append(f"- takes {lasts(event.window)}" if event.window is not None else "- takes no time")
+    lines.append(f"- takes {lasts(event.window, scenario.unit)}" if event.window is not None else "- takes no time")
     if event.at_most is not None:
         lines.append(f"- happens at most {event.at_most} times")
     lines.append("- done by " + (", ".join(a.name for a in scenario.agents if _in(event.name, a.can_do)) or "nobody"))
@@ -207,43 +218,54 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
     if agent.mobile is None:
         lines.append("- stays there")
     else:
-        lines.append(f"- needs {units(agent.mobile)} of time for a unit of distance")
+        pace = f"needs {units_of_time(in_units(agent.mobile, scenario.unit))} for a unit of distance"
+        lines.append(f"- {pace}" if agent.speed is None else f"- moves {agent.speed} metres in a second")
         own = {travel.way for travel in scenario.travels if travel.agent.name == agent.name}
         known = {(way.a, way.b) for way in scenario.connections} | own  # the other direction takes as long
         movements = scenario.movements(agent).items()
-        lines += _listed([f"- {a} to {b}: {lasts(window)}" for (a, b), window in movements if (a, b) in known])
+        ways = [((a, b), lasts(window, scenario.unit)) for (a, b), window in movements if (a, b) in known]
+        lines += _listed([f"- {a} to {b}: {time}" for (a, b), time in ways])
     lines += [f"- {words} on a map" for words in [agent.size_words] if words]
     lines += _if_any("can do", [ref.name for ref in agent.can_do])
     lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])
     return lines + _said(scenario, "agent", agent.name)
 
 
-def _number(scenario: Scenario, part: Statement, start: int, number: Number) -> str:
-    """What the number at an offset of a statement means."""
+def _number(document: Draft, part: Statement, start: int, time: Number) -> str:
+    """What the number at an offset of a statement means; `time`: it, where it is one."""
+    scenario, number = document.scenario, exact(time)
     words = [t.type for t in part.tokens if start_of(t) < start and t.type in KEYWORDS]
     word = words[-1] if words else ""
     movers = [agent for agent in scenario.agents if agent.mobile is not None]
     if word == "DISTANCE":
-        lines = [f"A way of {units(number)} of distance.", ""]
-        times = [(agent.name, exact(number * (agent.mobile or 0))) for agent in movers]
-        return "\n".join(lines + _listed([f"- {name} needs {lasts((time, exact(time + 1)))}" for name, time in times]))
+        metres = any(agent.speed is not None for agent in movers)
+        lines = [f"A way of {number} metres." if metres else f"A way of {units(number)} of distance.", ""]
+        needs = [f"- {agent.name} needs {lasts(agent.window_on(number), scenario.unit)}" for agent in movers]
+        return "\n".join(lines + _listed(needs))
     if word in ("DURATION", "TAKES", "TO"):
         begins = next(start_of(t) for t in part.tokens if t.type in ("DURATION", "TAKES"))
         written = (t for t in part.tokens if t.type == "NUMBER" and start_of(t) > begins)
-        numbers = [value for value in map(read_number, written) if value is not None]
-        return f"It takes {lasts((numbers[0], numbers[1] if len(numbers) > 1 else exact(numbers[0] + 1)))}."
+        numbers = [value for value in (read_time(document, token) for token in written) if value is not None]
+        return f"It takes {lasts(window_of(numbers[0], numbers[1] if len(numbers) > 1 else None), scenario.unit)}."
     behind = next((t.type for t in part.tokens if start_of(t) > start), "")
     if word in ("AT_MOST", "HOLDS") and behind != "TIMES":
         return f"No more than {number} at one time."
     if word == "MOBILE":
-        lines = [f"It needs {units(number)} of time for a unit of distance; a larger number is slower.", ""]
+        pace = units_of_time(in_units(number, scenario.unit))
+        lines = [f"It needs {pace} for a unit of distance; a larger number is slower.", ""]
         times = [(f"{way.a} to {way.b}", exact(way.distance * number)) for way in scenario.connections]
-        ways = [f"- {name}: {lasts((time, exact(time + 1)))}" for name, time in times]
+        ways = [f"- {name}: {lasts((time, exact(time + 1)), scenario.unit)}" for name, time in times]
+        return "\n".join(lines + _listed(ways))
+    if word == "SPEED":
+        here = [agent for agent in movers if agent.span.line == part.tokens[0].line and agent.speed is not None]
+        lines = [f"It moves {number} metres in a second.", ""]
+        windows = [(way, agent.window_on(way.distance)) for agent in here for way in scenario.connections]
+        ways = [f"- {way.a} to {way.b}: {lasts(window, scenario.unit)}" for way, window in windows]
         return "\n".join(lines + _listed(ways))
     if part.kind == "BATTERY":
         return _battery(scenario, part)
     kind = STATEMENTS.get(word) or STATEMENTS.get(part.kind)  # a number may stand behind optional itself
-    return kind.number_words(word.lower(), number) if kind is not None else ""
+    return kind.number_words(word.lower(), time) if kind is not None else ""
 
 
 def _read_as(label: Optional[str]) -> str:

@@ -14,6 +14,7 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.numbers import time_text
 from pursue_gen.language.sentences import objective_words, promise_words
+from pursue_gen.language.times import unit_name
 from pursue_gen.tools.play.advice import Holding
 from pursue_gen.tools.play.counter import CounterPlay
 from pursue_gen.tools.play.saving import save
@@ -32,7 +33,7 @@ HELP = (
     "2            do number 2 of the list as soon as possible",
     "2 @ 3.5      do it at the time 3.5 (times count from the start)",
     "wait         until something happens",
-    "wait 2       for 2 time units, or until something happens",
+    "wait 2       for 2 units of time, or until something happens",
     "wait @ 7     until the time 7, or until something happens",
     "cancel       forget what is planned for later",
     "undo, redo   take a step back, or forward again",
@@ -84,7 +85,8 @@ def opening(session: Session) -> Tuple[str, ...]:
             "The robots cannot be sure of it.",
             "You play the robots; the program plays the others, and can always prevent it.",
         )
-    hint = "Times are in time units from the start. Type help for what you can say."
+    unit = unit_name(session.setup.scenario.unit)
+    hint = f"Times are in {unit} from the start. Type help for what you can say."
     return (*wants, *first, hint, "", *shown(session))
 
 

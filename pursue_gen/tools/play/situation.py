@@ -12,6 +12,7 @@ from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.numbers import time_text
 from pursue_gen.language.scenario import Connection
 from pursue_gen.language.symbols import Role, Symbol, role_of
+from pursue_gen.language.times import unit_name, written_time
 from pursue_gen.synthesis.game import Game
 from pursue_gen.tga.objectives import clock_of, stated
 from pursue_gen.tools.play.state import LOST, WON, PlayState, Setup
@@ -77,7 +78,7 @@ def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Itera
         number = where[names.reach_objective(k)]
         place = setup.game.automata[number].locations[play.position.state.locations[number]]
         if reach.after and play.now <= reach.after:
-            yield f"{reach.words.due} counts after {reach.after}"
+            yield f"{reach.words.due} counts after {written_time(reach.after)}"
         if reach.within is not None and place != names.WIN:
             done = {ref.name for ref in reach.done_in(place)}
             left = listed(ref.shown for ref in reach.events if ref.name not in done)
@@ -98,16 +99,16 @@ def window_text(now: Fraction, open_: Window) -> str:
 
 def ending(setup: Setup, play: PlayState) -> str:
     """How a game ended, in a sentence."""
-    at, late = time_text(play.now), setup.overdue(play)
+    at, late = f"{time_text(play.now)} {unit_name(setup.scenario.unit)}", setup.overdue(play)
     if play.status == WON:
         done = dict.fromkeys(ref.shown for reach in setup.scenario.reach for ref in reach.events)
         what = f": {listed(done)}" if done else ""
-        return f"The robots have done it after {at} time units{what}."
+        return f"The robots have done it after {at}{what}."
     if play.status == LOST:
         why = loss(setup.scenario, setup.game, play.position.state, late)
-        return f"The robots have lost after {at} time units: {why}."
+        return f"The robots have lost after {at}: {why}."
     who = ", ".join(map(setup.scenario.shown, late))
-    return f"Nothing can go on after {at} time units: {who} ought to move and cannot. The robots have not lost."
+    return f"Nothing can go on after {at}: {who} ought to move and cannot. The robots have not lost."
 
 
 def _only(way: Connection) -> str:

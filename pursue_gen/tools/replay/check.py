@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import Dict, List, Mapping, Optional, Tuple
 
 from pursue_gen.language.symbols import Symbol
+from pursue_gen.language.times import unit_name
 from pursue_gen.synthesis.lookup import Entry
 from pursue_gen.tools.replay.assumptions import newly_broken
 from pursue_gen.tools.replay.beginnings import EXACT
@@ -33,7 +34,7 @@ class Findings:
 
     `delays`: how late each command of a controller took effect, in time units since it was due; `reaction`: how late
     the strategy allows that, 0 where it is not known; `longest_due`: for how long a command was due at most before
-    something happened, and which one, of simulations in which messages may be late.
+    something happened, and which one, of simulations in which messages may be late; `times_in`: what times count.
     """
 
     steps: Tuple[ReplayedStep, ...]
@@ -46,6 +47,7 @@ class Findings:
     delays: Tuple[float, ...] = ()
     reaction: float = 0.0
     longest_due: Tuple[float, str] = (0.0, "")
+    times_in: str = "time units"
 
     @property
     def kept(self) -> bool:
@@ -98,7 +100,7 @@ def check(
     if record.exact_until is not None and lateness:
         due = longest_due(record.states, record.exact_until, steps, moves, orders)
     ended = last.status, in_words(last.reason), start, length
-    return Findings(tuple(steps), tuple(findings), *ended, counts, *how_late, due)
+    return Findings(tuple(steps), tuple(findings), *ended, counts, *how_late, due, unit_name(game.scenario.unit))
 
 
 def _orders_in(record: MissionRecord, game: Game) -> Tuple[Dict[int, Orders], List[Finding]]:
@@ -131,6 +133,7 @@ class _Checker:
         self.holds = 0
         self._record, self._game, self._tolerance, self._grace = record, game, tolerance, grace
         self._exact = min(EXACT, tolerance) if record.is_exact else EXACT
+        self._counts = unit_name(game.scenario.unit)
         self._zeros: Dict[str, float] = {}
         self._since: Dict[Entry, SystemState] = {}  # in which was decided what stands (else: in the one before)
         self._first_of: Dict[int, SystemState] = {}  # each state as it was when it began
@@ -270,7 +273,7 @@ class _Checker:
         }
         if wrong:
             wrong_by = ", ".join(f"{clock} by {off:+.4f}" for clock, off in sorted(wrong.items()))
-            self._report(FAULT, "clock", state, f"clocks do not fit the stamps: {wrong_by} time units")
+            self._report(FAULT, "clock", state, f"clocks do not fit the stamps: {wrong_by} {self._counts}")
             self._resume(state)
 
     def _status(self, before: SystemState, state: SystemState) -> None:
@@ -301,14 +304,14 @@ class _Checker:
                 if last.locations[name] == location:
                     self._report(FAULT, "end", last, f"its status is won, but {name} is {location}")
                 elif name in late:
-                    text = f"its status is won, but {name} was at its deadline {late[name]:.2f} time units before"
+                    text = f"its status is won, but {name} was at its deadline {late[name]:.2f} {self._counts} before"
                     self._report(FAULT, "end", last, text)
         elif last.status == LOST:
             for agent in (name for name in late if name not in dict(bad)):
                 self._report(WORLD, "overdue", last, f"{agent} should have left {last.locations[agent]} before")
         elif last.status not in (*ENDED, WAITING):
             for agent, by in late.items():
-                text = f"{agent} was {by:.2f} time units late in {last.locations[agent]} when the recording ended"
+                text = f"{agent} was {by:.2f} {self._counts} late in {last.locations[agent]} when the recording ended"
                 self._report(WORLD, "late", last, text)
 
     def _is_at_goal(self, state: SystemState) -> bool:
@@ -328,12 +331,12 @@ class _Checker:
             own = self._game.is_deadline(*step.move[0])
             if by > (0.001 if step.is_command else self._grace if own else self._tolerance):
                 how = "late" if late else "early"
-                text = f"{state.event} by {state.agent} comes {by:.2f} time units {how} for the model"
+                text = f"{state.event} by {state.agent} comes {by:.2f} {self._counts} {how} for the model"
                 found.append(Finding(FAULT if step.is_command else WORLD, how, state.seq, text))
             missed = self.moves.overdue(place_of(before), clocks) if not own else {}
             for name, _ in self._game.objective.bad:
                 if missed.get(name, 0.0) > self._grace:
-                    text = f"{name} was at its deadline {missed[name]:.2f} time units before"
+                    text = f"{name} was at its deadline {missed[name]:.2f} {self._counts} before"
                     found.append(Finding(FAULT, "deadline", state.seq, text))
             orders = self.orders.get(state.plan)
             if orders is None or state.status != RUNNING or self._is_at_goal(state):

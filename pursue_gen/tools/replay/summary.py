@@ -37,7 +37,7 @@ def summary(findings: Findings) -> str:
     """How much there was of what."""
     n = findings.counts
     others = n["steps"] - n["commands"] - n["reports"]
-    text = f"{n['steps']} steps in {findings.length:.1f} time units: "
+    text = f"{n['steps']} steps in {findings.length:.1f} {findings.times_in}: "
     text += f"{n['commands']} by command, {n['reports']} by report"
     text += f", {others} by themselves" if others else ""
     text += f"; {n['dropped']} words led to nothing" if n["dropped"] else ""

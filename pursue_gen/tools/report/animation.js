@@ -38,7 +38,7 @@ for (const source of document.querySelectorAll("script[type='application/json'][
     at("caption").textContent = `${shortly(step[0])}: ${step[1]}`;
     at("now").textContent = shortly(now);
     time.value = now;
-    time.setAttribute("aria-valuetext", `${shortly(now)} time units`);
+    time.setAttribute("aria-valuetext", `${shortly(now)} ${data.unit}`);
   };
   const shortly = (value) => String(Math.round(value * 100) / 100);
   const go = (moment) => { now = Math.min(data.end, Math.max(0, moment)); show(); };

@@ -21,6 +21,7 @@ from pursue_gen.drawing.look import AgentLook, agent_looks, mark, tag, text
 from pursue_gen.files import write_texts
 from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.language.symbols import Role, Symbol
+from pursue_gen.language.times import unit_name
 from pursue_gen.tools.report import timeline
 from pursue_gen.tools.report.html import Section, asset, data, page, rendered
 from pursue_gen.tools.report.recording import Recording, Stay, Step, ending_text, stays
@@ -67,8 +68,10 @@ def section(
     scenario: Scenario, recording: Recording, floor: Optional[Floor] = None, ident: str = _ID
 ) -> Section:
     """The animation as a part of a page; `floor` lies under the map, and everybody moves along its paths."""
+    unit = unit_name(scenario.unit)
     content = {"end": recording.end, "agents": _tracks(scenario, recording, floor), "steps": _steps(recording)}
-    values: Dict[str, Any] = {"ident": ident, "end": recording.end, "ending": ending_text(recording)}
+    content["unit"] = unit
+    values: Dict[str, Any] = {"ident": ident, "end": recording.end, "ending": ending_text(recording), "unit": unit}
     segments = _segments(scenario, recording, None)
     values["agents"] = [(agent.shown, segments[agent.name][0].description) for agent in scenario.agents]
     values.update(picture=draw(scenario, recording, floor, ident), data=data(f"{ident}-movements", content))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import List, Optional, Tuple
 
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.times import unit_name
 from pursue_gen.synthesis.plan_text import assign_text, guard_text, sync_text
 from pursue_gen.tga.network import Automaton, Edge, Location, Network
 from pursue_gen.tga.positions import positions
@@ -55,7 +56,7 @@ def _numbers(scenario: Scenario) -> str:
     if scenario.connections:
         a, b = scenario.connections[0].a, scenario.connections[0].b
         result += f" On the way it is a negative number: {codes.going(a, b)} is from {a} to {b}."
-    return f"{result} C and a name: a clock, in time units."
+    return f"{result} C and a name: a clock, in {unit_name(scenario.unit)}."
 
 
 def _location_rows(automaton: Automaton) -> List[Tuple[str, str, str]]:

@@ -71,7 +71,7 @@ def won_report(
 ) -> Report:
     """The report on a scenario that is won; `count` is called with how many missions have been simulated."""
     won = both[0]
-    margin = margin_text(won, margins(won, False, limits)[0])
+    margin = margin_text(won, margins(won, False, limits)[0], unit=scenario.unit)
     game, ideal = map(game_of_solution, both)
     policies = tables.command_tables(scenario, game, ideal, options.reach_obj)
     policy = policies[0].reach_obj

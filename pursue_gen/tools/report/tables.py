@@ -7,6 +7,7 @@ from typing import Callable, List, Optional, Sequence, Tuple
 
 from pursue_gen.language.numbers import at_most
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.times import unit_name
 from pursue_gen.partition.split import ALL, CENTRALIZED, DEDICATED, DISTRIBUTED
 from pursue_gen.solving.solution import Solution
 from pursue_gen.tools.report.commands import CommandsTable, Game, cells_of, commands_table
@@ -76,7 +77,7 @@ def section(
 ) -> Section:
     """The tables on the page."""
     robots = tuple(agent.name for agent in scenario.agents if agent.is_robot)
-    thesis = thesis_table(scenario.name, robots)
+    thesis, unit = thesis_table(scenario.name, robots), unit_name(scenario.unit)
     ideal, others = [[_policy(one, False) for one in tables[1:] if bool(one.ends) is ends] for ends in (True, False)]
     body = rendered(
         "tables",
@@ -84,7 +85,7 @@ def section(
         others="".join(others),
         ideal="".join(ideal),
         goal=won.objective.reaches,
-        times=_times(won, missions, thesis) if won.objective.reaches else _safety(missions),
+        times=_times(won, missions, thesis, unit) if won.objective.reaches else _safety(missions, unit),
         missions=missions,
         thesis=thesis,
         driven=[text for one in missions[-1:] for text in driven_words(one.summary)],
@@ -102,7 +103,7 @@ def _policy(one: CommandsTable, first: bool) -> str:
     return table(heads, rows, f"The objective's commands: {policy}{end}")
 
 
-def _times(won: Solution, missions: Sequence[Measured], thesis: Optional[ThesisTable]) -> str:
+def _times(won: Solution, missions: Sequence[Measured], thesis: Optional[ThesisTable], unit: str) -> str:
     heads = ["", "least", "median", "worst", *(["thesis (seconds)"] if thesis else [])]
     worst = won.guarantee.worst if won.guarantee else None
     rows: List[List[object]] = [["guaranteed", "", "", "not found out" if worst is None else at_most(worst)]]
@@ -115,16 +116,17 @@ def _times(won: Solution, missions: Sequence[Measured], thesis: Optional[ThesisT
             seconds = thesis.times.centralized if one.controllers == CENTRALIZED else thesis.times.distributed
             found.append("not reached" if seconds is None else _number(seconds))
         rows.append([label, *found])
-    return table(heads, rows, "In time units from the start")
+    return table(heads, rows, f"In {unit} from the start")
 
 
-def _safety(missions: Sequence[Measured]) -> str:
+def _safety(missions: Sequence[Measured], unit: str) -> str:
     rows = [
         [one.controllers, END_TEXTS[row.end], row.missions, _number(row.worst)]
         for one in missions
         for row in one.summary.rows
     ]
-    heads = ["controllers", "outcome", "missions", "watched for (units)"]
+    short = "units" if unit == "time units" else unit
+    heads = ["controllers", "outcome", "missions", f"watched for ({short})"]
     return table(heads, rows, "Simulated missions, without faults") if rows else ""
 
 

@@ -9,6 +9,7 @@ from pursue_gen.drawing.look import AgentLook, agent_looks, mark, patterns, safe
 from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import UNDER_WAY, Role, Symbol, role_of
+from pursue_gen.language.times import unit_name
 from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import stated
@@ -76,7 +77,8 @@ def draw(recording: Recording, ident: str = _ID) -> str:
         body.append(tag("g", *head, inner, class_="lane", data_lane=lane.name))
     body += _end(recording, scale, _TOP + _ROW * len(rows))
     title = f"{recording.scenario.name}: {recording.source}"
-    description = f"{len(recording.steps)} steps in {_time(recording.end)} time units; {ending_text(recording)}"
+    lasted = f"{_time(recording.end)} {unit_name(recording.scenario.unit)}"
+    description = f"{len(recording.steps)} steps in {lasted}; {ending_text(recording)}"
     heading = text(12, 20, title, "pg-strong", "start")
     subtitle = text(12 + 9.2 * len(title) + 16, 20, description, "pg-small", "start")
     return svg(scale.width, height, title, description, [heading, subtitle, *body], ident)
@@ -91,8 +93,9 @@ def section(recording: Recording, ident: str = _ID) -> Section:
         for step, changed in zip(recording.steps, changes(recording))
     ]
     heads = ("Time", "Who", "What", "What that changes")
-    steps = table(heads, rows, "All steps; times in time units since the start")
-    caption = "Bars are movements and actions, lines are waits; times are in time units since the start."
+    unit = unit_name(recording.scenario.unit)
+    steps = table(heads, rows, f"All steps; times in {unit} since the start")
+    caption = f"Bars are movements and actions, lines are waits; times are in {unit} since the start."
     picture = (
         f'<figure><div class="wide picture {safe(ident)}-wide" tabindex="0" role="region" aria-label="Timeline">'
         f"{draw(recording, f'{ident}-picture')}</div><figcaption>{caption}</figcaption></figure>"

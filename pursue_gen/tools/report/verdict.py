@@ -5,14 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Dict, Optional, Sequence
 
-from pursue_gen.diagnostics import Diagnostic, units
+from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.explanation import explain
 from pursue_gen.explanation.changes import Change
 from pursue_gen.explanation.costs import Costs, in_words
 from pursue_gen.explanation.explain import Explanation
-from pursue_gen.language.numbers import decimal_text, time_text
+from pursue_gen.language.numbers import Number, time_text
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.sentences import objective_words, promise_words, speed_words
+from pursue_gen.language.times import in_unit, words_for
 from pursue_gen.partition import unneeded, unneeded_words
 from pursue_gen.solving.answers import answers
 from pursue_gen.solving.rules import Rules
@@ -40,14 +41,14 @@ def section(
         "wanted": objective_words(scenario),
         "assumed": [each.clause for each in scenario.assumptions],
         "won": won,
-        "within": "" if won is None or won.within is None else decimal_text(won.within),
+        "within": "" if won is None or won.within is None else words_for(won.within, scenario.unit),
         "lost": lost,
-        "game": _game(rules),
+        "game": _game(rules, scenario.unit),
         "agents": _agents(scenario),
     }
     if won is not None:
         values["promised"] = promise_words(scenario)
-        values["kept"] = [text for text in (won.guarantee and won.guarantee.in_words(), margin) if text]
+        values["kept"] = [text for text in (won.guarantee and won.guarantee.in_words(scenario.unit), margin) if text]
         values["answers"] = [answer.in_words() for answer in answers(scenario, won)]
         values["unneeded"] = unneeded_words(unneeded(scenario, won.strategy))
     elif lost is not None:
@@ -60,25 +61,25 @@ def section(
 
 def _change(change: Change) -> str:
     """A change that helps, where it is made, and what alone is not enough."""
-    notes = [f"{change.next_lost} is not enough"] if change.next_lost != change.before else []
+    notes = [f"{change.not_enough} is not enough"] if change.not_enough else []
     notes += [change.span.in_words] if change.span else []
     return change.sentence + (f" ({'; '.join(notes)})" if notes else "")
 
 
 def _play(explanation: Explanation) -> str:
     rows = [(time_text(line.at), line.who, line.text) for line in explanation.play]
-    return table(("time (units)", "who", "what"), rows) if rows else ""
+    return table((f"time ({explanation.times_in})", "who", "what"), rows) if rows else ""
 
 
-def _game(rules: Rules) -> str:
+def _game(rules: Rules, unit: Optional[Number]) -> str:
     """The rules of the game, for people."""
-    reaction = f"{float(rules.reaction):g}"
+    reaction = f"{float(rules.reaction):g} units" if unit is None else words_for(rules.reaction, unit)
     if rules.ends == "reported":
         ends = "Robots report when they have arrived or finished, at any moment of the model's windows"
     else:
         ends = "The plan decides when movements and actions end, within the model's windows (no real robot lets it)"
-    slack = "".join(f"; {agent} may be {units(str(late))} later" for agent, late in rules.slack.items())
-    return f"{ends}{slack}. A command may take effect up to {reaction} units after it was due."
+    slack = "".join(f"; {agent} may be {in_unit(str(late), unit)} later" for agent, late in rules.slack.items())
+    return f"{ends}{slack}. A command may take effect up to {reaction} after it was due."
 
 
 def _agents(scenario: Scenario) -> str:

@@ -6,7 +6,8 @@ from fractions import Fraction
 from typing import Any, Dict, List, Optional
 
 from pursue_gen.columns import columns
-from pursue_gen.language.numbers import at_most
+from pursue_gen.language.numbers import tenths_above
+from pursue_gen.language.times import unit_name, words_for
 from pursue_gen.tools.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome
 from pursue_gen.tools.simulation.runs import Summary
 from pursue_runtime.state import LOST, STOPPED
@@ -38,11 +39,12 @@ def table(summary: Summary, guaranteed: Optional[str] = None) -> str:
 
 
 def _notes(summary: Summary, guaranteed: Optional[str]) -> List[str]:
-    lines = ["Times are in time units from the start."]
+    unit = summary.case.scenario.unit
+    lines = [f"Times are in {unit_name(unit)} from the start."]
     lines += [guaranteed] if guaranteed else []
     if summary.bound is not None:
-        bound = at_most(Fraction(f"{summary.bound:.6f}"))
-        lines.append(f"With the workspace's controllers, and without faults: at most {bound} time units.")
+        bound = words_for(tenths_above(Fraction(f"{summary.bound:.6f}")), unit)
+        lines.append(f"With the workspace's controllers, and without faults: at most {bound}.")
     lines += driven_words(summary)
     if summary.happened:
         faults = ", ".join(f"{kind} {times:,}" for kind, times in summary.happened.items())

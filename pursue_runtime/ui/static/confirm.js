@@ -21,7 +21,7 @@ function isEarly(task, now) { // the model does not have it end yet; a robot tha
 }
 
 function earlyText(task, now) {
-  return `${shown(task.agent)}: ${task.text}. By the model this ends in ${units(task.low - now)} time units at the earliest. `
+  return `${shown(task.agent)}: ${task.text}. By the model this ends in ${units(task.low - now)} ${scene.counts} at the earliest. `
     + "Has it ended? A report cannot be taken back.";
 }
 

@@ -15,7 +15,7 @@ function missionRow(mission) {
   const row = make("li", "mission"), line = make("p"), result = make("strong", "result", mission.result);
   result.dataset.is = mission.result;
   line.append(result, ` ${dayTime(1000 * mission.began)}`);
-  if (mission.units !== null) line.append(`, ${units(mission.units)} time units`);
+  if (mission.units !== null) line.append(`, ${units(mission.units)} ${scene.counts}`);
   if (mission.present) line.append(", this mission");
   row.append(line);
   if (mission.why) row.append(make("p", "why", mission.why));

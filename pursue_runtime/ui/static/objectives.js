@@ -34,12 +34,12 @@ function next(now) { // what the strategy does, as long as others begin nothing
 function guarantee(now) { // until when the goal is reached, whatever others do; honest about what is not known
   const given = view.guarantee;
   if (given.most === undefined || !(view.live || view.status === "waiting")) return "";
-  const inAll = given.most === null ? "" : `at most ${atMost(given.most)} time units`;
+  const inAll = given.most === null ? "" : `at most ${atMost(given.most)} ${scene.counts}`;
   if (given.void) return `The guaranteed time is not known any more: ${given.void}.`;
-  if (!inAll) return "The goal is guaranteed; in how many time units is not known.";
+  if (!inAll) return `The goal is guaranteed; in how many ${scene.counts} is not known.`;
   if (!view.live) return `Guaranteed: ${inAll} from the start, if everybody keeps to the model.`;
-  if (now > given.most) return `The guaranteed time of ${atMost(given.most)} time units from the start is over.`;
-  return `Guaranteed: at most ${atMost(given.most - now)} time units from now, ${atMost(given.most)} in all, if everybody keeps to the model.`;
+  if (now > given.most) return `The guaranteed time of ${atMost(given.most)} ${scene.counts} from the start is over.`;
+  return `Guaranteed: at most ${atMost(given.most - now)} ${scene.counts} from now, ${atMost(given.most)} in all, if everybody keeps to the model.`;
 }
 
 const atMost = (value) => String(Math.ceil(value * 10 - 1e-6) / 10); // rounded up: less is not guaranteed

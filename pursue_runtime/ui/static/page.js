@@ -99,6 +99,7 @@ function present() {
 function setScene(fresh) {
   const same = JSON.stringify(fresh) === JSON.stringify(scene);
   scene = fresh;
+  say($("counts"), scene.counts);
   $("main").hidden = false;
   if (same) return;
   say($("scenario"), scene.scenario);

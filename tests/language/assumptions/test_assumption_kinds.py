@@ -125,9 +125,9 @@ def test_its_words_are_known_everywhere(kind: Type[Assumption]) -> None:
 def test_numbers_that_are_proposed_say_more_and_can_be_assumed(kind: Type[Assumption], data: st.DataObject) -> None:
     one = drawn(data, kind)
     whole = replace(read(STORY.format("")), assumptions=(one,))
-    for number in one.stronger(30):
-        assert set(one.with_number(number).stronger(30)) < set(one.stronger(30))
-    for number in (*one.stronger(30), kind.nearest):
+    for number in one.stronger(30, 2):
+        assert set(one.with_number(number).stronger(30, 2)) < set(one.stronger(30, 2))
+    for number in (*one.stronger(30, 2), kind.nearest):
         other = one.with_number(number)
         assert other.subject == one.subject
         assert "PML251" not in [finding.code for finding in other.check_in(setting_of(whole))]

@@ -21,6 +21,8 @@ from pursue_gen.language.statements.group import ForEach
 from pursue_gen.language.word import HOLE
 
 STORY = """\
+unit second
+rest 0.5
 poi "a" label "the hall" //[1, 2, 0, 0, 0, 0, 1] bot [3, 4, 0, 0, 0, 0, 1]
 poi "b"
 connect a and b distance 3 one_way only_if open is_true
@@ -36,6 +38,7 @@ state "shut": initially true, false_if first
 stateDependency: second only_if open is_false
 agent "bot" label "Porter 1" controllable mobile 3 radius 0.2 tolerance 0.1 location a can_do work, first
 agent "ally" human controllable location b reacts_to work
+agent "courier" speed 0.5 location b
 agent "guest" mobile 0.5 location b can_do second
 travel "bot" from a to b takes 5 to 8
 travel "guest" from b to a takes 4

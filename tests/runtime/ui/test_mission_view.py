@@ -267,6 +267,8 @@ def test_a_mission_without_a_goal_ends_with_its_objective_kept() -> None:
     told = MissionView(safe, TraceEnvironment(()))
     told.on_state(at(5, 131.5, status="won"), 131.5)
     assert told.verdict() == (0, "The objective was kept to the end, after 31.5 time units.")
+    told.counts = "seconds"
+    assert told.verdict() == (0, "The objective was kept to the end, after 31.5 seconds.")
 
 
 def test_progress_says_where_everybody_is() -> None:

@@ -56,6 +56,8 @@ def test_the_time_at_worst_is_that_of_the_workspaces_own_strategy() -> None:
     here = state(MODEL, 3, 120.0, {"Cobj": 8.5})
     told = [objectives_now(promise, STATUSES, MODEL, each, 20.0)[0]["says"] for each in (here, here._replace(plan=1))]
     assert told == ["bot is at a. At worst after 41.3.", "bot is at a."]
+    timed = read_promise({"counts": "seconds", "objectives": [{"says": "bot is at a.", "of": ["obj"], "worst": 41.3}]})
+    assert timed.objectives[0].now(here, timed.counts) == "bot is at a. At worst after 41.3 seconds."
 
 
 def test_objectives_are_not_said_twice() -> None:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
+import re
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, List
 
 import pytest
 
+from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import load, parse
-from pursue_gen.tools.calibration import proposal_report
+from pursue_gen.tools.calibration import proposal_report, recordings
 from pursue_gen.tools.calibration.proposal import Options, Proposal, propose
 from pursue_gen.tools.calibration.samples import Sample, Samples, Way, Work
 from pursue_runtime.drives.report import Drive
@@ -237,3 +239,20 @@ def test_a_window_that_holds_the_few_times_is_never_narrowed() -> None:
 def test_windows_are_rounded_to_the_step() -> None:
     (found,) = proposal([Sample(OUT, 5.0 + 0.1 * n) for n in range(10)], step=Fraction(1)).findings
     assert all(end == int(end) for end in found.proposed)
+
+
+def test_windows_have_units_where_the_scenario_has_them(folder: Path, tmp_path: Path) -> None:
+    timed, copy = tmp_path / "timed.pur", tmp_path / "copy.pur"
+    timed.write_text("unit second\n" + FLOOR.replace("takes 4 to 6", "takes 4 s to 6 s"), encoding="utf-8")
+    done = called(timed, folder / "drives.bag", "-o", copy, "--no-solve", "--time-unit", 1)
+    assert done.status == 0, done.err
+    assert re.search(r"desk to shelf takes 3\.8 (s )?to 6\.8( s)? /\*", copy.read_text(encoding="utf-8"))
+    assert "travel bot from shelf to desk takes 2.8 s to 13.1 s // calibrate" in copy.read_text(encoding="utf-8")
+
+
+def test_recordings_with_another_time_unit_than_the_scenario(tmp_path: Path) -> None:
+    timed = parse("unit 10 s\n" + FLOOR, "floor.pur", "floor")
+    assert recordings._unit([Path("a.bag")], [Samples((), unit=10.0)], timed) == 10
+    assert recordings._unit([Path("a.bag")], [Samples((), unit=None)], timed) == 10
+    with pytest.raises(PursueError, match="a.bag has time units of 1 s, and the scenario says unit 10 s"):
+        recordings._unit([Path("a.bag")], [Samples((), unit=1.0)], timed)

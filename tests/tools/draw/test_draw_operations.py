@@ -155,6 +155,12 @@ def test_parts_are_set_and_left_out() -> None:
     assert 'agent "porter" location corridor' in after and "reacts_to fetch" in after
     after = done(text, "set", statement=fetch, fields={"label": "", "duration": "2 to 4", "at_most": "3"})
     assert 'event "fetch" location pharmacy duration 2 to 4 at_most 3 times // slow' in after
+    timed = done("unit second\n" + after, "set", statement=fetch + 1, fields={"duration": "30  s to 1 min 30 s"})
+    assert "duration 30 s to 1 min 30 s at_most" in timed
+    fast = done(timed, "set", statement=porter + 1, fields={"speed": "0.5"})
+    assert 'agent "porter" controllable speed 0.5 location corridor' in fast
+    again = done(fast, "set", statement=porter + 1, fields={"mobile": "3"})
+    assert 'agent "porter" controllable mobile 3 location corridor' in again
     after = done(after, "set", statement=fetch, fields={"location": "", "duration": "", "only_if": "nurse at room"})
     assert 'event "fetch" at_most 3 times only_if nurse at room // slow' in after
 

@@ -25,7 +25,7 @@ def labels(text: str, kind: str = "") -> List[str]:
 
 
 WHOLE = SMALL + "{}"
-SIZE = ["radius", "tolerance", "inflation"]
+SIZE = ["speed", "radius", "tolerance", "inflation"]
 
 
 @pytest.mark.parametrize(
@@ -135,6 +135,16 @@ def test_signs_and_values() -> None:
     assert labels("poi |", "value") == ['"a"']
     assert labels('poi "a" |', "value") == ["//[0, 0, 0, 0, 0, 0, 1]"]
     assert labels('poi "a"\n|', "value") == []  # a pose stands on the line of its place
+
+
+def test_units_stand_behind_times_where_the_scenario_has_a_unit() -> None:
+    timed = 'unit second\npoi "a"\n'
+    for words in ('event "e" duration 5 ', "travel b from a to c takes 5 to 8 ", "objective: if e then f within 2 "):
+        assert [label for label in labels(f"{timed}{words}|", "value") if label in "s min h"] == ["s", "min", "h"]
+    assert not {"s", "min"} & {*labels('poi "a"\nevent "e" duration 5 |')}
+    assert not {"s", "min"} & {*labels(f"{timed}connect a and b distance 5 |")}
+    assert not {"s", "min"} & {*labels(timed + 'event "e" duration 5 min |')}
+    assert labels("unit |", "word") == ["second", "minute", "hour"]
 
 
 def test_statements_begin_at_the_beginning_and_behind_a_complete_one() -> None:

@@ -165,3 +165,18 @@ def test_broken_statements_do_not_hide_the_others() -> None:
 def test_where_there_is_nothing_to_tell(text: str) -> None:
     plain, at = marked(text)
     assert hover(Draft.of(plain, "x.pur"), at) is None
+
+
+def test_times_have_their_units_where_the_scenario_says_what_one_is() -> None:
+    timed = "unit second\n" + SMALL.replace("within 20", "within 2 min").replace("duration 3", "duration 90")
+    assert "The answer must have come 2 min later at most." in told("within 2", timed)
+    assert "It takes 90 s to 91 s." in told("duration ", timed)
+    assert "1 min 30 s" not in told("duration ", timed)
+    assert "It needs 2 s for a unit of distance" in told("mobile ", timed)
+    assert "must be answered by hand within 2 min" in told('event "wo', timed)
+    assert "A way of 3 units of distance." in told("distance ", timed)
+    assert "bot 6 s to 7 s" in told('poi "', timed)
+    fast = timed.replace("mobile 2", "speed 0.5")
+    assert "It moves 0.5 metres in a second." in told("speed ", fast) and "- a to b: 6 s to 7 s" in told("speed ", fast)
+    assert "A way of 3 metres." in told("distance ", fast) and "moves 0.5 metres in a second" in told('agent "b', fast)
+    assert told("within 2", timed.replace("unit second\n", "")) == ""

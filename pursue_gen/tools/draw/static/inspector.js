@@ -102,6 +102,7 @@ function agent(thing) {
     field("field-kind", "is", thing.kind, set(thing, "kind"), { options: KINDS }),
     field("field-location", "starts at", thing.location, set(thing, "location"), { options: places() }),
     field("field-mobile", "time units per unit of distance (empty: stays)", thing.mobile, set(thing, "mobile"), { inputmode: "decimal" }),
+    field("field-speed", "or its speed in metres per second", thing.speed, set(thing, "speed"), { inputmode: "decimal" }),
     ...list(thing, "can_do", "can do", state.view.events),
     ...list(thing, "reacts_to", "reacts to", state.view.events.filter((one) => one.collaborative || thing.reacts_to.includes(one.name))),
   ];
@@ -112,7 +113,7 @@ function event(thing) {
   const fields = [
     ...named("event", thing),
     field("field-location", "happens", thing.location, set(thing, "location"), { options: [["", "anywhere"], ...places()] }),
-    field("field-duration", "duration (3, or 3 to 5; empty: none)", thing.duration, set(thing, "duration"), { spellcheck: "false" }),
+    field("field-duration", "duration (3, 3 to 5, or 30 s to 1 min; empty: none)", thing.duration, set(thing, "duration"), { spellcheck: "false" }),
     field("field-at_most", "at most so many times", thing.at_most, set(thing, "at_most"), { inputmode: "numeric" }),
     tick("field-collaborative", "needs a partner who reacts", thing.collaborative, set(thing, "collaborative")),
     tick("field-together", "keeps both busy until it ends", thing.together, set(thing, "together")),
