@@ -23,6 +23,7 @@ from pursue_gen.language.statements.battery import Battery
 from pursue_gen.language.statements.connect import Connection
 from pursue_gen.language.statements.dependency import Dependency
 from pursue_gen.language.statements.event import Event
+from pursue_gen.language.statements.mission import MissionEnd
 from pursue_gen.language.statements.poi import Poi
 from pursue_gen.language.statements.rule import Both, Choice, Rule, RuleBody, Sequence
 from pursue_gen.language.statements.state import State
@@ -30,8 +31,8 @@ from pursue_gen.language.statements.travel import Travel
 
 __all__ = [
     "Agent", "AllOf", "AnyOf", "At", "AtMostOf", "Battery", "Both", "Choice", "Condition", "Connection", "Dependency",
-    "Doing", "Event", "Holds", "Not", "OnWay", "Poi", "Pose", "Ref", "Rule", "RuleBody", "Scenario", "Sequence",
-    "Spot", "State", "Travel", "Who", "Window",
+    "Doing", "Event", "Holds", "MissionEnd", "Not", "OnWay", "Poi", "Pose", "Ref", "Rule", "RuleBody", "Scenario",
+    "Sequence", "Spot", "State", "Travel", "Who", "Window",
 ]
 __all__ += kinds_of_assumptions.__all__
 __all__ += kinds_of_objectives.__all__
@@ -64,6 +65,7 @@ class Scenario:
     assumptions: Tuple[Assumption, ...] = ()
     given_up: Tuple[GivenUp, ...] = ()
     batteries: Tuple[Battery, ...] = ()
+    ends: Tuple[MissionEnd, ...] = ()
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
         """Show it in a notebook."""

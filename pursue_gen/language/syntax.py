@@ -52,7 +52,7 @@ _OPENS = frozenset(("CONTROLLABLE", "MOBILE", *MAY_BE_NAMES)) - {"LABEL"}
 _ENDS = frozenset(
     (
         "WORD NUMBER NAME POSE RPAR IS_TRUE IS_FALSE TRUE FALSE "
-        "COLLABORATIVE TOGETHER ONE_WAY TIMES CONTROLLABLE HUMAN ON_WAY ROBOT ROBOTS AGENTS"
+        "COLLABORATIVE TOGETHER ONE_WAY TIMES CONTROLLABLE HUMAN ON_WAY ROBOT ROBOTS AGENTS ANSWERED"
     ).split()
 )
 """Tokens behind which no name can stand: one that opens the next line begins something else."""
@@ -357,6 +357,8 @@ def _chunks(tokens: List[Token]) -> List[List[Token]]:
             begins = False  # a rule is for each robot, or agent
         elif token.type == "OPTIONAL":  # a name may be called so; none is before a number
             begins = following == "NUMBER" or (opens_line and (ended or following in ("OBJECTIVE", "REACH_OBJECTIVE")))
+        elif token.type == "MISSION":  # a name may be called so
+            begins = following == "ENDS" or (opens_line and ended)
         elif token.type == "GROUP":  # a name may be called so
             begins = goes_on or (opens_line and ended)
         elif token.type in ("OBJECTIVE", "REACH_OBJECTIVE") and _opened(found):
