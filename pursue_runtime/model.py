@@ -54,6 +54,23 @@ class Assumption(NamedTuple):
     says: str
 
 
+class Ends(NamedTuple):
+    """When a mission ends in which nothing is to be reached: after so many time units (None: at any time); `answered`:
+    once no answer is due."""
+
+    after: Optional[float]
+    answered: bool
+
+
+class Promised(NamedTuple):
+    """What an automaton watches in such a mission, in the scenario's words; `kept` is what happens in time where
+    something is due, as in `answered`; `is_answered`: an end waits for that."""
+
+    says: str
+    kept: str
+    is_answered: bool
+
+
 class Move(NamedTuple):
     """One automaton's part of what an event does."""
 
@@ -98,6 +115,10 @@ class Model:
             """The same: the mission is lost where any of them is there."""
             self.says = {str(name): str(text) for name, text in dict(objective.get("says") or {}).items()}
             """What the automata of objectives watch, in the scenario's words; empty where there is one objective."""
+            self.promises = {str(name): _promised(each) for name, each in (objective.get("promises") or {}).items()}
+            """What the automata of objectives watch where nothing is to be reached, in system order."""
+            self.ends = _ends(data.get("ends"))
+            """When the mission ends; None: its scenario does not say so."""
             self.given_up = tuple(str(text) for text in objective.get("given_up") or ())
             """Optional objectives that the mission does not promise."""
         self._by_name = {automaton.name: automaton for automaton in self.automata}
@@ -193,6 +214,17 @@ def places_of(data: Any) -> Tuple[Tuple[str, str], ...]:
     """Automata and locations as data files have them: one pair, a list of pairs, or nothing."""
     pairs = [data] if data and isinstance(data[0], str) else data or []
     return tuple((str(automaton), str(location)) for automaton, location in pairs)
+
+
+def _promised(data: Mapping[str, Any]) -> Promised:
+    return Promised(str(data["says"]), str(data.get("kept", "")), bool(data.get("answered", False)))
+
+
+def _ends(data: Optional[Mapping[str, Any]]) -> Optional[Ends]:
+    if data is None:
+        return None
+    after = data.get("after")
+    return Ends(None if after is None else float(Fraction(str(after))), bool(data.get("answered", False)))
 
 
 def _automaton(data: Mapping[str, Any]) -> Automaton:

@@ -96,9 +96,13 @@ def awaited(model: Model, automaton: Automaton, location: str) -> str:
     return "" if end is None else deed(model, automaton, end).do
 
 
-def not_promised(model: Model) -> str:
-    """What to say of optional objectives where a mission begins: those that it does not promise; "" for none."""
-    return f"; it does not promise: {', '.join(model.given_up)}" if model.given_up else ""
+def said_at_start(model: Model) -> str:
+    """What to say where a mission begins: when it ends, and the optional objectives that it does not promise; "" where
+    there is nothing to say."""
+    ends = "" if model.ends is None or model.ends.after is None else f" after {model.ends.after:g} time units"
+    ends += " when all is answered" if model.ends is not None and model.ends.answered else ""
+    given_up = f"; it does not promise: {', '.join(model.given_up)}" if model.given_up else ""
+    return f"{ends and f'; it ends{ends}'}{given_up}"
 
 
 def begin_of(automaton: Automaton, location: str) -> Optional[Edge]:

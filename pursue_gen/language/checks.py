@@ -17,7 +17,7 @@ from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.numbers import MOST_DIGITS, exact, is_fine
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
-from pursue_gen.language.scenario import Agent, Poi, Scenario
+from pursue_gen.language.scenario import Agent, Poi, Respond, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
 from pursue_gen.language.times import in_units, written_time
 from pursue_gen.language.tokens import shown
@@ -241,6 +241,7 @@ def _missing(scenario: Scenario) -> Iterator[Diagnostic]:
 def _beside(scenario: Scenario) -> Iterator[Diagnostic]:
     """Objectives that stand there twice or contradict each other, and those that can never be reached as they stand."""
     yield from _optional(scenario)
+    yield from _ends(scenario)
     places: Dict[str, Span] = {}
     statements = [statement[0] for statement in scenario.statements]
     for objective in sorted(statements, key=lambda each: (each.span.line, each.span.column)):
@@ -281,6 +282,22 @@ def _optional(scenario: Scenario) -> Iterator[Diagnostic]:
         message = f"more than {MOST_OPTIONAL} different numbers behind optional"
         hint = "objectives with one number are kept or given up together: use a number for several of them"
         yield error("PML302", message, first.span, hint)
+
+
+def _ends(scenario: Scenario) -> Iterator[Diagnostic]:
+    """An end of the mission beside another one, or one that never comes."""
+    for end in scenario.ends:
+        yield from end.check()
+        if end is not scenario.ends[0]:
+            message = f"{scenario.ends[0].span.in_words} says already when the mission ends"
+            yield error("PML330", message, end.span, "delete one of the two")
+        elif scenario.reach:
+            message = "a mission with a reach_objective ends when all of them are reached"
+            yield error("PML330", message, end.span, "delete this line; for a deadline write within behind do")
+        elif end.answered and not any(isinstance(each, Respond) for each in scenario.safety):
+            message = "nothing has to be answered: there is no objective with if and then"
+            hint = "write mission ends after …, or add an objective: if e1 then e2 within 20"
+            yield error("PML331", message, end.span, hint)
 
 
 def _order(scenario: Scenario) -> Iterator[Diagnostic]:

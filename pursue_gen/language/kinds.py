@@ -13,6 +13,7 @@ from pursue_gen.language.statements.dependency import Dependency
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.statements.group import ForEach, Group
 from pursue_gen.language.statements.headed import Assume, Objective, ReachObjective
+from pursue_gen.language.statements.mission import MissionEnd
 from pursue_gen.language.statements.optional import Optional
 from pursue_gen.language.statements.poi import Poi
 from pursue_gen.language.statements.rest import Rest
@@ -41,6 +42,7 @@ STATEMENTS: Mapping[str, Type[StatementKind]] = {
         Objective,
         ReachObjective,
         Optional,
+        MissionEnd,
     )
 }
 """The kinds of statements, by the token that begins each."""

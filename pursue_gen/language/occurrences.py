@@ -165,7 +165,9 @@ def condition_start(tokens: Sequence[Token]) -> Optional[int]:
     for number, token in enumerate(tokens):
         if (kind_of(tokens), token.type) in _OPENS:
             following = tokens[number + 1].type if number + 1 < len(tokens) else ""
-            return None if following == "NEVER_WITH" else number + 1  # always may be an agent's name
+            is_name = tokens[number - 1].type != "COLON" or following == "NEVER_WITH"
+            if token.type != "ALWAYS" or not is_name:  # always may be the name of an agent, or of a place
+                return number + 1
     return None
 
 

@@ -23,6 +23,7 @@ from pursue_gen.language.statements.battery import Battery
 from pursue_gen.language.statements.connect import Connection
 from pursue_gen.language.statements.dependency import Dependency
 from pursue_gen.language.statements.event import Event
+from pursue_gen.language.statements.mission import MissionEnd
 from pursue_gen.language.statements.poi import Poi
 from pursue_gen.language.statements.rest import Rest
 from pursue_gen.language.statements.rule import Both, Choice, Rule, RuleBody, Sequence
@@ -32,8 +33,8 @@ from pursue_gen.language.statements.unit import Unit
 
 __all__ = [
     "Agent", "AllOf", "AnyOf", "At", "AtMostOf", "Battery", "Both", "Choice", "Condition", "Connection", "Dependency",
-    "Doing", "Event", "Holds", "Not", "OnWay", "Poi", "Pose", "Ref", "Rest", "Rule", "RuleBody", "Scenario", "Sequence",
-    "Spot", "State", "Travel", "Unit", "Who", "Window",
+    "Doing", "Event", "Holds", "MissionEnd", "Not", "OnWay", "Poi", "Pose", "Ref", "Rest", "Rule", "RuleBody",
+    "Scenario", "Sequence", "Spot", "State", "Travel", "Unit", "Who", "Window",
 ]
 __all__ += kinds_of_assumptions.__all__
 __all__ += kinds_of_objectives.__all__
@@ -68,6 +69,7 @@ class Scenario:
     batteries: Tuple[Battery, ...] = ()
     units: Tuple[Unit, ...] = ()
     rests: Tuple[Rest, ...] = ()
+    ends: Tuple[MissionEnd, ...] = ()
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
         """Show it in a notebook."""

@@ -14,6 +14,11 @@ def objective_words(scenario: Scenario) -> List[str]:
     return [objective_sentence(scenario, objective) for objective, *_ in scenario.statements]
 
 
+def end_words(scenario: Scenario) -> List[str]:
+    """When a mission ends, in a sentence, where the scenario says so."""
+    return [end.sentence for end in scenario.ends[:1]]
+
+
 def objective_sentence(scenario: Scenario, objective: StatedObjective) -> str:
     """What one objective wants, as a sentence, with its number where it is optional."""
     text = objective.sentence(scenario.shown)

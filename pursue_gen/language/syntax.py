@@ -53,7 +53,7 @@ _ENDS = frozenset(
     (
         "WORD NUMBER NAME POSE RPAR IS_TRUE IS_FALSE TRUE FALSE "
         "COLLABORATIVE TOGETHER ONE_WAY TIMES CONTROLLABLE HUMAN ON_WAY ROBOT ROBOTS AGENTS "
-        "SECOND MINUTE HOUR"
+        "SECOND MINUTE HOUR ANSWERED"
     ).split()
 )
 """Tokens behind which no name can stand: one that opens the next line begins something else."""
@@ -364,6 +364,8 @@ def _chunks(tokens: List[Token]) -> List[List[Token]]:
             begins = following in _LENGTHS or (opens_line and ended)
         elif token.type == "REST":  # so may it; none is before a number
             begins = following == "NUMBER" or (opens_line and ended)
+        elif token.type == "MISSION":  # a name may be called so
+            begins = following == "ENDS" or (opens_line and ended)
         elif token.type == "GROUP":  # a name may be called so
             begins = goes_on or (opens_line and ended)
         elif token.type in ("OBJECTIVE", "REACH_OBJECTIVE") and _opened(found):

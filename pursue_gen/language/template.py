@@ -114,7 +114,7 @@ class Template:
                     holes.append(Hole(tuple(fields.split(",")), filling, example or "", word, begins))
                 terms.append(holes[-1].filling.rule if fields else f'"{token[0]}"')
                 word, before = found or word, found or ""
-            if not holes:
+            if optional and not holes:
                 first = optional.split()[0].upper()
                 terms[0] = first
                 holes.append(Hole((word,), Filling(first, lambda *_: True), word, "", first))

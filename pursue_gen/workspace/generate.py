@@ -17,7 +17,7 @@ from pursue_gen.drawing import map_svg
 from pursue_gen.language.document import statement_text
 from pursue_gen.language.labels import in_markdown
 from pursue_gen.language.scenario import Reach, Safety, Scenario
-from pursue_gen.language.sentences import condition_of_promise
+from pursue_gen.language.sentences import condition_of_promise, end_words
 from pursue_gen.language.times import time_units
 from pursue_gen.outcomes import Invalid
 from pursue_gen.partition import SubStrategy, partition, strategy_file, unneeded
@@ -256,6 +256,7 @@ def _promise(scenario: Scenario) -> str:
     parts += [f"keeps `{_source(scenario, safety)}`" for safety in scenario.safety]
     assumed = in_markdown(scenario, condition_of_promise(scenario))
     kept = f"The mission {listed(parts)}, whatever the agents do that nobody controls{assumed and f', {assumed}'}."
+    kept += "".join(f" {sentence}" for sentence in end_words(scenario))
     given_up = [f"`{one.objective.text}`" for one in scenario.given_up]
     return f"{kept} What is optional and had to be given up: {listed(given_up)}." if given_up else kept
 

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.scenario import Respond, Scenario
 from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
@@ -29,9 +29,9 @@ def model_data(network: Network, objective: Objective, scenario: Scenario, react
     """The data of model.yaml, see `render`."""
     partners = _partners(scenario)
     goal, bad = places_data(objective.goal), places_data(objective.bad)
-    says = {**_says(scenario, objective), **_given_up(scenario)}
+    says = {**_says(scenario, objective), **_given_up(scenario), **_promises(scenario)}
     data: Dict[str, Any] = {
-        "format": 3 if partners else 2 if scenario.assumptions or _has_several(objective) else 1,
+        "format": _format(bool(partners), scenario, objective),
         "scenario": scenario.name,
         "reaction": number(reaction),
         "clocks": inline(network.clocks),
@@ -39,11 +39,34 @@ def model_data(network: Network, objective: Objective, scenario: Scenario, react
         "automata": [_automaton(each, _kind(each.name, scenario), partners) for each in network.automata],
         "objective": inline({"kind": objective.kind.value, "goal": goal, "bad": bad, **says}),
     }
+    for end in scenario.ends:
+        after = {} if end.after is None else {"after": number(Fraction(end.after))}
+        data["ends"] = inline({**after, "answered": end.answered})
     if scenario.labels:
         data["labels"] = inline(scenario.labels)
     if scenario.assumptions:
         data["assumptions"] = [inline(each) for each in _assumptions(scenario, network)]
     return data
+
+
+def _format(has_partners: bool, scenario: Scenario, objective: Objective) -> int:
+    """The format of model.yaml, the oldest that can say all of it."""
+    if scenario.ends:
+        return 4
+    return 3 if has_partners else 2 if scenario.assumptions or _has_several(objective) else 1
+
+
+def _promises(scenario: Scenario) -> Dict[str, Any]:
+    """What each automaton watches where nothing is to be reached; of what is due, what is said of it when it comes in
+    time, and whether an end of the mission waits for it."""
+    if scenario.reach:
+        return {}
+    found: Dict[str, Dict[str, Any]] = {}
+    for name, each in stated(scenario).items():
+        found[name] = {"says": each.text + each.words.which}
+        if each.words.kept:
+            found[name].update({"kept": each.words.kept, "answered": isinstance(each, Respond)})
+    return {"promises": found}
 
 
 def _assumptions(scenario: Scenario, network: Network) -> Iterator[Dict[str, str]]:

@@ -10,14 +10,14 @@ from typing import Any, Dict, Mapping, Optional, Tuple
 
 import rospy
 
-from pursue_runtime.event_words import STOP
+from pursue_runtime.event_words import FINISH, STOP
 from pursue_runtime.folders import scenario_folder
 from pursue_runtime.nodes.links import traffic
 from pursue_runtime.nodes.node import start_thread
 from pursue_runtime.nodes.positions import watch_positions
 from pursue_runtime.nodes.ui_state import UIState
 from pursue_runtime.nodes.ui_typed import Typed
-from pursue_runtime.state import LIVE, WAITING, SystemState
+from pursue_runtime.state import LIVE, RUNNING, WAITING, SystemState
 from pursue_runtime.troubles import Troubles
 from pursue_runtime.ui.mission_view import MARGIN
 from pursue_runtime.ui.page import Facts
@@ -44,7 +44,7 @@ class UIPage:
         self._board: Optional[PageServer] = None
         self._presses, self._presence, self._troubles = Presses(), Presence(), Troubles()
         self._received = (0.0, 0.0)  # when the last state came: Unix time, ROS time
-        self._stopping = False
+        self._stopping = self._finishing = False
         self._next = False  # the nodes wait for the start of another mission
         self._ended = 0.0  # when the mission has ended, on the monotonic clock
         self._looks = 0
@@ -146,6 +146,10 @@ class UIPage:
             self._stopping = True
             ui.events.publish(STOP)
             return "" if self._presence.answers else f"{NO_ANSWER}: the mission is stopped as soon as it does."
+        if request.do == "finish" and state is not None and state.status in LIVE and not ui.model.goal:
+            self._finishing = True
+            ui.events.publish(FINISH)
+            return "" if self._presence.answers else f"{NO_ANSWER}: the mission ends as soon as it does."
         if not self._presence.answers:
             return f"{NO_ANSWER}: nothing was sent."
         if request.do == "start" and ui.can_start():
@@ -200,3 +204,6 @@ class UIPage:
             self._board.on_presence(ui.mission.elapsed(self._received[1]), self._presence.answers)
         if self._stopping:
             ui.events.publish(STOP)
+        state = ui.mission.state
+        if self._finishing and state is not None and state.status == RUNNING and not state.reason:
+            ui.events.publish(FINISH)  # no state has answered it

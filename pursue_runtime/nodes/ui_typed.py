@@ -74,7 +74,7 @@ class Typed:
             for hint in done_hints(self.given):
                 self._ui.terminal.line(f"          {hint}")
         if self._ui.options.mode == "ask" and (again or before != [offer.word for offer in self.offers]):
-            for line in menu(self.offers):
+            for line in menu(self.offers, not self._ui.model.goal):
                 self._ui.terminal.line(line)
 
     def find(self) -> None:

@@ -25,6 +25,7 @@ from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Assumption, Move, Position
 from pursue_runtime.observer import life
 from pursue_runtime.observer.assumptions import Breach, breach, overstayed
+from pursue_runtime.observer.ending import has_come
 from pursue_runtime.observer.lateness import late_words, untimely_words
 from pursue_runtime.observer.mission_status import MissionStatus
 from pursue_runtime.observer.orders import first_overdue
@@ -55,8 +56,8 @@ class Mission(MissionStatus):
         if self.status not in LIVE:
             return None
         position = self.position(now)
-        overdue = first_overdue(self._unanswered(), self._lost_after * self._unit)
-        if self._automata.is_won():
+        overdue = first_overdue(self._unanswered(now), self._lost_after * self._unit)
+        if self._is_done(now):
             return overdue
         delays = self._automata.internal_delays(position)
         delays += [] if overdue is None else [(overdue - now) / self._unit]
@@ -65,6 +66,7 @@ class Mission(MissionStatus):
         delays += [delay + self._lost_after for name, delay in self._late_agents(position)]
         if self.status == RUNNING and not self._warned:
             delays.append(stays(self._cover, position, self._tolerance) + self._cover_grace)
+        delays += [] if self._begun is None else [begin - self._passed(now) for begin in self.ending.begins]
         first = min(delays, default=INFINITY)
         return None if first == INFINITY else now + max(0.0, first) * self._unit
 
@@ -77,7 +79,7 @@ class Mission(MissionStatus):
         if text.strip() == STOP:
             return self.stop(f"{STOP} was published", now)
         if text.strip() in (START, FINISH):
-            return self._start(now) if text.strip() == START else self._finish(now)
+            return self._start(now) if text.strip() == START else self.finish(now)
         readable = len(text) <= MAX_WORD_LENGTH
         report = parse_report(text) if readable else None
         word = parse_word(text) if readable and report is None else None
@@ -89,8 +91,8 @@ class Mission(MissionStatus):
             return []
         if word is not None and word.event == ORDERED and word.seq is not None and self.status in LIVE:
             return self._on_order_receipt(word.agent, word.seq, word.at, now)
-        if self._automata.is_won() and self.status in LIVE:
-            self._reject("impossible", f"{text[:80]} after the goal was reached", level="info")
+        if self.status in LIVE and self._is_done(now):
+            self._reject("impossible", f"{text[:80]} after all was done", level="info")
         elif report is not None and self.status in LIVE:
             return self._on_robot_report(report, now)
         elif word is None:
@@ -115,10 +117,10 @@ class Mission(MissionStatus):
         """Handle deadlines, late and lost agents, and internal edges of objectives that are due."""
         if self.status not in LIVE:
             return []
-        if any(now >= given + self._lost_after * self._unit for _, given in self._unanswered()):
-            if self._automata.is_won():
+        if any(now >= given + self._lost_after * self._unit for _, given in self._unanswered(now)):
+            if self._is_done(now):
                 return self.stop(self.orders.awaited(), now)
-            for order, _ in self._unanswered():
+            for order, _ in self._unanswered(now):
                 self._mark_lost(order.agent, f"{UNACKNOWLEDGED} {marked(order.event)}")
         position = self.position(now)
         moves = self._automata.internal_move(position)
@@ -148,27 +150,22 @@ class Mission(MissionStatus):
             if delay + self._lost_after <= EPSILON:
                 self._mark_lost(name, f"is late by {self._lost_after:g} time units")
         states = self._after_losses(now)
-        return states or (self._new_state(now) if has_broken else [])  # no two states have one number
+        states = states or (self._new_state(now) if has_broken else [])  # no two states have one number
+        if self.status in LIVE and has_come(self.ending.begins, self._passed(now)):
+            self.ending.on_time(self.position(now))
+            states = [*states, *self._end_begun(now)]
+        return states
 
     def _start(self, now: float) -> List[SystemState]:
         if not self._life.may(life.START):
             self._log("warn", f"{START} while the mission is {self.status}: ignored")
             return []
         self._automata.start(now)
+        self._begun = now
         self._life.take(life.START)
         self.seq = 1
         moves = self._evaluate(now, BEGUN)
         return [self.state(now), *self._take(moves, now, BEGUN)]
-
-    def _finish(self, now: float) -> List[SystemState]:
-        if not self._life.may(life.WIN):
-            return []  # most often the observer's own word
-        if self.model.goal:
-            self._log("warn", f"{FINISH} before the goal is reached: ignored")
-            return []
-        if self.orders.awaited():
-            return self.stop(self.orders.awaited(), now)
-        return self._end(life.WIN, "", now)
 
     # Moves ------------------------------------------------------------------------------------------------------------
 
@@ -266,6 +263,7 @@ class Mission(MissionStatus):
         while moves:
             before = self.state(now)
             self._automata.take(moves, now)
+            self.ending.on_moves(moves, before.clocks)
             self.robots.on_moves(moves)
             for name in self.shared_ends.on_moves(moves, self.lost, self._beginnings):
                 self.late.discard(name)
@@ -286,32 +284,28 @@ class Mission(MissionStatus):
         return states
 
     def _evaluate(self, now: float, why: str) -> Optional[Tuple[Move, ...]]:
-        """End the mission if it is won, lost or not covered; else return the enabled internal edge of an objective.
-
-        At the goal it is won once all orders were acknowledged; nothing else counts until then.
-        """
+        """End the mission if it is won, lost or not covered; else return the enabled internal edge of an objective."""
         position = self.position(now)
         if self._automata.is_won():
             self.goal_at = now
-            if self.orders.awaited():
-                self._log("info", f"the goal is reached, but {in_words(self.orders.awaited())} yet")
-            else:
-                self._conclude(life.WIN, "", now)
+            self._win(now)
         elif self._automata.lost():
             broken = [self.model.says[name] for name in self._automata.lost() if name in self.model.says]
             self._conclude(life.LOSE, f"{why} (broken: {quoted(', '.join(broken))})" if broken else why, now)
         else:
             moves = self._automata.internal_move(position)
-            if not moves:
+            if not moves and self._is_done(now):
+                self._win(now)
+            elif not moves:
                 self._update_status(now, self._tolerance)
             return moves
         return None
 
     # Orders -----------------------------------------------------------------------------------------------------------
 
-    def _unanswered(self) -> List[Tuple[Order, float]]:
+    def _unanswered(self, now: float) -> List[Tuple[Order, float]]:
         """Return the orders whose acknowledgement is still waited for, and when they were given."""
-        waits = self._automata.is_won()
+        waits = self._is_done(now)
         return [(order, given) for order, given in self.orders.open_since() if waits or order.agent not in self.lost]
 
     def _on_order_receipt(self, robot: str, seq: int, given: Optional[float], now: float) -> List[SystemState]:
@@ -319,10 +313,9 @@ class Mission(MissionStatus):
         if self.orders.on_receipt(robot, seq, given):
             if self.lost.get(robot, "").startswith(UNACKNOWLEDGED):
                 del self.lost[robot]
-            if not self._automata.is_won():
+            if not self._is_done(now):
                 return self._status_changes(now) or [self.state(now)]
-            if not self.orders.awaited():
-                self._conclude(life.WIN, "", now)
+            self._win(now)
         return [self.state(now)]
 
     # Reports ----------------------------------------------------------------------------------------------------------

@@ -8,6 +8,7 @@ from pursue_runtime.event_words import Word
 from pursue_runtime.model import Model, Position
 from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.beginnings import Beginnings
+from pursue_runtime.observer.ending import Ending
 from pursue_runtime.observer.life import Life
 from pursue_runtime.observer.orders import Orders
 from pursue_runtime.observer.planning import Planning
@@ -15,7 +16,7 @@ from pursue_runtime.observer.robots import Robots
 from pursue_runtime.observer.shared_ends import ALL, SharedEnds
 from pursue_runtime.observer.ways import Ways
 from pursue_runtime.sentences import Told, in_words
-from pursue_runtime.state import WON, SystemState
+from pursue_runtime.state import RUNNING, WON, SystemState
 from pursue_runtime.strategy import Cover, Entry
 
 Log = Callable[[str, str], None]
@@ -72,6 +73,8 @@ class MissionState:
         self._shown = self.robots.revision()  # in the newest state
         self._automata = Automata(model, unit)
         self._life = Life(lambda: not model.goal or self._automata.is_won(), lambda: bool(self._automata.lost()))
+        self.ending = Ending(model)
+        self._begun: Optional[float] = None
         self._event = self._agent = ""
         self._commanded = False
         self._ended: Optional[float] = None
@@ -85,8 +88,8 @@ class MissionState:
 
     @property
     def reason(self) -> str:
-        """Return why it holds or has ended, as a sentence; "" where there is nothing to say."""
-        return self._life.reason
+        """Return why it holds or has ended, or what its end waits for, as a sentence; "": there is nothing to say."""
+        return self._life.reason or (self.ending.says if self.status == RUNNING else "")
 
     def position(self, now: float) -> Position:
         """Return locations, variables and clocks at the time `now`, or at the end of the mission if that was before."""
@@ -107,7 +110,12 @@ class MissionState:
         """Return a value that a call changes if, and only if, the call has to be in the journal."""
         people = len(self.late), len(self.lost), len(self.silent)
         robots = *self.robots.revision(), *self.ways.revision(), *self.shared_ends.revision(), self.orders.texts()
-        return (self.seq, self.status, self.reason, *people, *robots, *self._early, *self._planning.revision())
+        others = *people, *robots, *self._early, *self._planning.revision()
+        return (self.seq, self.status, self.reason, *self.ending.revision, *others)
+
+    def _passed(self, now: float) -> float:
+        """Return the time units since the start; 0 before it."""
+        return 0.0 if self._begun is None else (now - self._begun) / self._unit
 
     def _new_state(self, now: float) -> List[SystemState]:
         self.seq, self._shown = self.seq + 1, self.robots.revision()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Dict, List, Mapping, Optional
 
 from pursue_runtime.data import DataError
+from pursue_runtime.event_words import FINISH
 from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Model, Position
 from pursue_runtime.observer import life
@@ -84,7 +85,11 @@ class MissionStatus(MissionState):
         """Continue from a state (its fields by name) that other nodes have seen. Raises DataError."""
         state = adoptable(found, self.model, self._unit, self.plan)
         self._automata.adopt(state)
-        self._life.take(life.ADOPT, state.reason, state.status)
+        self._life.take(life.ADOPT, "" if state.status == RUNNING else state.reason, state.status)
+        self._begun = state.stamp - max(state.clocks.values(), default=0.0) * self._unit  # the oldest clock's age
+        self.ending.adopt()
+        if state.status == RUNNING and state.reason:
+            self.ending.begin(self.position(now))
         self.seq, self._since = state.seq, {}
         self._event, self._agent, self._ended = state.event, state.agent, state.stamp if state.status in ENDED else None
         self.late, self.lost, self.silent = set(state.late), dict.fromkeys(state.lost, "was lost before"), set()
@@ -106,11 +111,46 @@ class MissionStatus(MissionState):
             self._planning.renumber()
         return []
 
+    # The end --------------------------------------------------------------------------------------------------------
+
+    def finish(self, now: float) -> List[SystemState]:
+        """Take the word of an operator: a mission without a goal ends as soon as what is due is answered."""
+        if not self._life.may(life.WIN):
+            return []  # most often the observer's own word
+        if self.model.goal:
+            self._log("warn", f"{FINISH} before the goal is reached: ignored")
+            return []
+        self.ending.begin(self.position(now))
+        return self._end_begun(now)
+
+    def _end_begun(self, now: float) -> List[SystemState]:
+        """End the mission, or say what that waits for. The number of the state stays: nothing has changed for the
+        strategy."""
+        if self._is_done(now) and not self.orders.awaited():
+            return self._end(life.WIN, self._what_was_kept(), now)
+        self._log("info", in_words(self.ending.says))
+        return [self.state(now)]
+
+    def _is_done(self, now: float) -> bool:
+        """Return True where the goal is reached, or the end has come: nothing is left but acknowledgements."""
+        return self._automata.is_won() or self.ending.is_over(self.position(now))
+
+    def _win(self, now: float) -> None:
+        """Win the mission, which is done, once all orders were acknowledged; nothing else counts until then."""
+        if self.orders.awaited():
+            self._log("info", f"all is done, but {in_words(self.orders.awaited())} yet")
+        else:
+            self._conclude(life.WIN, "" if self.model.goal else self._what_was_kept(), now)
+
+    def _what_was_kept(self) -> str:
+        kept = self.ending.kept()
+        return f"kept: {kept}" if kept else ""
+
     # Whether it holds -------------------------------------------------------------------------------------------------
 
     def _status_changes(self, now: float) -> List[SystemState]:
         """Return a new state if the status, its reason or the waiting robots have changed without an event."""
-        if self.status not in LIVE or self._automata.is_won():
+        if self.status not in LIVE or self._is_done(now):
             return []
         before = self.status, self.reason, self._shown
         self._update_status(now, self._cover_grace if self.status == RUNNING else self._tolerance)
@@ -151,7 +191,7 @@ class MissionStatus(MissionState):
                 return
             reasons.append(f"{trouble}; waiting for {awaited}")
         reason = "; ".join(reasons)
-        if reason == self.reason and bool(reasons) == (self.status == HOLDING):
+        if reason == self._life.reason and bool(reasons) == (self.status == HOLDING):
             return
         if reasons:
             news = self._told.news(reason)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any, Collection, Dict, List, Mapping, NamedTuple, Optional, Protocol, Sequence, Tuple
 
 from pursue_runtime.event_words import (
+    FINISH,
     PING,
     RESUME,
     START,
@@ -25,7 +26,7 @@ from pursue_runtime.sentences import Told, in_words
 from pursue_runtime.simulator.simulator import ACTING, report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
-from pursue_runtime.vocabulary import deed, instruction, not_promised, sentence, where
+from pursue_runtime.vocabulary import deed, instruction, said_at_start, sentence, where
 from pursue_runtime.zones import due
 
 MARGIN = 0.05  # time units: how far inside an open bound something counts as possible
@@ -196,10 +197,10 @@ class MissionView:
             age = 0.0 if state.event == START else max(state.clocks.values(), default=0.0)
             self.start = state.stamp - age * state.unit
         if self.start is None or not news:
-            return []
+            return self._end_lines(state, last)
         if state.status in LIVE:
             self._environment.on_state(state, self.start, now)
-        return self._lines(state, last)
+        return [*self._lines(state, last), *self._end_lines(state, last)]
 
     def say_again(self) -> None:
         """Have the last instruction published again at once, unless a state has answered it: an observer has appeared.
@@ -248,14 +249,14 @@ class MissionView:
             several = len(self._model.says) > 1
             goal = "All goals are reached" if len(self._model.goal) > 1 else "The goal is reached"
             kept = "All objectives were kept to the end" if several else "The objective was kept to the end"
-            return 0, f"{goal if self._model.goal else kept}, {after}."
+            return 0, f"{goal if self._model.goal else kept}, {after}{f'; {reason}' if reason else ''}."
         if state.status == LOST:
             return 1, f"The mission is lost, {after}: {reason or 'the safety objective is broken'}."
         return 1, f"The mission was stopped, {after}: {reason or '_stop_ was published'}."
 
     def first_line(self, now: float) -> str:
-        """Return what to say when the mission runs, with what it does not promise."""
-        return f"{self.elapsed(now):8.1f}  the mission runs{not_promised(self._model)}"
+        """Return what to say when the mission runs, with when it ends, and what it does not promise."""
+        return f"{self.elapsed(now):8.1f}  the mission runs{said_at_start(self._model)}"
 
     def progress(self, now: float) -> str:
         """Return a line with the location of each agent."""
@@ -297,6 +298,12 @@ class MissionView:
             lines += [f"          {instruction}" for instruction in instructions if instruction]
         return lines
 
+    def _end_lines(self, state: SystemState, last: Optional[SystemState]) -> List[str]:
+        """What the end of the mission waits for, when that is news."""
+        if self.start is None or state.status != RUNNING or state.reason in ("", "" if last is None else last.reason):
+            return []
+        return [f"{self.elapsed(state.stamp):8.1f}  {in_words(state.reason, self._model.shown)}"]
+
     def _instruction(self, person: str, state: SystemState, last: Optional[SystemState]) -> str:
         """What a person must do now whose event this is, or who is busy with it from now on; "" where that is over."""
         automaton, here = self._model.automaton(person), state.locations.get(person)
@@ -314,14 +321,15 @@ def report_text(task: Task) -> str:
     return f"{task.shown} is done: {task.text}" if task.label == "Done" else f"{task.shown}: {task.label.lower()}"
 
 
-def menu(offers: Sequence[PossibleWord]) -> List[str]:
-    """Return the menu of the words that can be published now."""
+def menu(offers: Sequence[PossibleWord], may_finish: bool = False) -> List[str]:
+    """Return the menu of the words that can be published now. `may_finish`: the mission has no goal."""
     lines = []
     for number, (word, opens, closes, _, text) in enumerate(offers, start=1):
         until = f", for {closes - opens:.1f} time units" if closes != float("inf") else ""
         later = f"  (in {opens:.1f} time units{until})" if opens > MARGIN else ""
         lines.append(f"  {number:2}  {f'{text}: ' if text else ''}{word}{later}")
-    lines.append("  a number, a word for pursue/events, done, ping or stop; Enter shows this again")
+    finish = "finish, " if may_finish else ""
+    lines.append(f"  a number, a word for pursue/events, done, {finish}ping or stop; Enter shows this again")
     return lines
 
 
@@ -357,6 +365,8 @@ def read_line(
     text = text.strip()
     if text in ("ping", "stop"):
         return f"_{text}_", ""
+    if text == "finish" and "finish" not in words:
+        return FINISH, ""
     if text.split(None, 1)[:1] == ["done"] and "done" not in words:
         return read_done(text[len("done"):].strip(), given)
     if text.isdigit():
@@ -368,6 +378,6 @@ def read_line(
             return "", f"{offer.word} is possible in {offer.opens:.1f} time units, not now"
         return offer.word, ""
     event = text.partition("@")[0].partition("#")[0].rpartition(":")[2]
-    if event in words or event.startswith("_") or text == "Finish!":
+    if event in words or event.startswith("_") or text == FINISH:
         return text, ""
     return text, f"{text} is not a word of this scenario; it was published anyway" if text else ""

@@ -23,7 +23,7 @@ from pursue_runtime.ui.outlook import Outlook
 from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_now
 from pursue_runtime.ui.statuses import Status, status_texts
 from pursue_runtime.ui.strategies import strategies_in
-from pursue_runtime.vocabulary import awaited, begin_of, deed, not_promised, place, sentence, where
+from pursue_runtime.vocabulary import awaited, begin_of, deed, place, said_at_start, sentence, where
 
 MAX_ENTRIES = 300  # entries of the log
 NOTE, GOOD, BAD = "note", "good", "bad"
@@ -113,6 +113,7 @@ class Page:
         return {
             "scenario": self._model.scenario,
             "counts": self._promise.counts or "time units",
+            "finishes": not self._model.goal,
             "labels": self._model.labels,
             "places": {name: list(place) for name, place in self._plan.places.items()},
             "floor": None if self._floor is None else self._floor.scene(),
@@ -169,7 +170,7 @@ class Page:
         self._lanes.on_state(state, at)
         fresh: List[Dict[str, Any]] = []
         if (last is None and state.event == START) or (last and last.status == WAITING and state.status in LIVE):
-            fresh.append(self.note(at, f"the mission starts{not_promised(self._model)}"))
+            fresh.append(self.note(at, f"the mission starts{said_at_start(self._model)}"))
         if state.seq and state.event not in ("", START) and (last is None or last.seq != state.seq):
             fresh.append(self.note(at, sentence(self._model, state, last), self._kind(state.agent), state.event))
         for name in state.lost if last is None else sorted(set(state.lost) - set(last.lost)):
@@ -185,6 +186,8 @@ class Page:
         if last is not None and last.status == HOLDING and state.status == RUNNING:
             self._told.forget()
             fresh.append(self.note(at, "the mission goes on"))
+        if state.status == RUNNING and state.reason and (last is None or state.reason != last.reason):
+            fresh.append(self.note(at, in_words(state.reason, self._model.shown)))
         return fresh
 
     def trouble(self, at: float, text: str) -> None:

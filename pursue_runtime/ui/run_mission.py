@@ -27,7 +27,7 @@ USAGE = """rosrun {bringup} run_mission [NAME:=VALUE...]
 
 Launches mission.launch with these arguments, waits for the end of the mission, prints in one line how it ended, and
 exits with
-  0  won: the goal is reached, or the safety objective was kept until Finish! was published
+  0  won: the goal is reached, or the safety objectives were kept to the end
   1  lost: the safety objective is broken
   2  stopped: a safe stop, or _stop_ was published
   3  not started: a node was not ready in time, or its settings are wrong

@@ -6,15 +6,15 @@ endif
 syntax case match
 syntax iskeyword @,48-57,_
 
-syntax keyword pursueStatement agent assume battery connect event for group objective optional poi reach_objective rest
-syntax keyword pursueStatement rule state stateDependency travel unit
+syntax keyword pursueStatement agent assume battery connect event for group mission objective optional poi
+syntax keyword pursueStatement reach_objective rest rule state stateDependency travel unit
 syntax keyword pursueConstant false is_false is_true true
-syntax keyword pursueKeyword after agents all always and any at at_most avoid before between by can_do capacity
-syntax keyword pursueKeyword collaborative controllable distance do does doing duration each every except false_if from
-syntax keyword pursueKeyword holds hour human if in inflation initially label leaves location minute mobile never
-syntax keyword pursueKeyword never_with no none not of on_way one_way only_if or order patrol per place radius reacts_to
-syntax keyword pursueKeyword recharges robot robots second speed stays takes then times to together tolerance true_if
-syntax keyword pursueKeyword two uses waits way within
+syntax keyword pursueKeyword after agents all always and answered any at at_most avoid before between by can_do capacity
+syntax keyword pursueKeyword collaborative controllable distance do does doing duration each ends every except false_if
+syntax keyword pursueKeyword from holds hour human if in inflation initially is label leaves location minute mobile
+syntax keyword pursueKeyword never never_with no none not of on_way one_way only_if or order patrol per place radius
+syntax keyword pursueKeyword reacts_to recharges robot robots second speed stays takes then times to together tolerance
+syntax keyword pursueKeyword true_if two uses waits way when within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*\%([ \t]\+\%(s\|min\|h\)\>\%([ \t]\+\d[0-9.]*[ \t]\+\%(s\|min\|h\)\>\)*\)\?"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

@@ -18,7 +18,7 @@ from pursue_gen.drawing.floor_picture import read_floor
 from pursue_gen.drawing.ground import read_ground
 from pursue_gen.language.checks import checked
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.sentences import condition_of_promise, objective_words, periods_found, promise_words
+from pursue_gen.language.sentences import condition_of_promise, end_words, objective_words, periods_found, promise_words
 from pursue_gen.outcomes import INTERRUPTED, LimitHit, Lost
 from pursue_gen.solving.answers import answers
 from pursue_gen.solving.inputs import game_of, settled
@@ -132,7 +132,7 @@ def _won_page(found: Promised, request: SolveRequest, floor: Optional[Floor]) ->
 def _promise(found: Promised) -> List[str]:
     """What is guaranteed, in sentences."""
     scenario: Scenario = found.scenario
-    lines = objective_words(scenario)
+    lines = [*objective_words(scenario), *end_words(scenario)]
     if found.solution.guarantee is not None:
         lines += [found.solution.guarantee.in_words(scenario.unit)]
     lines += [answer.in_words() for answer in answers(scenario, found.solution)]

@@ -15,7 +15,7 @@ from pursue_gen.language.names import KINDS
 from pursue_gen.language.occurrences import GROUP
 from pursue_gen.language.rewriting import parts_in, parts_of
 from pursue_gen.language.scenario import Connection, Poi
-from pursue_gen.language.sentences import objective_words
+from pursue_gen.language.sentences import end_words, objective_words
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.template import names_text
 from pursue_gen.language.times import window_text
@@ -87,7 +87,8 @@ def _findings(document: Draft, ground: Optional[Ground], told: Told) -> Tuple[Di
 def _wanted(document: Draft, findings: Sequence[Diagnostic]) -> List[str]:
     """The objectives in sentences; none as long as there are errors."""
     wrong = any(one.severity is Severity.ERROR for one in findings)
-    return [] if wrong or document.reading.scenario is None else objective_words(document.reading.scenario)
+    scenario = document.reading.scenario
+    return [] if wrong or scenario is None else [*objective_words(scenario), *end_words(scenario)]
 
 
 def _finding(document: Draft, finding: Diagnostic) -> Dict[str, Any]:

@@ -11,6 +11,7 @@ from pursue_gen.synthesis.lookup import Entry
 from pursue_gen.tools.replay.assumptions import newly_broken
 from pursue_gen.tools.replay.beginnings import EXACT
 from pursue_gen.tools.replay.commands import CommandCheck
+from pursue_gen.tools.replay.ends import wrong_end
 from pursue_gen.tools.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
 from pursue_gen.tools.replay.game import Game
 from pursue_gen.tools.replay.gaps import completed
@@ -297,6 +298,8 @@ class _Checker:
         overdue = self.moves.overdue(place_of(last), self._clocks_at(last))
         late = {name: by for name, by in overdue.items() if by > self._tolerance}
         if last.status == WON:
+            for text in wrong_end(self._record, self._game, last, self._clocks_at(last), self._tolerance):
+                self._report(FAULT, "end", last, text)
             for name, location in goal:
                 if last.locations[name] != location:
                     self._report(FAULT, "end", last, f"its status is won, but {name} is not {location}")

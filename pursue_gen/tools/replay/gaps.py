@@ -97,11 +97,11 @@ def _missing(
 def with_end(
     states: Sequence[SystemState], words: Sequence[RecordedWord], goal: Sequence[Tuple[str, str]]
 ) -> Sequence[SystemState]:
-    """Add that the mission was won where no recorded state says so: it is at the goal, and then the observer has said
-    that it is over."""
+    """Add that the mission was won where no recorded state says so: it is at the goal, if there is one, and the
+    observer has said that it is over."""
     last = states[-1]
     said = any(word.event == FINISH and word.node == OBSERVER and word.at >= last.stamp - AROUND for word in words)
-    if not said or last.status not in LIVE or not goal or any(last.locations[name] != there for name, there in goal):
+    if not said or last.status not in LIVE or any(last.locations[name] != there for name, there in goal):
         return states
     return [*states, last._replace(status=WON)]
 

@@ -52,7 +52,7 @@ def verdict(findings: Findings) -> str:
     world = [finding for finding in findings.findings if finding.level == WORLD]
     ends = {"won": "was won", "lost": "was lost", "stopped": "was stopped", "waiting": "never began"}
     end = ends.get(findings.status, "had not ended when the recording did")
-    end += f" ({findings.reason})" if findings.reason and not findings.won else ""
+    end += f" ({findings.reason})" if findings.reason else ""
     if findings.kept:
         return f"The mission kept to the model{' and' if findings.won else ', but'} {end}."
     what = [f"left the model {'once' if len(world) == 1 else f'{len(world)} times'} (the world)"] if world else []

@@ -68,7 +68,14 @@ STATUS_TEXTS = {WON: "goal reached", LOST: "lost", STOPPED: "stopped", HOLDING: 
 
 def ending_text(recording: Recording) -> str:
     """How the mission ended, in a word or two."""
-    return STATUS_TEXTS.get(recording.status, "end of the recording")
+    return status_text(recording, recording.status) or "end of the recording"
+
+
+def status_text(recording: Recording, status: str) -> str:
+    """A status of the mission, in a word or two; "" where it goes on, or has not begun."""
+    if status == WON and not recording.scenario.reach:
+        return "ended, all was kept"
+    return STATUS_TEXTS.get(status, "")
 
 
 def stays(recording: Recording, automaton: str) -> Tuple[Stay, ...]:

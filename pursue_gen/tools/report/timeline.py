@@ -14,7 +14,7 @@ from pursue_gen.tga.event_words import event_word
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tools.report.html import Section, table
-from pursue_gen.tools.report.recording import STATUS_TEXTS, Recording, Stay, Step, ending_text, lasting, stays
+from pursue_gen.tools.report.recording import Recording, Stay, Step, ending_text, lasting, status_text, stays
 from pursue_gen.tools.report.statuses import broken, changes, conditions, holding
 from pursue_gen.vocabulary.statuses import courses
 from pursue_gen.vocabulary.words import Words, words_of
@@ -89,7 +89,7 @@ def section(recording: Recording, ident: str = _ID) -> Section:
     words = words_of(recording.scenario, recording.network)
     shown = recording.scenario.shown
     rows = [
-        (_time(step.at), shown(step.agent), _step_text(step, words, recording.network), changed)
+        (_time(step.at), shown(step.agent), _step_text(step, words, recording), changed)
         for step, changed in zip(recording.steps, changes(recording))
     ]
     heads = ("Time", "Who", "What", "What that changes")
@@ -304,12 +304,12 @@ def _title(stay: Stay, tooltip: str) -> str:
     return tag("title", safe(f"{tooltip}, {_time(stay.start)} {until}"))
 
 
-def _step_text(step: Step, words: Words, network: Network) -> str:
+def _step_text(step: Step, words: Words, recording: Recording) -> str:
     """What happened in a step, in a sentence."""
     if not step.event:
-        what = STATUS_TEXTS.get(step.status, "the mission runs")
+        what = status_text(recording, step.status) or "the mission runs"
         return f"{what}: {step.reason}" if step.reason else what
-    return event_text(step, words, network)
+    return event_text(step, words, recording.network)
 
 
 def event_text(step: Step, words: Words, network: Network) -> str:

@@ -12,7 +12,7 @@ from pursue_gen.explanation.costs import Costs, in_words
 from pursue_gen.explanation.explain import Explanation
 from pursue_gen.language.numbers import Number, time_text
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.sentences import objective_words, promise_words, speed_words
+from pursue_gen.language.sentences import end_words, objective_words, promise_words, speed_words
 from pursue_gen.language.times import in_unit, words_for
 from pursue_gen.partition import unneeded, unneeded_words
 from pursue_gen.solving.answers import answers
@@ -38,7 +38,7 @@ def section(
     """The verdict on the page; either `won` or `lost` is there."""
     values: Dict[str, Any] = {
         "explain": explain,
-        "wanted": objective_words(scenario),
+        "wanted": [*objective_words(scenario), *end_words(scenario)],
         "assumed": [each.clause for each in scenario.assumptions],
         "won": won,
         "within": "" if won is None or won.within is None else words_for(won.within, scenario.unit),

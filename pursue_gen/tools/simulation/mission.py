@@ -143,7 +143,7 @@ class SimulatedMission:
         safety = not self._stage.solution.objective.reaches
         ends = {STOPPED: STOPPED, LOST: LOST, HOLDING: HELD}
         if mission.status == WON:
-            return GOAL, ""
+            return (SAFE if safety else GOAL), in_words(mission.reason)
         if mission.status in ends and self.fault_plan.voids_guarantees:
             return ends[mission.status], in_words(mission.reason)
         if mission.status == RUNNING and safety:

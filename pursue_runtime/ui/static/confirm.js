@@ -2,9 +2,10 @@
 // What cannot be taken back is confirmed: a stop, and the report of an end for which it is too early by the model.
 
 const STOP_TEXT = "Stop the mission? Robots get no further goals, and every node ends.";
+const FINISH_TEXT = "Finish the mission? What is due is answered first. Then all was kept, robots are left standing, and every node ends.";
 let sure = null; // what is done once it is confirmed
 
-function confirmed(text, yes, no, act) {
+function confirmed(text, yes, no, act, calm = false) {
   if (!$("sure").showModal) {
     if (window.confirm(text)) act();
     return;
@@ -12,6 +13,7 @@ function confirmed(text, yes, no, act) {
   say($("sure-text"), text);
   say($("stop-yes"), yes);
   say($("stop-no"), no);
+  $("stop-yes").classList.toggle("calm", calm);
   sure = act;
   $("sure").showModal();
 }
@@ -26,6 +28,7 @@ function earlyText(task, now) {
 }
 
 onPress($("stop"), () => confirmed(STOP_TEXT, "Stop it", "Go on", () => ask({ do: "stop" })));
+onPress($("finish"), () => confirmed(FINISH_TEXT, "Finish it", "Go on", () => ask({ do: "finish" }), true));
 onPress($("stop-yes"), () => {
   const act = sure;
   sure = null;

@@ -103,6 +103,7 @@ function setScene(fresh) {
   $("main").hidden = false;
   if (same) return;
   say($("scenario"), scene.scenario);
+  $("finish").hidden = !scene.finishes;
   for (const tag of document.querySelectorAll(".legend .tag")) {
     tag.hidden = !scene.agents.some((agent) => tag.classList.contains(agent.kind));
   }
@@ -236,6 +237,7 @@ function refresh() { // what changes while nothing happens: times, and what is p
   say($("now"), units(now));
   for (const id of ["people", "others", "free"]) $(id).classList.toggle("over", over); // there is nothing to report any more
   enable($("start"), here && !over && view.status === "waiting" && view.phase === "ready");
+  enable($("finish"), isConnected() && !over && view.live);
   enable($("stop"), isConnected() && !over); // it is carried out when the observer answers
   for (const [name, value] of Object.entries(view.clocks)) say(widgets.clocks.get(name), units(value + now - view.at));
   showButtons(now, here);

@@ -45,6 +45,7 @@ travel "guest" from b to a takes 4
 battery "bot" capacity 100 uses 2 per unit recharges 5 per unit at a
 assume: guest does second at_most 2 times
 objective: if first then second within 20
+mission ends after 480 when all is answered
 """
 
 BESIDE = {"GROUP": '\npoi "room1"\npoi "room2"', "FOR": '\npoi "a"\ngroup "rooms": a'}

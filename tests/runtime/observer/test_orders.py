@@ -163,7 +163,9 @@ def test_a_mission_without_a_goal_is_not_finished_while_an_order_is_open(made: J
     endless = Journey(HANDOVER.replace("goal: [reachObj, win]", "goal: null"), EVERYWHERE, on_uncovered="warn")
     endless.hear("_start_", 0.0)
     endless.hear("giver:handOver@1", 2.0)
-    assert endless.hear("Finish!", 2.1).status == "stopped"
+    assert endless.hear("Finish!", 2.1).status == "running"
+    assert endless.hear("taker:_order_@2", 2.2).status == "running", "one has not acknowledged yet"
+    assert endless.hear("giver:_order_@2", 2.3).status == "won"
 
 
 def test_a_restarted_observer_knows_what_was_not_acknowledged(made: Journey) -> None:

@@ -520,6 +520,30 @@ def test_the_report_of_an_end_that_the_model_does_not_have_yet_is_confirmed(
     says(page, "#sure-text", "Stop the mission?")
 
 
+def test_a_mission_without_a_goal_is_finished_with_confirmation_and_any_other_is_not(
+    page: Browser, show: Callable[..., Node]
+) -> None:
+    node = show(*everybody(), objective={"kind": "safety", "goal": None, "bad": ["reachObj", "win"]})
+    node.show(2, 2.0, clock=1.0)
+    says(page, "#status", "running")
+    page.click("#finish")
+    says(page, "#sure-text", "What is due is answered first.")
+    assert page.value("document.getElementById('stop-yes').className") == "calm"
+    page.click("#stop-yes")
+    page.wait("!document.getElementById('sure').open")
+    says(page, "#remark", "as you like")
+    assert node.wanted == [("finish", "", 0)]
+    waits = "the mission ends as soon as what is due is answered: if x then y within 3"
+    node.show(2, 3.0, clock=1.0, reason=waits)
+    says(page, "#why", waits)
+    says(page, "#log", waits)
+    page.click("#stop")
+    says(page, "#sure-text", "Stop the mission?")
+    assert page.value("document.getElementById('stop-yes').className") == ""
+    show(*everybody()).show(2, 2.0, clock=1.0)
+    assert page.value("document.getElementById('finish').hidden") is True
+
+
 def test_a_robot_that_is_held_goes_on_without_another_question(page: Browser, show: Callable[..., Node]) -> None:
     node = show(*everybody(), ends=True)
     node.show(2, 2.0, clock=1.0, unit=30.0, bot="going_a_to_b", held=("bot",))

@@ -271,6 +271,26 @@ def test_a_mission_without_a_goal_ends_with_its_objective_kept() -> None:
     assert told.verdict() == (0, "The objective was kept to the end, after 31.5 seconds.")
 
 
+def test_what_the_end_of_a_mission_waits_for_is_said_once_and_at_last_what_was_kept() -> None:
+    safe = Model({**DATA, "objective": {"kind": "safety", "goal": None, "bad": ["reachObj", "win"]}})
+    told = MissionView(safe, TraceEnvironment(()))
+    told.on_state(at(5, 130.0), 130.0)
+    waits = "the mission ends as soon as what is due is answered: if {{x}} then y within 3"
+    lines = told.on_state(at(5, 130.5, reason=waits), 130.5)
+    assert [line.split("  ")[-1] for line in lines] == [waits.replace("{{x}}", "{x}")]
+    assert told.on_state(at(5, 131.0, reason=waits), 131.0) == []
+    told.on_state(at(6, 131.5, status="won", reason="kept: if {{x}} then y within 3"), 131.5)
+    assert told.verdict() == (
+        0, "The objective was kept to the end, after 31.5 time units; kept: if {x} then y within 3."
+    )
+
+
+def test_when_a_mission_ends_is_said_at_its_start() -> None:
+    told = MissionView(Model({**DATA, "ends": {"after": 480, "answered": True}}), TraceEnvironment(()))
+    told.on_state(at(1, 100.0, event="_start_"), 100.0)
+    assert told.first_line(100.0).endswith("the mission runs; it ends after 480 time units when all is answered")
+
+
 def test_progress_says_where_everybody_is() -> None:
     told = mission()
     told.on_state(at(1, 100.0, event="_start_", thief="b"), 100.0)
@@ -336,6 +356,7 @@ OFFERS = [PossibleWord("thief_a2b", 0.0, float("inf")), PossibleWord("boy:screw"
     (" stop ", "_stop_", ""),
     ("boy:screw", "boy:screw", ""),
     ("Finish!", "Finish!", ""),
+    ("finish", "Finish!", ""),
     ("screww", "screww", "screww is not a word of this scenario; it was published anyway"),
     ("", "", ""),
 ])
@@ -347,7 +368,7 @@ def test_the_menu_lists_by_number() -> None:
     lines = menu(OFFERS)
     assert lines[0].split() == ["1", "thief_a2b"]
     assert lines[1].split()[:2] == ["2", "boy:screw"] and "in 2.5 time units, for 1.5" in lines[1]
-    assert "stop" in lines[-1]
+    assert "stop" in lines[-1] and "finish" not in lines[-1] and "finish" in menu(OFFERS, may_finish=True)[-1]
 
 
 def test_the_menu_says_what_a_word_means() -> None:

@@ -221,6 +221,14 @@ def test_the_log_has_each_part_of_a_reason_once_while_the_mission_holds() -> Non
     ]
 
 
+def test_the_log_says_once_what_the_end_of_the_mission_waits_for() -> None:
+    shown = page()
+    shown.on_state(at(1, 100.0, event="_start_"), 0.0)
+    for stamp in (101.0, 102.0):
+        shown.on_state(at(1, stamp, reason="the mission ends as soon as all is answered"), stamp - 100.0)
+    assert [entry["text"] for entry in shown.log].count("the mission ends as soon as all is answered") == 1
+
+
 def test_the_log_keeps_what_is_new() -> None:
     shown = page()
     for number in range(MAX_ENTRIES + 5):

@@ -143,6 +143,7 @@ def test_nothing_is_published_before_the_start_and_after_the_end(status: str) ->
 @pytest.mark.parametrize("text, request_", [
     ('{"do": "start"}', ("start", "", 0)),
     ('{"do": "stop"}', ("stop", "", 0)),
+    ('{"do": "finish"}', ("finish", "", 0)),
     ('{"do": "say", "word": "thief_a2b", "seq": 7}', ("say", "thief_a2b", 7)),
     (b'{"do": "done", "word": "nurse:screwDONE", "seq": 0}', ("done", "nurse:screwDONE", 0)),
 ])

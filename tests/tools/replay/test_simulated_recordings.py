@@ -6,7 +6,7 @@ from __future__ import annotations
 import functools
 import json
 from dataclasses import replace
-from typing import Any, Dict, List, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import pytest
 
@@ -226,3 +226,52 @@ def test_a_mission_that_somebody_ends_is_not_won_where_a_deadline_has_passed(lat
     won = last._replace(stamp=last.stamp + later * last.unit, clocks=ended, status="won")
     mission.recorder.states[rung + 1 :] = [won]
     assert [each for each in kinds(mission.found(), FAULT) if each == "end"] == expected
+
+
+ERRANDS = """\
+poi "desk"
+poi "window"
+connect desk and window distance 2
+event "call" location window
+event "fetch" location desk duration 3
+agent "bot" controllable mobile 1 location desk can_do fetch
+agent "visitor" mobile 3 location window can_do call
+objective: if call then fetch within 12
+mission ends after 30
+"""
+
+
+@pytest.mark.parametrize("calls, ends", [((), 30.0), (((28.0, "call"),), 31.0)], ids=["nothing due", "a call"])
+def test_an_end_after_a_time_is_that_of_the_scenario(calls: Sequence[Tuple[float, str]], ends: float) -> None:
+    mission = Recorded(ERRANDS, 1, calls)
+    outcome = mission.run()
+    assert outcome.end == "safe" and ends - 0.01 <= outcome.time <= ends + 1.5
+    found = mission.found()
+    assert kinds(found, FAULT, WORLD) == [] and found.won, found.findings
+    assert "kept: if call then fetch within 12" in found.reason
+    again = reconstruct(read_journal(mission.journal()), Moves(mission.game.network), mission.game.objective)
+    assert by_number(again.states) == by_number(mission.recorder.states) and again.states[-1].status == "won"
+
+
+
+@pytest.mark.parametrize(
+    "text, calls, finish, says",
+    [
+        (ERRANDS, (), None, "its status is won 10.00 time units before the mission may end"),
+        (ERRANDS.replace("after 30", "after 20"), ((19.0, "call"),), None, "waits for an answer that was due"),
+        (ERRANDS.replace("after 30", "after 50"), ((19.0, "call"),), 19.5, "waits for an answer that was due"),
+        (ERRANDS.replace("after 30", "after 50"), ((19.0, "call"),), 18.5, ""),
+    ],
+)
+def test_an_end_that_came_too_soon_is_a_fault(
+    text: str, calls: Sequence[Tuple[float, str]], finish: Optional[float], says: str
+) -> None:
+    """The observer ends it after 20 time units, whatever is due."""
+    mission = Recorded(text, 1, calls)
+    if finish is not None:
+        mission.recorder.on_word(START + finish, "Finish!", "UI")
+    mission.events.schedule(START + 20.0, lambda: setattr(mission._observer.mission.ending, "is_over", lambda _: True))
+    mission.events.schedule(START + 20.0, lambda: mission._observer.call("hear", "Finish!"))
+    mission.run()
+    found = [finding.text for finding in mission.found().findings if finding.level == FAULT]
+    assert [says in text for text in found] == ([True] if says else []), found
