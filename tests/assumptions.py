@@ -39,6 +39,7 @@ reach_objective: do pay after 15
 """A guest who calls, and a waiter who answers; won without any assumption as well."""
 
 ONCE = "assume: guest does call at_most 1 times"
+IN_ALL = "assume: at_most 1 of call in all"
 
 MUSEUM = """\
 poi "hall"

@@ -20,6 +20,7 @@ from pursue_gen.language.scenario import (
     Choice,
     Connection,
     Event,
+    InAll,
     Leaves,
     NeverAt,
     NeverHolds,
@@ -178,7 +179,19 @@ class Course:
         limits = [each for each in self.scenario.assumptions if isinstance(each, AtMost)]
         if any((each.agent.name, each.event.name) == (agent, name) and times >= each.times for each in limits):
             return False
+        if not self.agents[agent].controllable and any(self._is_over(each, name) for each in self.scenario.assumptions):
+            return False
         return self.holds(event.only_if) and all(after(rest, name) is not None for rest in self._turns(agent, name))
+
+    def _is_over(self, each: Assumption, event: str) -> bool:
+        """Whether others have done all of these that they are assumed to do."""
+        events = {ref.name for ref in each.events} if isinstance(each, InAll) else set()
+        if not isinstance(each, InAll) or event not in events:
+            return False
+        others = {name for name, agent in self.agents.items() if not agent.controllable}
+        return (
+            sum(len(some) for (who, what), some in self.done.items() if who in others and what in events) >= each.times
+        )
 
     def partners(self, agent: str, event: Event) -> List[str]:
         """Those who can take part now: idle at the same place, or on the same way in the other direction."""

@@ -136,6 +136,7 @@ def _travels(draw: st.DrawFn, names: Sequence[str], places: Sequence[str]) -> Li
 def _assumptions(draw: st.DrawFn, place: object) -> List[str]:
     drawn = {
         "at_most": f"assume: guest does call at_most {draw(st.integers(0, 2))} times",
+        "in_all": f"assume: at_most {draw(st.integers(0, 3))} of call in all",
         "after": f"assume: guest does call after {draw(st.integers(1, 30))}",
         "waits": f"assume: guest waits {draw(st.integers(1, 9))} between call",
         "leaves": f"assume: guest leaves {place()} within {draw(st.integers(4, 20))}",  # type: ignore[operator]

@@ -32,8 +32,9 @@ def _change(
     scenario: Scenario, one: Assumption, values: Sequence[int], label: str, before: Number = 0, instead: str = ""
 ) -> Repair:
     """One of these numbers in an assumption of the scenario."""
-    agent = next(ref.name for kind, ref in one.names() if kind == "agent")
+    named = list(one.names())
+    about = next((ref.name for kind, ref in named if kind == "agent"), named[0][1].name)
     return Repair(
-        "assumption", agent, label, before, values, lambda k: scenario.with_instead(one, one.with_number(k)),
+        "assumption", about, label, before, values, lambda k: scenario.with_instead(one, one.with_number(k)),
         lambda k: f"{one.with_number(k).text}{instead}", one.span,
     )  # fmt: skip

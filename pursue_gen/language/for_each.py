@@ -78,9 +78,9 @@ def behind_of(tokens: Sequence[Token]) -> bool:
 
 
 def around_of(tokens: Sequence[Token]) -> Iterator[Token]:
-    """The words before and behind each `of`."""
+    """The words before and behind each `of` that makes a name, or stands behind a quantifier."""
     for before, token, behind in zip(tokens, tokens[1:], tokens[2:]):
-        if token.type == "OF":
+        if token.type == "OF" and before.type != "NUMBER":
             yield from (before, behind)
 
 

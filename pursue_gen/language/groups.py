@@ -93,23 +93,23 @@ class _Groups:
             return []
         try:
             if tokens[0].type == "GROUP":
-                self._add(tokens)
-            elif tokens[0].type == "FOR":
+                return [(self._add(tokens), "")]
+            if tokens[0].type == "FOR":
                 return self._each(tokens)
-            elif tokens[0].type in STATEMENTS:
+            if tokens[0].type in STATEMENTS:
                 return [(self._words.filled(tokens, {}), "")]
         except Refused as refused:
             self._findings.append(refused.args[0])
             return []
         return [(tokens, "")]
 
-    def _add(self, tokens: Tokens) -> None:
-        """Notes a group."""
+    def _add(self, tokens: Tokens) -> Tokens:
+        """Notes a group; the statement with its members in place of what is `of` groups."""
         kinds = [token.type for token in tokens[1:3]]
         name = bare(tokens[1]) if kinds[:1] == ["NAME"] else ""
         self._broken.add(name)
         if kinds != ["NAME", "COLON"]:
-            return
+            return tokens
         if not well_formed(name):
             hint = f"use letters, digits and _, a letter first, for example {fitting(name)}"
             raise Refused(error("PML101", f'"{name}" cannot be the name of a group', self._at(tokens[1]), hint))
@@ -127,13 +127,14 @@ class _Groups:
             hint = f'name its members: group "{name}": room1, room2'
             raise Refused(error("PML401", f"nothing is in {name}", self._at(tokens[1]), hint))
         if any(one.type not in NAMES for one in members) or any(one.type != "COMMA" for one in commas):
-            return
+            return tokens
         for number, member in enumerate(members):
             if member in members[:number]:
                 message = f"{member} is in {name} twice"
                 raise Refused(error("PML403", message, self._at(member), "delete one of the two"))
         self._broken.remove(name)
         self._groups[name] = members
+        return (*tokens[:3], *listed)
 
     def _each(self, tokens: Tokens) -> List[Written]:
         """The statements that are for each member of groups."""

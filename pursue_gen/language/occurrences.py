@@ -84,8 +84,9 @@ def are_names(tokens: Sequence[Token]) -> List[bool]:
             before.type in _BEFORE_NAMES or (kind, before.type) in _USED
         )  # fmt: skip
         following = tokens[index + 1].type if index + 1 < len(tokens) else ""
-        opens = before is not None and before.type == "COLON" and kind == "OBJECTIVE"
-        begins = opens and token.type in _OPENING and following != "NEVER_WITH"
+        opens = before is not None and before.type == "COLON"
+        begins = opens and kind == "OBJECTIVE" and token.type in _OPENING and following != "NEVER_WITH"
+        begins = begins or (opens and kind == "ASSUME" and (token.type, following) == ("AT_MOST", "NUMBER"))
         named.append(token.type == "WORD" or (token.type in MAY_BE_NAMES and behind and not begins))
     return named
 

@@ -7,7 +7,7 @@ A mission in which an assumption has been broken goes on with 0 in it, and plans
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Callable, Dict, List, Mapping, Tuple, Type
+from typing import Any, Callable, Dict, List, Mapping, Tuple, Type, Union
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.assumption_checks import open_ways
@@ -18,6 +18,7 @@ from pursue_gen.language.scenario import (
     Assumption,
     AtMost,
     Departure,
+    InAll,
     Leaves,
     NeverAt,
     NeverHolds,
@@ -112,15 +113,15 @@ def _never_holds(
     return automaton.with_each(edges)
 
 
-def _at_most(automaton: Automaton, number: int, assumption: AtMost, *_: object) -> Automaton:
-    """Each time is counted; there is no edge for one time more."""
-    count = names.assumption_count(number)
+def _at_most(automaton: Automaton, number: int, assumption: Union[AtMost, InAll], *_: object) -> Automaton:
+    """Each time is counted, of whichever event; there is no edge for one time more."""
+    count, counted = names.assumption_count(number), {ref.name for kind, ref in assumption.names() if kind == "event"}
 
     def edges(edge: Edge) -> List[Edge]:
-        if edge.sent != assumption.event.name:
+        if edge.sent not in counted:
             return [edge]
-        counted = [edge.plus((Test(count, k),), assign=((count, k + 1),)) for k in range(assumption.times)]
-        return [*counted, _when_broken(edge, number)]
+        times = [edge.plus((Test(count, k),), assign=((count, k + 1),)) for k in range(assumption.times)]
+        return [*times, _when_broken(edge, number)]
 
     return automaton.with_each(edges)
 
@@ -217,6 +218,7 @@ def _when_broken(edge: Edge, number: int) -> Edge:
 
 _KEPT: Mapping[Type[Assumption], Callable[[Automaton, int, Any, Scenario, Conditions], Automaton]] = {
     AtMost: _at_most,
+    InAll: _at_most,
     NotBefore: _not_before,
     Waits: _waits,
     Leaves: _departs,

@@ -127,6 +127,13 @@ def test_robots_are_a_group_that_is_not_declared() -> None:
     ]  # fmt: skip
 
 
+def test_a_group_lists_what_is_of_another_one() -> None:
+    text = HOTEL + 'group "looks": look of rooms\nagent "eve" controllable location hall can_do looks\n'
+    story = parse(text, "hotel.pur")
+    assert [ref.name for ref in story.agents[-1].can_do] == ["look_room1", "look_room2", "look_room3"]
+    assert 'group "looks": look of rooms\n' in format_text(text, "hotel.pur")
+
+
 def test_robots_may_be_a_name() -> None:
     story = scenario('poi "robots"', 'poi "b"', 'group "places": robots, b', 'for each p in places: event "go" of p')
     assert [each.name for each in story.events] == ["go_robots", "go_b"]

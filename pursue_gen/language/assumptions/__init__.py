@@ -6,6 +6,7 @@ from typing import Mapping, Type
 
 from pursue_gen.language.assumptions.at_most import AtMost
 from pursue_gen.language.assumptions.base import AboutOne, Assumption, Departure
+from pursue_gen.language.assumptions.in_all import InAll
 from pursue_gen.language.assumptions.leaves import Leaves
 from pursue_gen.language.assumptions.never_at import NeverAt
 from pursue_gen.language.assumptions.never_holds import NeverHolds
@@ -15,14 +16,14 @@ from pursue_gen.language.assumptions.there_by import ThereBy
 from pursue_gen.language.assumptions.waits import Waits
 
 __all__ = [
-    "AboutOne", "Assumption", "AtMost", "Departure", "Leaves", "NeverAt", "NeverHolds", "NotBefore", "Stays",
+    "AboutOne", "Assumption", "AtMost", "Departure", "InAll", "Leaves", "NeverAt", "NeverHolds", "NotBefore", "Stays",
     "ThereBy", "Waits",
 ]  # fmt: skip
 """Parts of scenarios: `language.scenario` hands them on."""
 
 KINDS: Mapping[str, Type[Assumption]] = {
     "at_most": AtMost, "not_before": NotBefore, "waits": Waits, "leaves": Leaves, "stays": Stays,
-    "there_by": ThereBy, "never_at": NeverAt, "never_holds": NeverHolds,
+    "there_by": ThereBy, "never_at": NeverAt, "never_holds": NeverHolds, "in_all": InAll,
 }  # fmt: skip
 """The kinds of assumptions, by their rules in the grammar."""
 

@@ -29,7 +29,7 @@ class AtMost(AboutOne):
     own_words: ClassVar[Tuple[Word, ...]] = (Word("does", "The event that the assumption is about.", True),)
     forms: ClassVar[Tuple[Form, ...]] = (Form("how often somebody does something", template.to_fill_in),)
     numbers: ClassVar[Numbers] = {
-        "at_most": lambda _, times: f"It begins that {counted(times, 'time')} at most in the whole mission.",
+        "at_most": lambda _, times: f"It begins {counted(times, 'time')} at most in the whole mission.",
     }
     number: ClassVar[str] = "times"
     nearest: ClassVar[int] = MOST_TIMES

@@ -225,6 +225,8 @@ def _words(place: _Place, expected: FrozenSet[str], grouped: bool) -> Iterator[C
         names_hide = set()
     if [token.type for token in place.behind[-2:]] == ["OBJECTIVE", "COLON"]:
         names_hide -= {"ALWAYS", "PATROL", "PLACE", "WAY"}
+    if [token.type for token in place.behind[-2:]] == ["ASSUME", "COLON"]:
+        names_hide.discard("AT_MOST")
     if "BY" in (token.type for token in place.behind):
         names_hide.discard("ANY")
     if grouped and condition_start(place.behind) is not None and place.behind[-1].type in ("ANY", "ALL", "NONE"):

@@ -25,7 +25,7 @@ from pursue_gen.tools.simulation.stage import Stage, stage_of
 from pursue_gen.workspace import Options
 from pursue_runtime.event_words import ORDERED
 from pursue_runtime.state import SystemState
-from tests.assumptions import AWAY, CAFE, GOODBYE, LEAVES, MUSEUM, ONCE, STAYS
+from tests.assumptions import AWAY, CAFE, GOODBYE, IN_ALL, LEAVES, MUSEUM, ONCE, STAYS
 
 CARTS = """\
 poi "hall"
@@ -164,6 +164,7 @@ def test_what_is_done_while_its_condition_does_not_hold_is_a_fault() -> None:
     ("text", "calls", "says"),
     [
         (CAFE.format(ONCE), [(1.5, "guest:call"), (3.0, "guest:call"), (9.0, "guest:call")], "call at most once"),
+        (CAFE.format(IN_ALL), [(1.5, "guest:call"), (3.0, "guest:call"), (9.0, "guest:call")], "call at most once in"),
         (MUSEUM.format(f"{LEAVES}\n{AWAY}\n{GOODBYE}"), [], "visitor leaves gallery within 30 units"),
         (MUSEUM.format(f"{STAYS}\n{AWAY}\n{GOODBYE}"), [], "visitor stays 5 to 20 units at each place"),
         (MUSEUM.format(f"{STAYS}\n{AWAY}\n{GOODBYE}"), [(2.0, "visitor:visitor_gallery2hall")], "stays 5 to 20"),
