@@ -60,5 +60,5 @@ class InAll(Assumption):
         done = {str(times): f"{times} of {self.times} times" for times in range(self.times + 1)}
         return (f"{self._shown} by others", done) if self.times else ("", {})
 
-    def stronger(self, longest: Number) -> Sequence[int]:
+    def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
         return range(self.times - 1, 0, -1)
