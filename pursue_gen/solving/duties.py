@@ -17,7 +17,7 @@ from typing import AbstractSet, Collection, Dict, FrozenSet, List, Mapping, Opti
 from pursue_gen.language.numbers import Number
 from pursue_gen.solving.distances import distances_to, times_to
 from pursue_gen.synthesis.strategy import Place
-from pursue_gen.tga.ends import is_agent, is_nobodys
+from pursue_gen.tga.ends import has_to_come, is_agent, is_nobodys
 from pursue_gen.tga.network import Automaton, Edge, Network, Test
 
 Standing = Mapping[str, str]
@@ -76,7 +76,8 @@ def are_reported(network: Network, robots: Sequence[str]) -> bool:
 
 def at_home(network: Network) -> Dict[str, str]:
     """The agents whom nobody controls that may be for ever where they begin, and these places."""
-    return {a.name: a.initial for a in filter(is_nobodys, network.automata) if a.initial not in a.stays}
+    agents = (each for each in network.automata if is_nobodys(each) and not has_to_come(each))
+    return {agent.name: agent.initial for agent in agents if agent.initial not in agent.stays}
 
 
 def begins(automaton: Automaton, channels: AbstractSet[str]) -> List[Edge]:

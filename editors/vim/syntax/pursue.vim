@@ -12,9 +12,9 @@ syntax keyword pursueConstant false is_false is_true true
 syntax keyword pursueKeyword after agents all always and answered any at at_most avoid before between by can_do capacity
 syntax keyword pursueKeyword collaborative controllable distance do does doing duration each ends every except false_if
 syntax keyword pursueKeyword from holds human if in inflation initially is label leaves location mobile never never_with
-syntax keyword pursueKeyword no none not of on_way one_way only_if or order patrol per place radius reacts_to recharges
-syntax keyword pursueKeyword robot robots stays takes then times to together tolerance true_if two unit uses waits way
-syntax keyword pursueKeyword when within
+syntax keyword pursueKeyword no none not of on_way one_way only_if or order patrol per place radius reaches reacts_to
+syntax keyword pursueKeyword recharges robot robots stays takes then times to together tolerance true_if two unit uses
+syntax keyword pursueKeyword waits way when within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

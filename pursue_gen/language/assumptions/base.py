@@ -8,6 +8,7 @@ from typing import (
     Any,
     Callable,
     ClassVar,
+    Dict,
     Iterable,
     Iterator,
     Mapping,
@@ -19,7 +20,7 @@ from typing import (
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
 from pursue_gen.language.conditions import Condition
-from pursue_gen.language.numbers import Number, whole_above
+from pursue_gen.language.numbers import Number, exact, whole_above
 from pursue_gen.language.objectives import Safety
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
@@ -43,6 +44,7 @@ class Setting(NamedTuple):
     next_to: Callable[[str, str], AbstractSet[str]]  # those to which a single way leads it from there
     open_ways: Callable[[Agent], Mapping[Tuple[str, str], Number]]  # nothing keeps it from them: how long they take
     at_start: Callable[[Condition], bool]  # whether a condition holds at the start
+    longest: Callable[[Agent], Mapping[str, Number]]  # by place the longest time of what leads it there, or ends there
 
 
 class Assumption(Written):
@@ -57,6 +59,8 @@ class Assumption(Written):
     """What is proposed in place of a number that it cannot have."""
     counts: ClassVar[bool] = False
     """A variable counts for it how often something has happened."""
+    sets_off: ClassVar[bool] = False
+    """Its agent has to set off in time, so nothing may keep it from that."""
 
     @property
     def text(self) -> str:
@@ -182,6 +186,8 @@ class AboutOne(Assumption):
 class Departure(AboutOne):
     """An assumption about when an agent sets off, counted from when it came to a place or from the start."""
 
+    sets_off: ClassVar[bool] = True
+
     @property
     def only_at(self) -> str:
         """The place that it is about; "": each place."""
@@ -210,6 +216,31 @@ class Departure(AboutOne):
 def never_at(agent: Agent, setting: Setting) -> AbstractSet[str]:
     """The places to which the agent is assumed never to set off."""
     return {place for each in setting.assumptions if each.binds(agent) for place in each.shunned}
+
+
+def visited(agent: Agent, setting: Setting) -> Sequence[str]:
+    """The places to which the agent may come, as far as ways and assumptions go, the nearest first."""
+    found, seen = [agent.location.name], {agent.location.name, *never_at(agent, setting)}
+    for place in found:
+        found += sorted(setting.next_to(place, agent.name) - seen)
+        seen.update(found)
+    return found
+
+
+def latest_to(place: str, time: Number, ways: Mapping[Tuple[str, str], Number]) -> Dict[str, Number]:
+    """When somebody sets off at the latest who is to be at a place by then, from each other place from which these
+    ways, with their longest times, lead there: the nearest places first, with two time units at each in between."""
+    found: Dict[str, Number] = {}
+    pending: Dict[str, Number] = {place: exact(time + SHORTEST_STAY)}
+    while pending:
+        here = max(pending, key=lambda place: pending[place])
+        found[here] = pending.pop(here)
+        for (a, b), longest in ways.items():
+            if b == here and a not in found:
+                moment = exact(found[here] - SHORTEST_STAY - longest)
+                pending[a] = max(moment, pending.get(a, moment))
+    del found[place]
+    return found
 
 
 class NotSooner(AboutOne):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pursue_gen.diagnostics import Diagnostic
-from pursue_gen.language.assumptions import NUMBERED
+from pursue_gen.language.assumptions import NEAREST
 from pursue_gen.language.document import Edit, behind, written
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.numbers import exact, read_number
@@ -119,8 +119,8 @@ def without_condition(document: Draft, finding: Diagnostic, part: Statement, at:
 
 def possible_number(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
     """The nearest number that can be assumed."""
-    for word, kind in NUMBERED.items():
+    for word, nearest in NEAREST.items():
         found = part.pair(word)
         if found is not None:
-            yield f"Write {found[0]} {kind.nearest}", (written(found[1], str(kind.nearest)),)
+            yield f"Write {found[0]} {nearest}", (written(found[1], str(nearest)),)
     yield "Delete this statement", (document.deleted(part),)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from pursue_gen.diagnostics import Severity
 from pursue_gen.language import parse
 from pursue_gen.language.assumption_checks import setting_of
-from pursue_gen.language.assumptions import KINDS, NUMBERED, Assumption
+from pursue_gen.language.assumptions import KINDS, NEAREST, Assumption
 from pursue_gen.language.checks import check
 from pursue_gen.language.conditions import At, Condition, Doing, Not, OnWay, Who
 from pursue_gen.language.draft import Draft
@@ -115,7 +115,7 @@ def test_its_words_are_known_everywhere(kind: Type[Assumption]) -> None:
     for word in kind.own_words:
         assert KEYWORDS[word.token] == MAY_BE_NAMES[word.token] == word.text and MEANINGS[word.token] == word.meaning
     assert set(re.findall('"([a-z_]+)"', kind.template.grammar("kind"))) <= set(KEYWORDS.values())
-    assert (kind in NUMBERED.values()) == bool(kind.number)
+    assert all(NEAREST[word.upper()] == kind.nearest for word in kind.numbers)
     assert not kind.number or all(kind.number_words(word, 3).endswith(".") for word in kind.numbers)
     assert bool(kind.number) == bool(kind.numbers)
 
