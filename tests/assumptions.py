@@ -63,6 +63,26 @@ GOODBYE = "reach_objective: do goodbye"
 UNTOUCHED = "objective: avoid touch"
 
 
+PLANT = """\
+poi "hall"
+poi "m1"
+poi "canteen"
+connect hall and m1 distance 3
+connect m1 and canteen distance 4
+event "call" location m1 only_if not mechanic at m1
+event "handOver" collaborative location m1
+event "eat" location canteen duration 5
+event "wave"
+agent "bot" controllable mobile 1 location m1 can_do handOver
+agent "machine" location m1 can_do call
+agent "mechanic" mobile 1 location canteen can_do eat, wave reacts_to handOver
+{}
+objective: if call then handOver within 25
+"""
+"""A machine that breaks down, and a robot that hands the spare part over to the mechanic, who eats and walks about."""
+
+COMES = "assume: mechanic reaches m1 within 20 after call"
+
 ROOMS = """\
 poi "east"
 poi "west"

@@ -26,6 +26,7 @@ from pursue_gen.language.scenario import (
     NeverHolds,
     NotBefore,
     Poi,
+    Reaches,
     Ref,
     RuleBody,
     Scenario,
@@ -88,6 +89,8 @@ class Course:
     begun: Dict[str, int] = field(default_factory=dict)
     done: Dict[Tuple[str, str], List[Tuple[float, float]]] = field(default_factory=dict)
     """(agent, event) → beginnings and ends"""
+    awaited: Dict[int, float] = field(default_factory=dict)
+    """The numbers of assumptions that somebody comes, and when that was called for."""
 
     def __post_init__(self) -> None:
         self.events = {event.name: event for event in self.scenario.events}
@@ -119,7 +122,8 @@ class Course:
         if any((each.agent.name, each.place.name) == (agent, b) for each in never):
             return False
         there = [each.place.name for each in self.scenario.assumptions if self._is_there_by(each, agent)]
-        if there and b not in self._open_to(agent, there[0]):
+        there += [each.place.name for number, each in self._comes(agent) if number in self.awaited]
+        if any(b not in self._open_to(agent, place) for place in there):
             return False
         if not self._keeps(agent, Stay(a, self.now, to=b)):
             return False
@@ -131,6 +135,18 @@ class Course:
 
     def _is_there_by(self, each: Assumption, agent: str) -> bool:
         return isinstance(each, ThereBy) and each.agent.name == agent
+
+    def _comes(self, agent: str = "") -> List[Tuple[int, Reaches]]:
+        """What is assumed of when this agent, or any, comes somewhere, with its number."""
+        numbered = enumerate(self.scenario.assumptions)
+        return [(k, each) for k, each in numbered if isinstance(each, Reaches) and agent in ("", each.agent.name)]
+
+    def _has_happened(self, event: str) -> None:
+        """It has: whoever is to come then, and is not there, is awaited from now on."""
+        for number, each in self._comes():
+            stay = self.stays[each.agent.name]
+            if each.event.name == event and (stay.to or stay.place != each.place.name):
+                self.awaited.setdefault(number, self.now)
 
     def _open_to(self, agent: str, place: str) -> Set[str]:
         """The places from which ways that are always open lead to this one."""
@@ -274,6 +290,11 @@ class Course:
             if isinstance(each, ThereBy) and (each.agent.name, each.place.name) != (agent, stay.to):
                 assert each.agent.name != agent or self.now <= each.time + 1e-9, "it is assumed to be there by then"
         assert low - 1e-9 < self.now - stay.since <= high + 1e-9, (agent, stay, self.now)
+        for number, reach in self._comes(agent):
+            since = self.awaited.get(number, self.now)
+            assert self.now - since <= reach.time + 1e-9, "it is assumed to be there sooner"
+            if reach.place.name == stay.to:
+                self.awaited.pop(number, None)
         self.stays[agent] = Stay(stay.to, self.now, rested=self.now, came=self.now)
 
     def _window(self, agent: Agent, stay: Stay) -> Tuple[float, float]:
@@ -301,6 +322,7 @@ class Course:
         self.done.setdefault((agent, name), []).append((self.now, self.now))
         self._set_states(name)
         if event.duration is None:
+            self._has_happened(name)
             stay.rested = stay.rested if stay.to else self.now
             return
         if agent in self.levels:
@@ -320,6 +342,7 @@ class Course:
         if agent in self.levels and self._is_docked(agent):
             battery = self.batteries[agent]
             self.levels[agent] = min(battery.capacity, self.levels[agent] + floor(battery.recharges * low))
+        self._has_happened(event.name)
         beginning, _ = self.done[agent, event.name][-1]
         self.done[agent, event.name][-1] = (beginning, self.now)
         for who, other in list(self.stays.items()):

@@ -63,7 +63,7 @@ class Play:
         """The time units until somebody has to have ended what it does, or to have left."""
         bounds = [
             bound.bound - self.position.clocks[bound.left]
-            for name in self.course.agents
+            for name in (*self.course.agents, *(each.name for each in self.model.of_kind("rule")))
             for bound in self.model.bounds_of(name, self.position.locations[name], self.position.values)
         ]
         return min(bounds, default=1e9)

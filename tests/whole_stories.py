@@ -142,6 +142,8 @@ def _assumptions(draw: st.DrawFn, place: object) -> List[str]:
         "leaves": f"assume: guest leaves {place()} within {draw(st.integers(4, 20))}",  # type: ignore[operator]
         "stays": f"assume: guest stays {draw(st.integers(0, 4))} to {draw(st.integers(4, 20))} at each place",
         "there": f"assume: guest at {place()} by {draw(st.integers(4, 60))}",  # type: ignore[operator]
+        "reaches": f"assume: guest reaches {place()} within {draw(st.integers(4, 60))}"  # type: ignore[operator]
+        f" after {draw(st.sampled_from((*EVENTS, 'call')))}",
         "never": f"assume: guest never at {place()}",  # type: ignore[operator]
         "not": f"assume: not guest {draw(st.sampled_from(('on_way', f'at {place()}')))}",  # type: ignore[operator]
     }

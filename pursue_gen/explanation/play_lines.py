@@ -13,6 +13,7 @@ from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.times import moment
 from pursue_gen.synthesis.game import joint_moves
+from pursue_gen.tga.awaited import who_awaited
 from pursue_gen.tga.objectives import stated
 from pursue_gen.vocabulary.agents import deed
 from pursue_gen.vocabulary.losses import loss
@@ -58,6 +59,7 @@ def attempt(scenario: Scenario, play: Play) -> Attempt:
     for step in play.steps:
         who, text = _deed(scenario, play, step.owner, step.edges)
         owner = play.game.automata[step.owner].name
+        owner = who_awaited(owner, scenario) or owner
         if owner in others and text and not play.game.origins[step.edges[0]].is_end:
             done.append(f"{who} {text} at {moment(step.at, scenario.unit)}")
     ending = _ending(scenario, play)[0]
@@ -67,6 +69,7 @@ def attempt(scenario: Scenario, play: Play) -> Attempt:
 def _deed(scenario: Scenario, play: Play, owner: int, edges: Sequence[int]) -> Tuple[str, str]:
     """The agent that makes a move, as people read it, and what it does; "" for what is no agent's."""
     name = play.game.automata[owner].name
+    name = who_awaited(name, scenario) or name
     done = deed(scenario, name, play.game.origins[edges[0]])
     return scenario.shown(name), "" if done is None else done.does
 

@@ -29,7 +29,7 @@ def setting_of(scenario: Scenario) -> Setting:
     return Setting(
         scenario.agents, scenario.events, scenario.states, scenario.safety, scenario.assumptions,
         lambda place, agent: destinations_from(scenario, place, agent), next_to,
-        lambda agent: open_ways(scenario, agent), at_start, scenario.rest,
+        lambda agent: open_ways(scenario, agent), at_start, lambda agent: _longest(scenario, agent), scenario.rest,
     )  # fmt: skip
 
 
@@ -39,6 +39,19 @@ def open_ways(scenario: Scenario, agent: Agent) -> Dict[Tuple[str, str], Number]
     closed = {way for each in scenario.connections if each.only_if is not None for way in each.directions}
     ways = scenario.movements(agent).items()
     return {way: most for way, (_, most) in ways if way not in closed and way[1] not in shunned}
+
+
+def _longest(scenario: Scenario, agent: Agent) -> Dict[str, Number]:
+    """By place the longest way of the agent there, or the longest that it is busy there."""
+    found: Dict[str, Number] = {}
+    for (_, place), (_, most) in scenario.movements(agent).items():
+        found[place] = max(most, found.get(place, 0))
+    named = {ref.name for ref in agent.can_do}
+    for event in (each for each in scenario.events if each.name in named and each.window is not None):
+        assert event.window is not None
+        for place in [poi.name for poi in scenario.pois] if event.location is None else [event.location.name]:
+            found[place] = max(event.window[1], found.get(place, 0))
+    return found
 
 
 def check_assumptions(scenario: Scenario) -> Iterator[Diagnostic]:

@@ -62,7 +62,7 @@ def _numbered(scenario: Scenario) -> Iterator[_Stated]:
         yield reach.span, [names.reach_objective(number), names.reach_clock(number), names.unlocking(number)]
     for number, assumption in enumerate(scenario.assumptions, start=1):
         made = [names.assumption(number), names.assumption_count(number), names.assumption_clock(number)]
-        yield assumption.span, made
+        yield assumption.span, [*made, names.assumed_way(number)]
 
 
 def _among_locations(scenario: Scenario) -> Iterator[_Stated]:

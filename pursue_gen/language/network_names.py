@@ -49,6 +49,9 @@ assumption, assumption_count, assumption_clock = Role.ASSUMPTION, Role.ASSUMED_T
 """By the number of an assumption (the first has number 1): its variable, 1, or 0 in a mission in which it has been
 broken; the variable that counts what it limits; its clock, if it is about times."""
 
+assumed_way = Role.AWAITED
+"""By the number of an assumption the automaton of the way of who is awaited somewhere."""
+
 safety_objective, safety_clock = partial(numbered, Role.SAFETY), partial(numbered, Role.SAFETY_CLOCK)
 """By the number of a safety objective, from 0: its automaton, `obj`, `obj2`, …, and its clock, `Cobj`, `Cobj2`, …"""
 

@@ -70,6 +70,7 @@ class Role(enum.Enum):
     ASSUMPTION = "assume{}", "a part of an assumption"
     ASSUMED_TIMES = "assume{}count", "a part of an assumption"
     ASSUMED_TIME = "Cassume{}", "a part of an assumption"
+    AWAITED = "assume{}way", "a part of an assumption"
 
     WATCHER = "{}_for_{}", "{}, watched for {}"
     PASSAGE = "{}_passage{}", "the order of visits to {}"
@@ -138,6 +139,7 @@ def numbered(role: Role, number: int) -> Symbol:
 _FURTHER = "([2-9]|[1-9][0-9]+)?"
 _READ = {role: "(.+)" for role in Role if "{" not in role.form or role in (*UNDER_WAY, Role.END)}
 _READ.update({Role.DID: "([1-9][0-9_]*)", Role.SAFETY: _FURTHER, Role.REACH: _FURTHER, Role.ASSUMPTION: "([0-9]+)"})
+_READ[Role.AWAITED] = _READ[Role.ASSUMPTION]
 _FORMS = {role: re.compile(role.form.replace("{}", part)) for role, part in _READ.items()}
 """The forms of texts that are read; no name of a scenario is like one of those with parts, but for numbers."""
 

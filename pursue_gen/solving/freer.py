@@ -13,7 +13,7 @@ from typing import AbstractSet, Collection, Dict, Iterable, Iterator, List, Sequ
 
 from pursue_gen.language.symbols import Role
 from pursue_gen.synthesis.strategy import Place
-from pursue_gen.tga.ends import is_agent, is_nobodys
+from pursue_gen.tga.ends import has_to_come, is_agent, is_nobodys
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Network, Test
 from pursue_gen.tga.part import part_of
 from pursue_gen.tga.pauses import pauses
@@ -157,7 +157,7 @@ def standing(game: Network, kept: Collection[Edge] = ()) -> Network:
         def is_kept(edge: Edge) -> bool:
             return edge.controllable or edge.enters is not Role.WAY or edge.source in automaton.stays or edge in kept
 
-        return automaton.with_edges(filter(is_kept, automaton.edges))
+        return automaton if has_to_come(automaton) else automaton.with_edges(filter(is_kept, automaton.edges))
 
     return game.with_each(still)
 

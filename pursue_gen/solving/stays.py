@@ -7,7 +7,7 @@ from typing import AbstractSet, Dict, Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.solving.duties import Standing, is_free
 from pursue_gen.synthesis.strategy import Place
-from pursue_gen.tga.ends import is_nobodys
+from pursue_gen.tga.ends import has_to_come, is_nobodys
 from pursue_gen.tga.network import Automaton, Edge, Network, Objective
 
 
@@ -26,7 +26,8 @@ class LostToAStay:
 
 def at_home(network: Network) -> Dict[str, str]:
     """The agents whom nobody controls that may be for ever where they begin, and these places."""
-    return {a.name: a.initial for a in filter(is_nobodys, network.automata) if a.initial not in a.stays}
+    agents = (each for each in network.automata if is_nobodys(each) and not has_to_come(each))
+    return {agent.name: agent.initial for agent in agents if agent.initial not in agent.stays}
 
 
 def arrivals(agent: Automaton) -> Iterator[Edge]:

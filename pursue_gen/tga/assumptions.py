@@ -23,15 +23,17 @@ from pursue_gen.language.scenario import (
     NeverAt,
     NeverHolds,
     NotBefore,
+    Reaches,
     Scenario,
     Stays,
     ThereBy,
     Waits,
 )
 from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
+from pursue_gen.tga.awaited import last_ways, latest_of
 from pursue_gen.tga.changes import Change, beginning, setting_off, states_set
 from pursue_gen.tga.conditions import Conditions
-from pursue_gen.tga.network import Automaton, ClockBound, Edge, Location, Test
+from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Test
 
 
 def assumed(automaton: Automaton, scenario: Scenario, conditions: Conditions) -> Automaton:
@@ -205,6 +207,36 @@ def _there_by(automaton: Automaton, number: int, assumption: ThereBy, scenario: 
     return automaton.with_locations(bounded).with_each(edges)
 
 
+def _reaches(automaton: Automaton, number: int, assumption: Reaches, scenario: Scenario, *_: object) -> Automaton:
+    """While it is awaited it begins only that from which it gets there in time afterwards; that it sets off in time
+    follows from the automaton of its way."""
+    count, clock, place = names.assumption_count(number), names.assumption_clock(number), assumption.place.name
+    latest, last = latest_of(assumption, scenario), frozenset(last_ways(assumption, scenario))
+    ends = {edge.source: edge.target for edge in automaton.edges if edge.leaves in UNDER_WAY and edge.is_end}
+
+    def edges(edge: Edge) -> List[Edge]:
+        end = ends.get(edge.target, edge.target)
+        if edge.source in ends or edge.received is not None or edge.source == end == place:
+            return [edge]
+        free = edge.plus((Test(count, 0),))
+        if end != place and end not in latest:
+            return [free, _when_broken(edge, number)]
+        stay = SHORTEST_STAY * scenario.rest
+        moment = assumption.in_time(end, automaton.longest.get(edge.target, 0), latest, stay)
+        in_time = edge.plus((Test(count, 1),), bounds=(ClockBound(clock, "<=", moment),))
+        sent = [_sent(edge, count)] if (edge.source, end) in last and edge.enters is Role.WAY else []
+        return [free, in_time, _when_broken(edge, number), *sent]
+
+    return automaton.with_each(edges)
+
+
+def _sent(edge: Edge, count: str) -> Edge:
+    """An edge on which the automaton of its way sends the agent, which is awaited."""
+    assert edge.sync is not None
+    guard = Guard(integers=((Test(count, 1),),))
+    return replace(edge, guard=guard, sync=replace(edge.sync, sends=False))
+
+
 def _never_at(automaton: Automaton, number: int, assumption: NeverAt, *_: object) -> Automaton:
     place = assumption.place.name
     ways = {edge.source for edge in automaton.edges if edge.target == place and edge.leaves is Role.WAY}
@@ -223,6 +255,7 @@ _KEPT: Mapping[Type[Assumption], Callable[[Automaton, int, Any, Scenario, Condit
     Waits: _waits,
     Leaves: _departs,
     Stays: _departs,
+    Reaches: _reaches,
     ThereBy: _there_by,
     NeverAt: _never_at,
     NeverHolds: _never_holds,

@@ -7,7 +7,7 @@ from typing import Dict, Mapping, Tuple
 
 from pursue_gen.diagnostics import error
 from pursue_gen.language.numbers import exact
-from pursue_gen.language.symbols import UNDER_WAY
+from pursue_gen.language.symbols import UNDER_WAY, Role
 from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.network import Automaton, ClockBound, Location, Network, with_controllability
 
@@ -64,6 +64,13 @@ def is_agent(automaton: Automaton) -> bool:
 def is_nobodys(automaton: Automaton) -> bool:
     """True for the automaton of an agent whom nobody controls."""
     return is_agent(automaton) and not any(edge.controllable for edge in automaton.edges)
+
+
+def has_to_come(automaton: Automaton) -> bool:
+    """True for an agent that another automaton can send on its way, so that it may not stay where it is (see
+    `awaited`)."""
+    sent = (edge for edge in automaton.edges if edge.received is not None and not edge.controllable)
+    return any(edge.enters is Role.WAY for edge in sent)
 
 
 def _reported(automaton: Automaton, slack: Mapping[str, int]) -> Automaton:

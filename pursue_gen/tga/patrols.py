@@ -8,7 +8,7 @@ from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Domains
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.language.numbers import exact
-from pursue_gen.language.scenario import Agent, Patrol, Scenario
+from pursue_gen.language.scenario import Agent, Patrol, Reaches, Scenario
 from pursue_gen.language.symbols import Role
 from pursue_gen.tga.agents import Surroundings
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
@@ -21,6 +21,8 @@ _NOTHING: Tuple[Tuple[str, int], ...] = ()
 def awaited(scenario: Scenario) -> FrozenSet[Tuple[str, str]]:
     """The agents with the POIs to whose arrival there an objective listens: these edges have a channel."""
     found = {(agent.name, each.place.name) for each in scenario.patrols for agent in scenario.on_patrol(each)}
+    followed = {each.agent.name for each in scenario.assumptions if isinstance(each, Reaches)}
+    found |= {(name, poi.name) for name in followed for poi in scenario.pois}
     heard = [condition for each in scenario.safety if each.breaks.condition is None for condition in each.conditions]
     if heard:
         domains = Domains(scenario)

@@ -11,6 +11,7 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.agents import Surroundings, agent_automaton
 from pursue_gen.tga.assumptions import assumed, assumption_clocks, assumption_variables
+from pursue_gen.tga.awaited import ways_awaited
 from pursue_gen.tga.batteries import battery_variables, powered
 from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.counts import count_automaton, counted
@@ -42,6 +43,7 @@ def translate(scenario: Scenario) -> Network:
     automata = [states] if states else []
     agents = [powered(agent_automaton(agent, around), scenario) for agent in scenario.agents]
     automata += [assumed(bound(agent, own), scenario, conditions) for agent in agents]
+    automata += ways_awaited(scenario, codes)
     automata += [safety_automaton(each, around, k) for k, each in enumerate(scenario.safety)]
     steps = unlocking(scenario)
     automata += [reach_automaton(each, happened, k, steps[k]) for k, each in enumerate(scenario.reach)]

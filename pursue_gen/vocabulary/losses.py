@@ -6,6 +6,7 @@ from typing import Sequence
 
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.synthesis.game import Game, State
+from pursue_gen.tga.awaited import who_awaited
 from pursue_gen.tga.objectives import stated
 from pursue_gen.vocabulary.agents import place
 
@@ -18,5 +19,6 @@ def loss(scenario: Scenario, game: Game, state: State, late: Sequence[str]) -> s
     found = next((objectives[name] for name in (*late, *broken) if name in objectives), None)
     if found is not None:
         return found.broken(lambda agent: f", both {place(scenario, here[agent])}")
-    doing = ", ".join(f"{scenario.shown(name)} ({place(scenario, here[name])})" for name in late)
+    agents = dict.fromkeys(who_awaited(name, scenario) or name for name in late)
+    doing = ", ".join(f"{scenario.shown(name)} ({place(scenario, here[name])})" for name in agents)
     return f"{doing} ought to be done by now and cannot be, so nothing goes on" if late else "the objective is broken"

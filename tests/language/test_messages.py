@@ -136,7 +136,7 @@ SLIPS = [
     ("assume: not (a at b and c at d", "PML010", 31, "expected `)` or `and`", "put a `)`"),
     ("assume: a at b", "PML010", 15, "expected `by` after `b`", "not (visitor at a and guest at a)"),
     ("assume a never at b", "PML010", 8, "expected `:`", "the form is"),
-    ("assume: a lies at b", "PML010", 11, "`waits`, `leaves`, `stays`, `never` or `at` after `a`", "the form is"),
+    ("assume: a lies at b", "PML010", 11, "`reaches`, `never` or `at` after `a`", "the form is"),
     ('agent "b" mobile 3', "PML010", 19, "`radius`, `tolerance` or `inflation` after `3`", "location is required"),
     ('agent "b" mobile location a', "PML010", 18, "expected a number after `mobile`", "mobile 3"),
     ('agent "b" location a controllable', "PML010", 22, "found `controllable`", "human controllable mobile 3 location"),

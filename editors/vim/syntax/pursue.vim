@@ -13,8 +13,8 @@ syntax keyword pursueKeyword after agents all always and answered any at at_most
 syntax keyword pursueKeyword collaborative controllable distance do does doing duration each ends every except false_if
 syntax keyword pursueKeyword from holds hour human if in inflation initially is label leaves location minute mobile
 syntax keyword pursueKeyword never never_with no none not of on_way one_way only_if or order patrol per place radius
-syntax keyword pursueKeyword reacts_to recharges robot robots second speed stays takes then times to together tolerance
-syntax keyword pursueKeyword true_if two uses waits way when within
+syntax keyword pursueKeyword reaches reacts_to recharges robot robots second speed stays takes then times to together
+syntax keyword pursueKeyword tolerance true_if two uses waits way when within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*\%([ \t]\+\%(s\|min\|h\)\>\%([ \t]\+\d[0-9.]*[ \t]\+\%(s\|min\|h\)\>\)*\)\?"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

@@ -11,21 +11,22 @@ from pursue_gen.language.assumptions.leaves import Leaves
 from pursue_gen.language.assumptions.never_at import NeverAt
 from pursue_gen.language.assumptions.never_holds import NeverHolds
 from pursue_gen.language.assumptions.not_before import NotBefore
+from pursue_gen.language.assumptions.reaches import Reaches
 from pursue_gen.language.assumptions.stays import Stays
 from pursue_gen.language.assumptions.there_by import ThereBy
 from pursue_gen.language.assumptions.waits import Waits
 
 __all__ = [
-    "AboutOne", "Assumption", "AtMost", "Departure", "InAll", "Leaves", "NeverAt", "NeverHolds", "NotBefore", "Stays",
-    "ThereBy", "Waits",
+    "AboutOne", "Assumption", "AtMost", "Departure", "InAll", "Leaves", "NeverAt", "NeverHolds", "NotBefore", "Reaches",
+    "Stays", "ThereBy", "Waits",
 ]  # fmt: skip
 """Parts of scenarios: `language.scenario` hands them on."""
 
 KINDS: Mapping[str, Type[Assumption]] = {
     "at_most": AtMost, "not_before": NotBefore, "waits": Waits, "leaves": Leaves, "stays": Stays,
-    "there_by": ThereBy, "never_at": NeverAt, "never_holds": NeverHolds, "in_all": InAll,
+    "reaches": Reaches, "there_by": ThereBy, "never_at": NeverAt, "never_holds": NeverHolds, "in_all": InAll,
 }  # fmt: skip
 """The kinds of assumptions, by their rules in the grammar."""
 
 NUMBERED: Mapping[str, Type[Assumption]] = {word.upper(): kind for kind in KINDS.values() for word in kind.numbers}
-"""The kinds that have a number, by the word before it, as the token that it is."""
+"""A kind of assumption with a number, by the token of the word before it."""

@@ -8,6 +8,7 @@ from typing import (
     Any,
     Callable,
     ClassVar,
+    Dict,
     Iterable,
     Iterator,
     Mapping,
@@ -44,6 +45,7 @@ class Setting(NamedTuple):
     next_to: Callable[[str, str], AbstractSet[str]]  # those to which a single way leads it from there
     open_ways: Callable[[Agent], Mapping[Tuple[str, str], Number]]  # nothing keeps it from them: how long they take
     at_start: Callable[[Condition], bool]  # whether a condition holds at the start
+    longest: Callable[[Agent], Mapping[str, Number]]  # by place the longest time of what leads it there, or ends there
     rest: Number  # so many time units agents rest between two steps
 
     @property
@@ -62,8 +64,12 @@ class Assumption(Written):
     """Its field with a number; "": it has none."""
     nearest: ClassVar[int] = 0
     """What is proposed in place of a number that it cannot have."""
+    in_rests: ClassVar[bool] = False
+    """`nearest` counts rests, and not time units."""
     counts: ClassVar[bool] = False
     """A variable counts for it how often something has happened."""
+    sets_off: ClassVar[bool] = False
+    """Its agent has to set off in time, so nothing may keep it from that."""
 
     @property
     def text(self) -> str:
@@ -190,6 +196,9 @@ class AboutOne(Assumption):
 class Departure(AboutOne):
     """An assumption about when an agent sets off, counted from when it came to a place or from the start."""
 
+    sets_off: ClassVar[bool] = True
+    in_rests: ClassVar[bool] = True
+
     @property
     def only_at(self) -> str:
         """The place that it is about; "": each place."""
@@ -218,6 +227,33 @@ class Departure(AboutOne):
 def never_at(agent: Agent, setting: Setting) -> AbstractSet[str]:
     """The places to which the agent is assumed never to set off."""
     return {place for each in setting.assumptions if each.binds(agent) for place in each.shunned}
+
+
+def visited(agent: Agent, setting: Setting) -> Sequence[str]:
+    """The places to which the agent may come, as far as ways and assumptions go, the nearest first."""
+    found, seen = [agent.location.name], {agent.location.name, *never_at(agent, setting)}
+    for place in found:
+        found += sorted(setting.next_to(place, agent.name) - seen)
+        seen.update(found)
+    return found
+
+
+def latest_to(
+    place: str, time: Number, ways: Mapping[Tuple[str, str], Number], stay: Number
+) -> Dict[str, Number]:
+    """When somebody sets off at the latest who is to be at a place by then, from each other place from which these
+    ways, with their longest times, lead there: the nearest places first, with `stay` time units at each in between."""
+    found: Dict[str, Number] = {}
+    pending: Dict[str, Number] = {place: exact(time + stay)}
+    while pending:
+        here = max(pending, key=lambda place: pending[place])
+        found[here] = pending.pop(here)
+        for (a, b), longest in ways.items():
+            if b == here and a not in found:
+                moment = exact(found[here] - stay - longest)
+                pending[a] = max(moment, pending.get(a, moment))
+    del found[place]
+    return found
 
 
 class NotSooner(AboutOne):

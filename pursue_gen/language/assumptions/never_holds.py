@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Iterator, List, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
-from pursue_gen.language.assumptions.base import Assumption, Departure, Setting
-from pursue_gen.language.assumptions.there_by import ThereBy
+from pursue_gen.language.assumptions.base import Assumption, Setting
 from pursue_gen.language.conditions import Atom, Condition, Doing, Holds, atoms, condition_words
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
@@ -61,7 +60,8 @@ class NeverHolds(Assumption):
         if any(agent.name == ref.name for agent in controlled):
             message = f"{ref.name} is controlled: what it does is decided, not assumed"
             return [error("PML250", message, ref.span, _OBJECTIVE)]
-        if any(isinstance(each, (Departure, ThereBy)) and each.agent.name == ref.name for each in setting.assumptions):
+        bound = [agent for agent in setting.agents if agent.name == ref.name]
+        if any(each.sets_off and any(map(each.binds, bound)) for each in setting.assumptions):
             message = f"{ref.name} is assumed to leave a place in time, and could be kept from setting off by this"
             hint = "assume one of the two, or never at in place of not"
             return [error("PML264", message, ref.span, hint)]

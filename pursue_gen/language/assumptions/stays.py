@@ -7,7 +7,7 @@ from math import ceil
 from typing import ClassVar, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
-from pursue_gen.language.assumptions.base import SHORTEST_STAY, Departure, Setting, never_at
+from pursue_gen.language.assumptions.base import SHORTEST_STAY, Departure, Setting, visited
 from pursue_gen.language.assumptions.leaves import Leaves
 from pursue_gen.language.numbers import Number, whole_below
 from pursue_gen.language.refs import Ref
@@ -62,7 +62,7 @@ class Stays(Departure):
                 least = written_time(self.least)
                 message = f"{agent.name} stays {least} or longer, and is assumed to leave {each.place.name} sooner"
                 return error("PML264", message, self.span, "assume one of the two")
-        return self.never_away(agent, _visited(agent, setting), setting)
+        return self.never_away(agent, visited(agent, setting), setting)
 
     @property
     def since(self) -> str:
@@ -70,12 +70,3 @@ class Stays(Departure):
 
     def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
         return whole_below(self.most, max(1, ceil(shortest_stay), ceil(self.least)))
-
-
-def _visited(agent: Agent, setting: Setting) -> Sequence[str]:
-    """The places to which the agent may come, as far as ways and assumptions go, the nearest first."""
-    found, seen = [agent.location.name], {agent.location.name, *never_at(agent, setting)}
-    for place in found:
-        found += sorted(setting.next_to(place, agent.name) - seen)
-        seen.update(found)
-    return found

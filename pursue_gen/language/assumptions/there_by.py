@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Dict, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units, warning
-from pursue_gen.language.assumptions.base import AboutOne, Departure, Setting
+from pursue_gen.language.assumptions.base import AboutOne, Departure, Setting, latest_to
 from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
@@ -28,6 +28,7 @@ class ThereBy(AboutOne):
     numbers: ClassVar[Numbers] = {"by": "It is there {} after the start, and stays there.".format}
     number: ClassVar[str] = "time"
     nearest: ClassVar[int] = 1
+    sets_off: ClassVar[bool] = True
 
     @property
     def subject(self) -> str:
@@ -42,19 +43,8 @@ class ThereBy(AboutOne):
         return "the start"
 
     def latest(self, ways: Mapping[Tuple[str, str], Number], stay: Number) -> Dict[str, Number]:
-        """When it sets off at the latest from each other place from which these ways, with their longest times, lead
-        there: the nearest places first, with `stay` time units at each place in between."""
-        found: Dict[str, Number] = {}
-        pending: Dict[str, Number] = {self.place.name: exact(self.time + stay)}
-        while pending:
-            here = max(pending, key=lambda place: pending[place])
-            found[here] = pending.pop(here)
-            for (a, b), longest in ways.items():
-                if b == here and a not in found:
-                    moment = exact(found[here] - stay - longest)
-                    pending[a] = max(moment, pending.get(a, moment))
-        del found[self.place.name]
-        return found
+        """When it sets off at the latest from each other place, as `latest_to`."""
+        return latest_to(self.place.name, self.time, ways, stay)
 
     def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
         place, start = self.place.name, agent.location.name

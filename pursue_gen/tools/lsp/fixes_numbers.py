@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.assumptions import NUMBERED
-from pursue_gen.language.assumptions.base import Departure
 from pursue_gen.language.document import Edit, behind, written
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.numbers import exact
@@ -126,7 +125,7 @@ def possible_number(document: Draft, finding: Diagnostic, part: Statement, at: i
     for word, kind in NUMBERED.items():
         found = part.pair(word)
         if found is not None:
-            often = document.scenario.rest if issubclass(kind, Departure) else 1
+            often = document.scenario.rest if kind.in_rests else 1
             nearest = written_time(like(exact(kind.nearest * often), read_time(document, found[1])))
             yield f"Write {found[0]} {nearest}", (written(found[1], nearest),)
     yield "Delete this statement", (document.deleted(part),)

@@ -7,6 +7,7 @@ from typing import List, NamedTuple, Optional, Tuple
 
 from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
 from pursue_gen.proof.moves import JointMove, State
+from pursue_gen.tga.awaited import who_awaited
 from pursue_gen.tga.event_words import event_word
 from pursue_gen.tools.simulation.recorder import EPSILON
 from pursue_gen.tools.simulation.remaining import Remaining
@@ -104,10 +105,12 @@ class Opponent:
         """How the one goes away that must leave its place first, as is assumed of it; None where nobody must."""
         network, clock = self._stage.arena.network, self._stage.arena.clock
         latest: List[Tuple[float, str]] = []
+        under_way = {each.name for each, here in zip(network.automata, state[0]) if role_of(here) in UNDER_WAY}
         for automaton, here in zip(network.automata, state[0]):
-            if automaton.name in self._stage.opponents and role_of(here) not in UNDER_WAY:
+            agent = who_awaited(automaton.name, self._stage.scenario) or automaton.name
+            if agent in self._stage.opponents and agent not in under_way:
                 bounds = next(place.invariant for place in automaton.locations if place.name == here)
-                latest += [(bound.bound - point[clock[bound.clock]], automaton.name) for bound in bounds]
+                latest += [(bound.bound - point[clock[bound.clock]], agent) for bound in bounds]
         if not latest:
             return None
         moment, agent = min(latest)

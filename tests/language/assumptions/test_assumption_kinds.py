@@ -117,7 +117,8 @@ def test_its_words_are_known_everywhere(kind: Type[Assumption]) -> None:
     for word in kind.own_words:
         assert KEYWORDS[word.token] == MAY_BE_NAMES[word.token] == word.text and MEANINGS[word.token] == word.meaning
     assert set(re.findall('"([a-z_]+)"', kind.template.grammar("kind"))) <= set(KEYWORDS.values())
-    assert {word.upper() for word in kind.numbers} <= NUMBERED.keys()
+    assert all(NUMBERED[word.upper()].nearest == kind.nearest for word in kind.numbers)
+    assert all(NUMBERED[word.upper()].in_rests == kind.in_rests for word in kind.numbers)
     assert not kind.number or all(kind.number_words(word, 3).endswith(".") for word in kind.numbers)
     assert bool(kind.number) == bool(kind.numbers)
 

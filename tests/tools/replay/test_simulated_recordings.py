@@ -25,7 +25,7 @@ from pursue_gen.tools.simulation.stage import Stage, stage_of
 from pursue_gen.workspace import Options
 from pursue_runtime.event_words import ORDERED
 from pursue_runtime.state import SystemState
-from tests.assumptions import AWAY, CAFE, GOODBYE, IN_ALL, LEAVES, MUSEUM, ONCE, STAYS
+from tests.assumptions import AWAY, CAFE, COMES, GOODBYE, IN_ALL, LEAVES, MUSEUM, ONCE, PLANT, STAYS
 
 CARTS = """\
 poi "hall"
@@ -170,6 +170,8 @@ def test_what_is_done_while_its_condition_does_not_hold_is_a_fault() -> None:
         (MUSEUM.format(f"{STAYS}\n{AWAY}\n{GOODBYE}"), [(2.0, "visitor:visitor_gallery2hall")], "stays 5 to 20"),
         (MUSEUM.format(f"assume: visitor at hall by 30\n{AWAY}\n{GOODBYE}"), [], "visitor is at hall 30 units after"),
         (MUSEUM.format(f"{LEAVES}\n{AWAY}\n{GOODBYE}"), [(2.0, "visitor:visitor_gallery2store")], "never at store"),
+        (PLANT.format(COMES), [(2.0, "machine:call")], "mechanic reaches m1 within 20 units after call"),
+        (PLANT.format(COMES), [(2.0, "machine:call"), (12.0, "mechanic:eat")], "mechanic reaches m1 within 20 units"),
     ],
 )
 def test_a_broken_assumption_is_the_worlds_and_no_fault_of_a_node(
@@ -196,8 +198,12 @@ def test_the_journal_leads_to_the_same_states(calls: Sequence[Tuple[float, str]]
     assert any(state.values["assume1"] == 0 for state in record.states) is bool(calls)
 
 
-def test_the_journal_knows_who_has_stayed_too_long() -> None:
-    mission = Recorded(MUSEUM.format(f"{LEAVES}\n{AWAY}\n{GOODBYE}"), 1)
+@pytest.mark.parametrize(
+    ("text", "calls"),
+    [(MUSEUM.format(f"{LEAVES}\n{AWAY}\n{GOODBYE}"), []), (PLANT.format(COMES), [(2.0, "machine:call")])],
+)
+def test_the_journal_knows_who_has_stayed_too_long(text: str, calls: Sequence[Tuple[float, str]]) -> None:
+    mission = Recorded(text, 1, calls)
     mission.run()
     journal = read_journal(mission.journal())
     assert isinstance(journal, Journal)
