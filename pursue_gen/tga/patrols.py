@@ -10,6 +10,7 @@ from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.language.scenario import Agent, Patrol, Scenario
 from pursue_gen.language.symbols import Role
 from pursue_gen.tga.agents import Surroundings
+from pursue_gen.tga.endurance import batteries_by_time
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.positions import Positions
 from pursue_gen.tga.responses import awaited_by
@@ -20,6 +21,7 @@ _NOTHING: Tuple[Tuple[str, int], ...] = ()
 def awaited(scenario: Scenario) -> FrozenSet[Tuple[str, str]]:
     """The agents with the POIs to whose arrival there an objective listens: these edges have a channel."""
     found = {(agent.name, each.place.name) for each in scenario.patrols for agent in scenario.on_patrol(each)}
+    found.update((each.agent.name, each.dock.name) for _, each in batteries_by_time(scenario))
     heard = [condition for each in scenario.safety if each.breaks.condition is None for condition in each.conditions]
     if heard:
         domains = Domains(scenario)
