@@ -12,6 +12,12 @@ enum class Next { in_turn, soonest_due, nearest };
 // what it will be asked for.
 enum class Idle { stays, goes_home, goes_to_post, prepares };
 
+// When a robot that has a battery by time goes to its charger: in its turn, until it is full; likewise, but it leaves when it
+// is called; or when it has nothing else to do, until it has.
+enum class Charging { in_turn, until_called, when_idle };
+
+inline const std::vector<Charging> CHARGINGS = {Charging::in_turn, Charging::until_called, Charging::when_idle};
+
 struct Guess {
     Next next = Next::in_turn;
     bool shared_out = true;  // each duty is one robot's: who has least to do
@@ -25,6 +31,7 @@ struct Guess {
     bool relieved = false;   // a post is for a robot without duties; until it is there, another one sees to the post first
     bool alternates = false; // after a visit something else is done, if it is asked for, and the other way round
     int charge = 0;          // a robot that charges goes on until its battery has so many hundredths
+    Charging charging = Charging::in_turn;
 };
 
 // One after the other.
@@ -67,6 +74,11 @@ class Tasks {
             for (int a = 0; a < static_cast<int>(game.automata.size()); ++a) own.push_back(watches(game, a) && duties.can(robot, a));
             homes_.push_back(guess.idle == Idle::goes_home ? duties.at_location(robot, game.automata[robot].initial) : -1);
         }
+        for (std::size_t r = 0; r < duties.robots().size() && guess.charging == Charging::when_idle; ++r)
+            if (const int battery = duties.chargers().battery_of(duties.robots()[r]); battery >= 0) {
+                for_[r][battery] = false;
+                homes_[r] = duties.at_charger(battery);
+            }
         for (const int robot : duties.robots()) duties.keep_out(robot, dangers(robot));
         if (guess.shared_out && duties.robots().size() > 1) share_out();
         if (guess.idle == Idle::goes_to_post) find_posts();
