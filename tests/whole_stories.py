@@ -161,6 +161,7 @@ def _batteries(draw: st.DrawFn, place: object) -> List[str]:
 
 def _objectives(draw: st.DrawFn, small: bool, condition: st.SearchStrategy[str], place: object) -> List[str]:
     where = place()  # type: ignore[operator]
+    lasting = f"battery bot1 lasts {draw(st.integers(6, 40))}, charges in {draw(st.integers(1, 12))} at {where}"
     kinds = {
         "avoid": "objective: avoid call",
         "respond": f"objective: if call then drop within {draw(st.integers(5, 30))}",
@@ -174,6 +175,7 @@ def _objectives(draw: st.DrawFn, small: bool, condition: st.SearchStrategy[str],
         "answer": f"objective: if {draw(condition)} then {draw(condition)} within {draw(st.integers(5, 30))}",
         "rounds": f"objective: patrol b, a in order every {draw(st.integers(12, 40))} by bot1",
         "patrol": f"objective: patrol {where} every {draw(st.integers(8, 40))} by bot1",
+        "lasts": lasting,
         "round": f"objective: patrol a, b in order every {draw(st.integers(8, 40))} by bot1",
     }
     safety = draw(st.lists(st.sampled_from(list(kinds)), max_size=1 if small else 2, unique=True))

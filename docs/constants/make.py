@@ -93,6 +93,9 @@ ELSEWHERE = {
     ),
     ("synthesis/native/safety.hpp", "per_state"): "The work that exploring a state counts as. Not measured.",
     ("synthesis/native/safety.hpp", "largest"): "The most zones of what is lost in a state, likewise. Not measured.",
+    ("synthesis/native/forward.hpp", "ZONES_OF_CALLS"): (
+        "So many zones of a state where calls break charges off. Measured on a robot that answers calls and charges."
+    ),
     ("synthesis/native/tasks.hpp", "BOUNDS_OF_A_STATE"): (
         "A look at a state takes about as long as at so many bounds. Measured on lab scenarios 2 and 41."
     ),

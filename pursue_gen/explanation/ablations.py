@@ -47,7 +47,7 @@ def without_each(scenario: Scenario, objectives: bool = True) -> Iterator[Tuple[
     found += [Part(f"only_if {text} on {what}", left_out) for what, text, left_out in without_conditions(scenario)]
     if objectives and len(scenario.statements) > 1:
         for first, *_ in scenario.statements:
-            name = f"{first.word} {first.text}{first.words.behind}"
+            name = f"{first.word} {first.text}{first.words.behind}".lstrip()
             found.append(Part(name, partial(without_objective, objective=first)))
     for part in found:
         smaller = part.left_out(scenario)

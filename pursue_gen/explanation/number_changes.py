@@ -10,9 +10,9 @@ from pursue_gen.diagnostics import Span
 from pursue_gen.language.clauses import Domains
 from pursue_gen.language.numbers import Number, Window, whole_above, whole_below
 from pursue_gen.language.objectives.holds import Holds
-from pursue_gen.language.scenario import Battery, Event, Scenario, Travel
+from pursue_gen.language.scenario import Battery, Endurance, Event, Scenario, Travel
 from pursue_gen.language.statements.event import MOST_TIMES
-from pursue_gen.language.times import like, window_text
+from pursue_gen.language.times import instead, like, window_text
 from pursue_gen.solving.rules import Rules
 
 SLOWER = 32
@@ -114,6 +114,16 @@ def battery_changes(scenario: Scenario, battery: Battery) -> Iterator[Repair]:
             lambda k: scenario.with_instead(battery, replace(battery, recharges=k)),
             lambda k: f"a battery of {name} that recharges {k} instead of {rate} per unit", span,
         )  # fmt: skip
+
+
+def charge_changes(scenario: Scenario, endurance: Endurance) -> Iterator[Repair]:
+    """A battery by time that is full sooner."""
+    name, before = endurance.agent.name, endurance.charge
+    yield Repair(
+        "charges", name, f"a battery of {name} that is full sooner", before, whole_below(before, 1),
+        lambda k: scenario.with_instead(endurance, replace(endurance, charge=k)),
+        lambda k: f"a battery of {name} that charges in {instead(k, before)}", endurance.span, 1,
+    )  # fmt: skip
 
 
 def room_changes(scenario: Scenario, holds: Holds) -> Iterator[Repair]:

@@ -14,6 +14,7 @@ from pursue_gen.explanation.number_changes import (
     SLOWER,
     Repair,
     battery_changes,
+    charge_changes,
     count_changes,
     event_changes,
     room_changes,
@@ -21,7 +22,7 @@ from pursue_gen.explanation.number_changes import (
 )
 from pursue_gen.language.numbers import Number, decimal_text, exact, whole_above, whole_below
 from pursue_gen.language.objectives.holds import Holds
-from pursue_gen.language.scenario import Agent, Connection, Event, Poi, Reach, Scenario, StatedObjective
+from pursue_gen.language.scenario import Agent, Connection, Endurance, Event, Poi, Reach, Scenario, StatedObjective
 from pursue_gen.language.times import instead, like
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
 from pursue_gen.tga.counts import counted
@@ -100,6 +101,8 @@ def _of_objectives(scenario: Scenario) -> Iterator[Repair]:
         yield from _of_limit(scenario, safety)
         if isinstance(safety, Holds):
             yield from room_changes(scenario, safety)
+        if isinstance(safety, Endurance):
+            yield from charge_changes(scenario, safety)
     for reach in scenario.reach:
         if reach.after > 0:
             yield _earlier(scenario, reach)

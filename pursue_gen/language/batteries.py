@@ -7,10 +7,11 @@ is recharged at least is added when an action at the dock ends. The one is round
 from __future__ import annotations
 
 from math import ceil, floor
-from typing import Dict, Iterator, List, Mapping, Tuple
+from typing import Dict, Iterator, List, Mapping, Tuple, Union
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
-from pursue_gen.language.scenario import Agent, Battery, Event, Scenario
+from pursue_gen.language.scenario import Agent, Battery, Endurance, Event, Scenario
+from pursue_gen.language.times import like, written_time
 
 MOST_LEVELS = 60
 """The most levels at which a battery can be: each multiplies the states of the game."""
@@ -63,7 +64,7 @@ def check_batteries(scenario: Scenario) -> Iterator[Diagnostic]:
     """Findings about batteries whose names are declared."""
     agents = {agent.name: agent for agent in scenario.agents}
     seen: Dict[str, Span] = {}
-    for battery in scenario.batteries:
+    for battery in sorted(scenario.powered, key=lambda each: (each.span.line, each.span.column)):
         agent = agents.get(battery.agent.name)
         if agent is None:
             continue
@@ -71,24 +72,36 @@ def check_batteries(scenario: Scenario) -> Iterator[Diagnostic]:
             message = f"{seen[agent.name].in_words} gives {agent.name} a battery already"
             yield error("PML311", message, battery.span, "delete one of the two")
         seen.setdefault(agent.name, battery.span)
-        problems = [*_of(agent, battery, scenario), *battery.check()]
-        yield from problems
-        if not problems:
-            yield from _levels(scenario, battery)
+        problems = [*_of(agent, battery, scenario)]
+        if isinstance(battery, Endurance):
+            yield from problems or _too_long(agent, battery, scenario)
+            continue
+        problems += battery.check()
+        yield from problems or _levels(scenario, battery)
 
 
-def _of(agent: Agent, battery: Battery, scenario: Scenario) -> Iterator[Diagnostic]:
+def _of(agent: Agent, battery: Union[Battery, Endurance], scenario: Scenario) -> Iterator[Diagnostic]:
     name = agent.name
     if not agent.is_robot:
         message = f"{name} is no robot: a strategy sees to the batteries of robots"
         hint = f"write controllable behind {name} (and no human), or delete this line"
         yield error("PML310", message, battery.agent.span, hint)
     events = {event.name: event for event in scenario.events}
-    for ref in agent.reacts_to:
+    for ref in agent.reacts_to if isinstance(battery, Battery) else ():
         if events[ref.name].is_shared:
             message = f"{name} takes part in {ref.name} until it ends, and others decide when: it could run empty"
             hint = f"let {name} be the one that can_do {ref.name}, or delete together"
             yield error("PML314", message, ref.span, hint)
+
+
+def _too_long(agent: Agent, endurance: Endurance, scenario: Scenario) -> Iterator[Diagnostic]:
+    for way, window in scenario.movements(agent).items():
+        if window[1] > endurance.lasts > 0:
+            name, lasts, takes = agent.name, endurance.lasts, written_time(window[1])
+            message = f"a full battery does not last {name} from {way[0]} to {way[1]}: that takes up to {takes}"
+            enough = written_time(like(ceil(window[1]), lasts))
+            hint = f"{name} never sets off on it; write lasts {enough} or more, not {written_time(lasts)}"
+            yield warning("PML316", message, endurance.span, hint)
 
 
 def _levels(scenario: Scenario, battery: Battery) -> Iterator[Diagnostic]:

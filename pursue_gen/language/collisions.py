@@ -7,7 +7,7 @@ from typing import Dict, Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language import network_names as names
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.scenario import Endurance, Scenario
 from pursue_gen.language.symbols import Role, Symbol
 
 _Stated = Tuple[Span, Sequence[Symbol]]
@@ -57,7 +57,8 @@ def _numbered(scenario: Scenario) -> Iterator[_Stated]:
     for number, safety in enumerate(scenario.safety):
         automaton = names.safety_objective(number)
         turn = [Role.SAFETY_TURN(automaton)] if safety.order else []
-        yield safety.span, [automaton, names.safety_clock(number), *turn]
+        charge = [names.charge_clock(number)] if isinstance(safety, Endurance) else []
+        yield safety.span, [automaton, names.safety_clock(number), *turn, *charge]
     for number, reach in enumerate(scenario.reach):
         yield reach.span, [names.reach_objective(number), names.reach_clock(number), names.unlocking(number)]
     for number, assumption in enumerate(scenario.assumptions, start=1):

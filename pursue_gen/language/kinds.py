@@ -7,12 +7,11 @@ from typing import Dict, FrozenSet, Mapping, Type
 from pursue_gen.language.conditions import WORDS
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.statements.base import StatementKind
-from pursue_gen.language.statements.battery import Battery
 from pursue_gen.language.statements.connect import Connection
 from pursue_gen.language.statements.dependency import Dependency
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.statements.group import ForEach, Group
-from pursue_gen.language.statements.headed import Assume, Objective, ReachObjective
+from pursue_gen.language.statements.headed import Assume, Batteries, Objective, ReachObjective
 from pursue_gen.language.statements.mission import MissionEnd
 from pursue_gen.language.statements.optional import Optional
 from pursue_gen.language.statements.poi import Poi
@@ -37,7 +36,7 @@ STATEMENTS: Mapping[str, Type[StatementKind]] = {
         Dependency,
         Agent,
         Travel,
-        Battery,
+        Batteries,
         Assume,
         Objective,
         ReachObjective,

@@ -15,6 +15,10 @@ STATES = Role.STATES()
 IDLE, AT_RISK, LOSE = Role.IDLE(), Role.AT_RISK(), Role.LOSE()
 """The locations of a safety objective's automaton: no duty, a deadline is running, a duty was missed."""
 
+CHARGING, EMPTY = Role.CHARGING(), Role.EMPTY()
+"""Locations of a battery's automaton, which is one of a safety objective: its robot is at the charger, and the battery
+not full yet; and it is too late to leave before it is."""
+
 START, UNLOCKED, WIN, LATE = Role.START(), Role.UNLOCKED(), Role.WIN(), Role.LATE()
 """Locations of a reach objective's automaton: it does not count yet, it does, it is reached, its time is over."""
 
@@ -54,6 +58,9 @@ assumed_way = Role.AWAITED
 
 safety_objective, safety_clock = partial(numbered, Role.SAFETY), partial(numbered, Role.SAFETY_CLOCK)
 """By the number of a safety objective, from 0: its automaton, `obj`, `obj2`, …, and its clock, `Cobj`, `Cobj2`, …"""
+
+charge_clock = partial(numbered, Role.CHARGE_CLOCK)
+"""By the number of a safety objective that is a battery, its clock of how long its robot has been at the charger."""
 
 reach_objective, reach_clock = partial(numbered, Role.REACH), partial(numbered, Role.REACH_CLOCK)
 """By the number of a reach objective, from 0: its automaton, `reachObj`, …, and its clock, `Creach`, …"""

@@ -21,6 +21,9 @@ _USED: Dict[Tuple[str, str], str] = {
 
 _BEFORE_NAMES = frozenset({"COLON", "COMMA", "LPAR"})
 
+_LISTS_NONE = "BATTERY"
+"""The statement in which no names are listed, and behind a comma comes a word."""
+
 SUBJECTS = ("agent", "state")
 """The kinds of things with which a part of a condition may begin."""
 
@@ -81,7 +84,7 @@ def are_names(tokens: Sequence[Token]) -> List[bool]:
     for index, token in enumerate(tokens):
         before = tokens[index - 1] if index else None
         behind = before is not None and not named[-1] and (
-            before.type in _BEFORE_NAMES or (kind, before.type) in _USED
+            (before.type in _BEFORE_NAMES and kind != _LISTS_NONE) or (kind, before.type) in _USED
         )  # fmt: skip
         following = tokens[index + 1].type if index + 1 < len(tokens) else ""
         opens = before is not None and before.type == "COLON"

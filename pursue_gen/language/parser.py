@@ -102,6 +102,7 @@ def read_document(document: Document, name: Optional[str] = None) -> Reading:
     for tree in syntax.trees:
         for part in _parts(tree, reader):
             parts[part.listed_in].append(part)
+    parts["safety"].sort(key=lambda each: each.last)
     findings = (*syntax.findings, *reader.findings)
     value = pml.Scenario(
         name=Path(file).stem if name is None else name,

@@ -14,7 +14,7 @@ from pursue_gen.language.assumptions.base import Assumption
 from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Condition, Doing, Holds, Not, OnWay, Who
 from pursue_gen.language.numbers import Number, Window, exact
 from pursue_gen.language.objectives import *
-from pursue_gen.language.objectives import GivenUp, Patrol, Reach, Safety, StatedObjective, WhyGivenUp
+from pursue_gen.language.objectives import Endurance, GivenUp, Patrol, Reach, Safety, StatedObjective, WhyGivenUp
 from pursue_gen.language.objectives.patrol import patrols_in
 from pursue_gen.language.poses import Pose, Spot
 from pursue_gen.language.refs import Ref
@@ -135,6 +135,12 @@ class Scenario:
     def patrols(self) -> Tuple[Patrol, ...]:
         """The patrols among its objectives, one for each place."""
         return patrols_in(self.safety)
+
+    @property
+    def powered(self) -> Tuple[Union[Battery, Endurance], ...]:
+        """The batteries of robots, by levels and by time."""
+        by_time = (each for each in self.safety if isinstance(each, Endurance))
+        return (*self.batteries, *by_time)
 
     @property
     def statements(self) -> Tuple[Tuple[StatedObjective, ...], ...]:

@@ -54,7 +54,7 @@ def condition_of_promise(scenario: Scenario) -> str:
 
 def speed_words(agent: Agent, scenario: Scenario) -> str:
     """How fast an agent is, in words, and what its battery holds."""
-    batteries = [battery.in_words for battery in scenario.batteries if battery.agent.name == agent.name]
+    batteries = [battery.in_words for battery in scenario.powered if battery.agent.name == agent.name]
     if agent.mobile is None:
         return ", ".join(["stays there", *batteries])
     pace = f"{words_for(agent.mobile, scenario.unit)} per unit of distance"

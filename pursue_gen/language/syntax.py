@@ -46,8 +46,8 @@ MOST_FINDINGS = 1000
 
 _BLANKS = COMMENTS - {"UNCLOSED_COMMENT"}
 """The comments that stand between words as blanks do."""
-_SECOND = {token: kind.second.upper() for token, kind in STATEMENTS.items() if kind.second}
-"""Statements whose first word may be a name, and the word behind the agent that they are about."""
+_SECOND = {token: [word.upper() for word in kind.second] for token, kind in STATEMENTS.items() if kind.second}
+"""Statements whose first word may be a name, and the words behind the agent that they are about."""
 _OPENS = frozenset(("CONTROLLABLE", "MOBILE", *MAY_BE_NAMES)) - {"LABEL"}
 _ENDS = frozenset(
     (
@@ -354,7 +354,7 @@ def _chunks(tokens: List[Token]) -> List[List[Token]]:
         if found and _awaits(found[-1], token, tokens[index + 1 : index + 3]):
             begins = False
         elif token.type in _SECOND:  # an event may be called so
-            second = index + 2 < len(tokens) and tokens[index + 2].type == _SECOND[token.type]
+            second = index + 2 < len(tokens) and tokens[index + 2].type in _SECOND[token.type]
             begins = goes_on or second or (opens_line and (ended or following == "WORD"))
         elif [one.type for one in tokens[max(0, index - 2) : index]] == ["FOR", "EACH"]:
             begins = False  # a rule is for each robot, or agent

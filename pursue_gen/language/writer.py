@@ -67,7 +67,8 @@ def _meaning(value: Any) -> Any:
     if not is_dataclass(value):
         return value
     if isinstance(value, Scenario):
-        value = replace(value, file="", text="", given_up=())
+        safety = tuple(sorted(value.safety, key=lambda each: each.last))
+        value = replace(value, file="", text="", given_up=(), safety=safety)
     elif isinstance(value, pml.Poi):
         value = replace(value, pose=None, spots=())
     elif isinstance(value, Patrol):

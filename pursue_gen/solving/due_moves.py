@@ -18,6 +18,7 @@ from pursue_gen.language.numbers import Number
 from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.solving.distances import times_to
 from pursue_gen.synthesis.strategy import Block, Command, Move, Strategy, Zone
+from pursue_gen.tga.endurance import is_battery
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Network, Objective, Test
 
 
@@ -58,6 +59,8 @@ def patrols(network: Network) -> FrozenSet[str]:
 
 
 def _is_patrol(network: Network, automaton: Automaton) -> bool:
+    if is_battery(automaton):
+        return False
     begins = [edge for edge in automaton.edges if edge.source != AT_RISK and edge.target == AT_RISK]
     led = (sent for edge in begins for _, sent in network.senders.get(edge.channel, ()))
     return bool(begins) and all(sent.controllable and sent.enters is Role.WAY for sent in led)

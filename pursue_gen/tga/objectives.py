@@ -10,10 +10,11 @@ from pursue_gen.language import network_names as names
 from pursue_gen.language.network_names import IDLE, LOSE, agent_position
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.objectives.base import Breaks
-from pursue_gen.language.scenario import Patrol, Reach, Respond, Safety, Scenario, StatedObjective
+from pursue_gen.language.scenario import Endurance, Patrol, Reach, Respond, Safety, Scenario, StatedObjective
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.agents import Surroundings
+from pursue_gen.tga.endurance import endurance_automaton
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Objective, Sync, Test
 from pursue_gen.tga.patrols import patrol_automaton
 from pursue_gen.tga.responses import respond_automaton
@@ -123,5 +124,6 @@ def _together(breaks: Breaks, around: Surroundings) -> Iterator[Tuple[Clause, ..
 _WITH_LIMIT: Mapping[Type[Safety], Callable[[Any, Surroundings, int], Automaton]] = {
     Respond: respond_automaton,
     Patrol: patrol_automaton,
+    Endurance: endurance_automaton,
 }
 """What makes the automata in which the time runs that something may take, for each kind of objective."""

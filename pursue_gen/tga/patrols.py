@@ -11,6 +11,7 @@ from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import Agent, Patrol, Reaches, Scenario
 from pursue_gen.language.symbols import Role
 from pursue_gen.tga.agents import Surroundings
+from pursue_gen.tga.endurance import batteries_by_time
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.positions import Positions
 from pursue_gen.tga.responses import awaited_by
@@ -23,6 +24,7 @@ def awaited(scenario: Scenario) -> FrozenSet[Tuple[str, str]]:
     found = {(agent.name, each.place.name) for each in scenario.patrols for agent in scenario.on_patrol(each)}
     followed = {each.agent.name for each in scenario.assumptions if isinstance(each, Reaches)}
     found |= {(name, poi.name) for name in followed for poi in scenario.pois}
+    found.update((each.agent.name, each.dock.name) for _, each in batteries_by_time(scenario))
     heard = [condition for each in scenario.safety if each.breaks.condition is None for condition in each.conditions]
     if heard:
         domains = Domains(scenario)

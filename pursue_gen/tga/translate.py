@@ -15,6 +15,7 @@ from pursue_gen.tga.awaited import ways_awaited
 from pursue_gen.tga.batteries import battery_variables, powered
 from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.counts import count_automaton, counted
+from pursue_gen.tga.endurance import charge_clocks
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import reach_automaton, safety_automaton, unlocking
 from pursue_gen.tga.own_turns import bound, own_turns
@@ -74,7 +75,7 @@ def _clocks(scenario: Scenario) -> Tuple[str, ...]:
     clocks = [names.agent_clock(agent.name) for agent in scenario.agents]
     clocks += [names.safety_clock(k) for k, _ in enumerate(scenario.safety)]
     clocks += [names.reach_clock(k) for k, _ in enumerate(scenario.reach)]
-    return (*clocks, *assumption_clocks(scenario))
+    return (*clocks, *assumption_clocks(scenario), *charge_clocks(scenario))
 
 
 def _variables(scenario: Scenario, pois: Mapping[str, int]) -> Tuple[Tuple[str, int], ...]:

@@ -29,6 +29,16 @@ optional 1 reach_objective: do wipe within 4
 """
 
 
+WATCH = """\
+poi "gate"
+poi "hall"
+connect gate and hall distance 2
+agent "bot" controllable mobile 1 location gate
+battery "bot" lasts 60, charges in 8 at gate
+objective: patrol hall every 60 by bot
+"""
+
+
 def test_the_battery_is_used_and_recharged(ros: Ros, tmp_path: Path) -> None:
     """The test plays the robot."""
     found = promised_of(parse(ROUND, "round.pur", "round"), SolveRequest())
@@ -48,3 +58,22 @@ def test_the_battery_is_used_and_recharged(ros: Ros, tmp_path: Path) -> None:
         assert run.until_over() == "won", run.output()
         assert run.now()["values"]["Lbot"] == 8
         assert "it does not promise: do wipe within 4" in run.output()
+
+
+def test_a_battery_by_time_is_full_when_the_robot_has_been_at_its_charger(ros: Ros, tmp_path: Path) -> None:
+    """The test plays the robot."""
+    found = promised_of(parse(WATCH, "watch.pur", "watch"), SolveRequest())
+    won = found.solution
+    options = Options(reaction=won.reaction)
+    folder = write_workspace(found.scenario, won.network, won.objective, won.strategy, options, tmp_path / "ws")
+    calm = {"mode": "still", "on_uncovered": "warn", "lost_after": 1000}
+    with launched(ros, lay_over(ros, folder), tmp_path, ("bot",), **PLAYED, **calm, use_sim_time=True, speed=2) as run:
+        assert run.until_step("bot_gate2hall")["places"]["obj2"] == "atRisk"
+        run.until(lambda: run.now()["clocks"]["Cbot"] > 2.1)
+        run.publish("bot_going_gate_to_hall2hall")
+        run.until_step("bot_hall2gate")
+        run.until(lambda: run.now()["clocks"]["Cbot"] > 2.1)
+        run.publish("bot_going_hall_to_gate2gate")
+        assert run.until_step("bot_going_hall_to_gate2gate")["places"]["obj2"] == "atCharger"
+        full = run.until_step("obj2_atCharger2idle")
+        assert full["places"]["obj2"] == "idle" and full["clocks"]["Ccharge2"] >= 8

@@ -434,6 +434,36 @@ def test_a_battery_that_does_not_last_for_a_duty_is_not_won() -> None:
     assert guessed_freely(ward(2, (1,), 120, 80, small)) is None
 
 
+@pytest.mark.parametrize(
+    ("rooms", "residents", "period", "within", "battery"),
+    [
+        (6, (), 200, 0, "lasts 200, charges in 60 at dock"),
+        (3, (1,), 200, 150, "lasts 250, charges in 60 at dock"),
+        (6, (1, 6), 400, 200, "lasts 400, charges in 60 at dock"),
+    ],
+)
+def test_a_robot_with_a_battery_by_time_stays_until_it_is_full(
+    rooms: int, residents: Sequence[int], period: int, within: int, battery: str
+) -> None:
+    strategy = guessed_freely(ward(rooms, residents, period, within, battery))
+    assert strategy is not None
+    charging = [b for b in strategy.blocks if any(place == "atCharger" for _, place in b.state.locations)]
+    assert charging and not any(block.commands for block in charging)
+
+
+def test_a_robot_leaves_its_charger_when_it_is_called_and_a_charge_takes_too_long() -> None:
+    ring = "assume: resident1 waits 400 between ring1\n"
+    text = ward(1, (1,), 900, 40, "lasts 900, charges in 100 at dock").replace("objective", f"{ring}objective", 1)
+    network, objective = game_of(text)
+    strategy, _ = guess(network, objective, DEFAULT.reaction)
+    assert strategy is not None and verify(network, objective, strategy, DEFAULT.reaction, closed=True).ok
+
+
+def test_a_battery_by_time_that_does_not_last_for_a_duty_is_not_won() -> None:
+    assert guessed_freely(ward(2, (), 120, 0, "lasts 12, charges in 10 at dock")) is None
+    assert guessed_freely(ward(2, (), 60, 0, "lasts 100, charges in 60 at dock")) is None
+
+
 def test_calls_take_turns_with_a_patrol_that_is_longer_than_they_can_wait() -> None:
     assert guessed_freely(ward(6, (1, 6), 300, 90)) is not None
 

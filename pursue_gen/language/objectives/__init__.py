@@ -8,6 +8,7 @@ from typing import Mapping, Type
 
 from pursue_gen.language.objectives.avoid import Always, Avoid
 from pursue_gen.language.objectives.base import Safety, StatedObjective
+from pursue_gen.language.objectives.endurance import Endurance
 from pursue_gen.language.objectives.holds import PlaceHolds, WayHolds
 from pursue_gen.language.objectives.never_with import NeverWith
 from pursue_gen.language.objectives.patrol import Patrol
@@ -15,8 +16,8 @@ from pursue_gen.language.objectives.reach import Reach
 from pursue_gen.language.objectives.respond import Respond
 
 __all__ = [
-    "Always", "Avoid", "GivenUp", "NeverWith", "Patrol", "PlaceHolds", "Reach", "Respond", "Safety", "StatedObjective",
-    "WayHolds",
+    "Always", "Avoid", "Endurance", "GivenUp", "NeverWith", "Patrol", "PlaceHolds", "Reach", "Respond", "Safety",
+    "StatedObjective", "WayHolds",
 ]  # fmt: skip
 """Parts of scenarios: `language.scenario` hands them on."""
 

@@ -63,9 +63,11 @@ class StatedObjective(Written):
     listed_in: ClassVar[str] = "safety"
     """The field of a scenario that has it."""
     word: ClassVar[str] = "objective"
-    """The word that begins its statement."""
+    """The word that begins its statement; "": its text begins it."""
     limited_by: ClassVar[str] = ""
     """Its field with its limit; "": it has none."""
+    last: ClassVar[bool] = False
+    """It stands behind those that stand in other statements, wherever its own one stands."""
     once: ClassVar[bool] = False
     """It is reached once, and its limit counts from the start; else each time that something becomes due."""
 

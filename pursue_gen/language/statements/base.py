@@ -80,8 +80,9 @@ class StatementKind(Written):
     """The kind of thing that it declares, whose name in quotes is its second word; "": none."""
     shortest: ClassVar[str] = ""
     """How it declares a `{name}` in as few words as possible, an agent at a `{place}`; "": nothing is short enough."""
-    second: ClassVar[str] = ""
-    """The word behind the agent that it is about, where its first word may be a name; the agent's may have quotes."""
+    second: ClassVar[Tuple[str, ...]] = ()
+    """The words that may stand behind the agent that it is about, where its first word may be a name; the agent's may
+    have quotes."""
     among: ClassVar[str] = ""
     """The token of the statements among which it stands; "": it has a section of its own."""
     parts: ClassVar[Tuple[str, ...]] = ()

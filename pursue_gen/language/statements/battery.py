@@ -8,7 +8,7 @@ from typing import Callable, ClassVar, Iterator, Optional, Tuple
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.statements.base import StatementKind
+from pursue_gen.language.statements.base import Written
 from pursue_gen.language.template import Template
 from pursue_gen.language.word import Form, Word
 
@@ -17,7 +17,7 @@ MOST_CAPACITY = 10_000
 
 
 @dataclass(frozen=True)
-class Battery(StatementKind):
+class Battery(Written):
     """The battery of a robot, full at the start: it holds `capacity`, and a robot that is on its way or at work uses
     `uses` per time unit. At work at `dock` it uses nothing, and `recharges` as much per time unit (None, 0: nowhere).
     """
@@ -31,23 +31,21 @@ class Battery(StatementKind):
 
     listed_in: ClassVar[str] = "batteries"
     own_words: ClassVar[Tuple[Word, ...]] = (
-        Word(
-            "battery",
-            "The battery of a robot: what it holds, what is used, and where it is recharged. It never runs empty.",
-            True,
-        ),
         Word("capacity", "What the battery holds when it is full, as it is at the start.", True),
         Word("uses", "What the robot uses in a unit of time on its way or at work. To stand still uses nothing.", True),
         Word("per", "For each unit of time.", True),
         Word("recharges", "What is added in a unit of time in which the robot does something at the dock.", True),
     )
     template: ClassVar[Template] = Template(
-        'battery {agent:"agent"=bot} capacity {capacity:count=100} uses {uses:number=2} per unit'
+        '{agent:"agent"=bot} capacity {capacity:count=100} uses {uses:number=2} per unit'
         " [recharges {recharges:number=5} per unit at {dock:POI=dock}]"
     )
     note: ClassVar[str] = "recharges … is optional"
     forms: ClassVar[Tuple[Form, ...]] = (Form("a battery that is recharged at a place", template.to_fill_in),)
-    second: ClassVar[str] = "capacity"
+
+    @property
+    def text(self) -> str:
+        return f"battery {self.template.written(self)}"
 
     @property
     def in_words(self) -> str:

@@ -1,4 +1,5 @@
-"""Statements that are a word, a colon, and one of several kinds behind them: objectives and assumptions."""
+"""Statements that are a word and one of several kinds behind it: objectives and assumptions, which have a colon between
+them, and batteries."""
 
 from __future__ import annotations
 
@@ -7,33 +8,38 @@ from typing import Any, ClassVar, Dict, Mapping, Tuple, Type
 from pursue_gen.language.assumptions import KINDS as ASSUMPTIONS
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives import KINDS as OBJECTIVES
-from pursue_gen.language.objectives import Reach
+from pursue_gen.language.objectives import Endurance, Reach
 from pursue_gen.language.statements.base import StatementKind
+from pursue_gen.language.statements.battery import Battery
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word
 
 
 class Headed(StatementKind):
-    """A statement that is a word, a colon, and one of several kinds of what stands behind them."""
+    """A statement that is a word, a colon, and one of several kinds of what stands behind it."""
 
     head: ClassVar[Word]
     """The word."""
+    colon: ClassVar[str] = ":"
+    """The colon behind it; "": there is none."""
     kinds: ClassVar[Mapping[str, Type[Any]]]
     """These kinds, classes of `Written`, by their rules in the grammar."""
 
     def __init_subclass__(cls) -> None:
         kinds = cls.kinds.values()
         cls.own_words = (cls.head, *(word for kind in kinds for word in kind.own_words))
-        cls.forms = tuple(Form(form.title, f"{cls.head.text}: {form.words}") for kind in kinds for form in kind.forms)
+        begins = cls.head.text + cls.colon
+        cls.forms = tuple(Form(form.title, f"{begins} {form.words}") for kind in kinds for form in kind.forms)
 
     @classmethod
     def form(cls) -> str:
-        return " · ".join(f"{cls.head.text}: {kind.form()}" for kind in cls.kinds.values())
+        return " · ".join(f"{cls.head.text}{cls.colon} {kind.form()}" for kind in cls.kinds.values())
 
     @classmethod
     def grammar(cls) -> str:
         rules = (kind.template.grammar(rule) for rule, kind in cls.kinds.items())
-        return "\n".join((f'{cls.rule()}: "{cls.head.text}" ":" ({" | ".join(cls.kinds)})', *rules))
+        colon = f'"{cls.colon}" ' if cls.colon else ""
+        return "\n".join((f'{cls.rule()}: "{cls.head.text}" {colon}({" | ".join(cls.kinds)})', *rules))
 
     @classmethod
     def used(cls) -> Dict[str, str]:
@@ -52,6 +58,21 @@ class Headed(StatementKind):
     def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Any:
         (tree,) = children
         return cls.kinds[tree.data].read(reader, *tree.children, **at)
+
+
+class Batteries(Headed):
+    """How long a robot lasts until it has to charge."""
+
+    listed_in: ClassVar[str] = "batteries"
+    kinds: ClassVar[Mapping[str, Type[Any]]] = {"endurance": Endurance, "levels": Battery}
+    colon: ClassVar[str] = ""
+    head = Word(
+        "battery",
+        "The battery of a robot: how long it lasts, or what it holds and uses, and where it is charged. It never runs "
+        "empty.",
+        True,
+    )
+    second: ClassVar[Tuple[str, ...]] = ("lasts", "capacity")
 
 
 class Assume(Headed):

@@ -44,7 +44,7 @@ class Travel(StatementKind):
         'travel {agent:"agent"=bot} from {a:POI=a} to {b:POI=b} takes {earliest,latest:window=5 to 8}'
     )
     forms: ClassVar[Tuple[Form, ...]] = (Form("an agent's own time for a way", template.to_fill_in),)
-    second: ClassVar[str] = "from"
+    second: ClassVar[Tuple[str, ...]] = ("from",)
 
     @property
     def way(self) -> Tuple[str, str]:

@@ -25,6 +25,7 @@ class Dispatch : private Steps {
 
     std::size_t robots() const { return duties_.robots().size(); }
     bool is_patrol(int a) const { return patrols_[a]; }
+    bool is_charging(int a, int location) const { return duties_.chargers().is_charging(a, location); }
     bool has_guards() const { return tasks_.has_guards(); }
     bool alternates() const { return !alternating_.empty(); }
 
@@ -35,7 +36,8 @@ class Dispatch : private Steps {
         const std::vector<int> last = memory;
         for (std::size_t r = 0; r < memory.size(); ++r) {
             int& duty = memory[r];
-            if (is_waiting(duty) && joint.controllable && joint.owner == duties_.robots()[r]) duty -= count_;  // begun
+            const bool begins = joint.controllable && joint.owner == duties_.robots()[r] && !goes_to_charger(d, r);
+            if (is_waiting(duty) && begins) duty -= count_;
             if (duty >= 0 && duties_.touches(d, joint, duty % count_)) duty = -1;
         }
         remember(joint.target(d), memory, last);
@@ -45,7 +47,9 @@ class Dispatch : private Steps {
     void remember(const Discrete& d, std::vector<int>& memory, const std::vector<int>& last) {
         for (std::size_t r = 0; r < memory.size(); ++r) {
             int& duty = memory[r];
-            if (duty >= 0 && (guess_.next == Next::soonest_due || !duties_.is_open(d, duty % count_))) duty = -1;
+            const bool again = guess_.next == Next::soonest_due && !charges(d, duty);
+            if (duty >= 0 && (again || !duties_.is_open(d, duty % count_))) duty = -1;
+            if (guess_.charging == Charging::until_called && charges(d, duty) && is_asked(d, r, memory)) duty = -1;
             if (tasks_.guarded(r, d) >= 0) duty = -1;
             if (is_waiting(duty) && is_called(d, r, memory)) duty = -1;
         }
@@ -70,7 +74,8 @@ class Dispatch : private Steps {
         std::vector<std::set<int>> ways;
         std::vector<bool> waits;
         for (std::size_t r = 0; r < robots.size(); ++r) {
-            const bool charges = duties_.has_less(d, robots[r], 100) && duties_.is_at_charger(d, robots[r]);
+            const bool charges =
+                goes_to_charger(d, r) || (duties_.has_less(d, robots[r], 100) && duties_.is_at_charger(d, robots[r]));
             waits.push_back(is_waiting(memory[r]) && !charges);
             const int duty = is_waiting(memory[r]) && charges ? -1 : memory[r];  // it charges while it waits there
             wanted.push_back(wants(d, enabled, r, duty, ways.emplace_back()));
@@ -132,6 +137,7 @@ class Dispatch : private Steps {
             if (last >= 2 * count_ && a == last / count_ - 2 && !alternates()) place = -1;
             if (guess_.next == Next::soonest_due) place = duties_.deadline(d, a);
             if (guess_.next == Next::nearest) place = cost;
+            if (guess_.charging == Charging::until_called && charges(d, last) && is_call(a)) place = -1;
             best = std::min(best, {place, robot, a});
         }
         return best;
@@ -163,6 +169,41 @@ class Dispatch : private Steps {
 
     bool is_done_by_one(int a, const std::vector<int>& memory) const {
         return std::any_of(memory.begin(), memory.end(), [&](int duty) { return duty >= 0 && duty % count_ == a; });
+    }
+
+    // Whether a robot's duty is to charge a battery by time, and it does.
+    bool charges(const Discrete& d, int duty) const {
+        return duty >= 0 && is_charging(duty % count_, d[duty % count_]);
+    }
+
+    // Whether a robot that charges when it is idle is away from its charger. While it waits for a patrol it goes there first.
+    bool goes_to_charger(const Discrete& d, std::size_t r) const {
+        const int battery = duties_.chargers().battery_of(duties_.robots()[r]);
+        const bool when_idle = guess_.charging == Charging::when_idle && battery >= 0;
+        return when_idle && duties_.is_open(d, battery) && !is_charging(battery, d[battery]);
+    }
+
+    // Whether somebody else than a robot asks for what robot r can do and nobody goes for.
+    bool is_asked(const Discrete& d, std::size_t r, const std::vector<int>& memory) const {
+        return std::any_of(duties_.watching().begin(), duties_.watching().end(), [&](int a) {
+            return duties_.is_open(d, a) && tasks_.is_for(r, a) && is_call(a) && !is_done_by_one(a, memory);
+        });
+    }
+
+    // Whether somebody else than a robot begins the duty of automaton a.
+    bool is_call(int a) const {
+        const auto& own = game_.automata[a].edges;
+        const auto begun = [&](const Edge& sent) {
+            return sent.channel >= 0 && sent.sends && std::any_of(own.begin(), own.end(), [&](const Edge& e) {
+                return e.channel == sent.channel && !duties_.is_timed(a, e.source) && duties_.is_timed(a, e.target);
+            });
+        };
+        const std::vector<int>& robots = duties_.robots();
+        for (int b = 0; b < count_; ++b)
+            if (std::find(robots.begin(), robots.end(), b) == robots.end() &&
+                std::any_of(game_.automata[b].edges.begin(), game_.automata[b].edges.end(), begun))
+                return true;
+        return false;
     }
 
     // Whether somebody has called a robot that nobody else goes for.

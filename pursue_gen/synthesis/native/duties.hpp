@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "moves.hpp"
+#include "chargers.hpp"
 
 namespace pursue {
 
@@ -27,6 +27,7 @@ class Duties {
             if (watches(game, a)) watching_.push_back(a);
             else if (acts) robots_.push_back(a);
         }
+        chargers_ = Chargers(game, watching_, robots_);
         for (int a = 0; a < count; ++a) {
             for (const Edge& edge : game.automata[a].edges) {
                 if (edge.channel >= 0 && !edge.sends) continue;
@@ -113,8 +114,14 @@ class Duties {
         return found == batteries_.end() ? std::set<int>{} : found->second.charging;
     }
 
+    const Chargers& chargers() const { return chargers_; }
+
+    // The fact that the robot of a battery by time is at its charger.
+    int at_charger(int a) const { return at_location(chargers_.robot(a), chargers_.place(a)); }
+
     // Whether something that a robot does, or its end, does the duty of automaton a.
     bool can(int robot, int a) const {
+        if (chargers_.watches(a)) return chargers_.robot(a) == robot;
         const int fact = done(a);
         return std::any_of(operators_.begin(), operators_.end(), [&](const Operator& op) {
             return op.owner == robot && std::find(op.effects.begin(), op.effects.end(), fact) != op.effects.end();
@@ -199,7 +206,7 @@ class Duties {
     // Whether a joint move from d does the duty of automaton a, or begins it anew.
     bool touches(const Discrete& d, const Joint& joint, int a) const {
         for (const auto& [index, value] : joint.writes)
-            if (index == a && value != d[a]) return true;
+            if (index == a && value != d[a]) return !chargers_.watches(a) || !is_timed(a, value);
         const auto& bounds = game_.automata[a].invariants[d[a]];
         return std::any_of(bounds.begin(), bounds.end(), [&](const Bound& b) {
             return std::find(joint.resets.begin(), joint.resets.end(), b.i) != joint.resets.end();
@@ -273,7 +280,7 @@ class Duties {
         std::sort(order.begin(), order.end());
         turns_.resize(game_.automata.size(), -1);
         visits_.resize(game_.automata.size());
-        for (const auto& [turn, comes, a] : order) visits_[a] = comes;
+        for (const auto& [turn, comes, a] : order) visits_[a] = comes || chargers_.watches(a);
         for (std::size_t n = 0; n < order.size(); ++n) turns_[std::get<2>(order[n])] = watching_[n];
     }
 
@@ -360,7 +367,8 @@ class Duties {
             const auto restarts = [&](const Bound& b) {
                 return std::find(edge.resets.begin(), edge.resets.end(), b.i) != edge.resets.end();
             };
-            if (!deadline.empty() && (edge.source != edge.target || std::any_of(deadline.begin(), deadline.end(), restarts)))
+            const bool ends = edge.source != edge.target || std::any_of(deadline.begin(), deadline.end(), restarts);
+            if (!deadline.empty() && (chargers_.watches(automaton) ? !is_timed(automaton, edge.target) : ends))
                 op.effects.push_back(fact(-1 - automaton, 0));
         } else if (!edge.controllable) {
             for (const Bound& b : deadline) op.time = std::max<std::int64_t>(op.time, b.raw >> 1);
@@ -388,6 +396,7 @@ class Duties {
     std::vector<std::int64_t> detours_;           // per fact what it costs besides the way
 
     std::map<int, Battery> batteries_;            // by robot
+    Chargers chargers_;
 
     States looked_from_;                          // a state, the robot and `closed`
     std::deque<Look> looks_;                      // likewise

@@ -14,6 +14,11 @@ enum class Idle { stays, goes_home, goes_to_post, prepares };
 
 // What a robot does in turn with anything else that it is asked for: visits, or what has the longest limits.
 enum class Alternates { nothing, visits, long_limits };
+// When a robot that has a battery by time goes to its charger: in its turn, until it is full; likewise, but it leaves when it
+// is called; or when it has nothing else to do, until it has.
+enum class Charging { in_turn, until_called, when_idle };
+
+inline const std::vector<Charging> CHARGINGS = {Charging::in_turn, Charging::until_called, Charging::when_idle};
 
 struct Guess {
     Next next = Next::in_turn;
@@ -28,6 +33,7 @@ struct Guess {
     bool relieved = false;   // a post is for a robot without duties; until it is there, another one sees to the post first
     Alternates alternates = Alternates::nothing;  // after each of these something else, if it is asked for
     int charge = 0;          // a robot that charges goes on until its battery has so many hundredths
+    Charging charging = Charging::in_turn;
 };
 
 // One after the other.
@@ -71,6 +77,11 @@ class Tasks {
             for (int a = 0; a < static_cast<int>(game.automata.size()); ++a) own.push_back(watches(game, a) && duties.can(robot, a));
             homes_.push_back(guess.idle == Idle::goes_home ? duties.at_location(robot, game.automata[robot].initial) : -1);
         }
+        for (std::size_t r = 0; r < duties.robots().size() && guess.charging == Charging::when_idle; ++r)
+            if (const int battery = duties.chargers().battery_of(duties.robots()[r]); battery >= 0) {
+                for_[r][battery] = false;
+                homes_[r] = duties.at_charger(battery);
+            }
         for (const int robot : duties.robots()) duties.keep_out(robot, dangers(robot));
         if (guess.shared_out && duties.robots().size() > 1) share_out();
         if (guess.idle == Idle::goes_to_post) find_posts();

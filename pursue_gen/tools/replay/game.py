@@ -12,6 +12,7 @@ from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.files import LARGEST_TEXT, read_text
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.partition import partition
 from pursue_gen.solving.inputs import game_of as ideal_game
 from pursue_gen.solving.optional import promised
@@ -55,8 +56,9 @@ class Game:
         return "" if self.given else " (if the workspace has another strategy than a new solution: --workspace)"
 
     def is_deadline(self, agent: str, edge: Edge) -> bool:
-        """True for a step by which an objective itself becomes broken."""
-        return edge.sync is None and (agent, edge.target) in self.objective.bad
+        """True for a step by which an objective itself becomes broken, or a battery full or empty."""
+        passes = role_of(agent) is Role.SAFETY and not edge.controllable
+        return edge.sync is None and (passes or (agent, edge.target) in self.objective.bad)
 
     @cached_property
     def moves(self) -> Moves:

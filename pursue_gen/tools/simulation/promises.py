@@ -13,7 +13,8 @@ from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import EventOrCondition
 from pursue_gen.language.network_names import going, has_happened
 from pursue_gen.language.objectives.base import Breaks
-from pursue_gen.language.scenario import Ref, Safety, Scenario
+from pursue_gen.language.scenario import Endurance, Ref, Safety, Scenario
+from pursue_gen.tools.simulation.charges import Charges
 from pursue_gen.tools.simulation.meaning import holds
 from pursue_gen.tools.simulation.recorder import EPSILON
 from pursue_runtime.locations import is_action, is_under_way, place_of
@@ -57,6 +58,8 @@ class Promises:
         self._broken: Dict[str, float] = {}
         self._levels: Dict[str, float] = {each.agent.name: float(each.capacity) for each in scenario.batteries}
         self._seen: Dict[str, Tuple[float, str]] = {}
+        by_time = {k: each for k, each in enumerate(scenario.safety) if isinstance(each, Endurance)}
+        self._charges = Charges(by_time, self._places)
         self._begun: Optional[float] = None
         self._seq = 0
         self._called: Dict[int, float] = {}
@@ -81,8 +84,10 @@ class Promises:
         event = self._events.get(state.event, "") if state.seq > self._seq else ""
         self._seq = max(self._seq, state.seq)
         visited = self._visited(state)
+        late = [number for number, safety in enumerate(self._scenario.safety) if self._is_empty(number, safety, latest)]
+        self._charges.on_state(state.locations, at)
         for number, safety in enumerate(self._scenario.safety):
-            if self._breaks(number, safety, event, latest, state):
+            if number in late or self._breaks(number, safety, event, latest, state):
                 self._broken.setdefault(safety.text, at)
             if number in visited:
                 self._since.pop(number, None)
@@ -102,7 +107,7 @@ class Promises:
         """Counts what is called upon since this moment, and takes down how late it is answered."""
         for number, (calls, latest) in self._duties.items():
             if number in self._since and number not in self._called:
-                self._called[number] = at
+                self._called[number] = self._since[number] if number in self._charges else at
                 self._duties[number] = Duty(calls + 1, latest)
             elif number not in self._since and number in self._called:
                 self._duties[number] = Duty(calls, max(latest or 0.0, at - self._called.pop(number)))
@@ -127,6 +132,12 @@ class Promises:
     def _breaks(self, number: int, safety: Safety, event: str, latest: float, state: SystemState) -> bool:
         """True if the objective is broken now."""
         breaks = self._how[number]
+        if isinstance(safety, Endurance):
+            since_full = self._charges.since(number)
+            self._since.pop(number, None)
+            if since_full is not None:
+                self._since[number] = since_full
+            return False
         if safety.limit is None:
             over = state.status == WON
             return self._is(breaks.event, event, state) or (not over and self._is_lost(breaks, state))
@@ -140,6 +151,11 @@ class Promises:
         elif begun and not before:
             self._since.setdefault(number, latest)
         return since is not None and latest - since > safety.limit
+
+    def _is_empty(self, number: int, safety: Safety, latest: float) -> bool:
+        """True if a battery by time was needed for too long until now."""
+        since = self._charges.since(number)
+        return since is not None and safety.limit is not None and latest - since > safety.limit
 
     def _is_lost(self, breaks: Breaks, state: SystemState) -> bool:
         """True if its condition holds, or its two agents are together."""

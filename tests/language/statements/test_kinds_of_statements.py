@@ -131,7 +131,7 @@ def test_its_words_are_words_of_the_language(kind: Type[StatementKind]) -> None:
     for word in kind.own_words:
         assert (KEYWORDS[word.token], MEANINGS[word.token]) == (word.text, word.meaning) and word.meaning.endswith(".")
         assert word.may_be_name == (word.token in MAY_BE_NAMES)
-    for text in (*kind.used(), *kind.conditions_behind(), *([kind.second] if kind.second else [])):
+    for text in (*kind.used(), *kind.conditions_behind(), *(kind.second)):
         assert text.upper() in KEYWORDS, text
     assert not kind.among or kind.among in STATEMENTS
     assert all(part in KEYWORDS or part == "POSE" for part in kind.parts)
