@@ -57,12 +57,13 @@ def _numbered(scenario: Scenario) -> Iterator[_Stated]:
     for number, safety in enumerate(scenario.safety):
         automaton = names.safety_objective(number)
         turn = [Role.SAFETY_TURN(automaton)] if safety.order else []
-        yield safety.span, [automaton, names.safety_clock(number), *turn]
+        yield safety.span, [automaton, names.safety_clock(number), names.safety_pause(number), *turn]
     for number, reach in enumerate(scenario.reach):
-        yield reach.span, [names.reach_objective(number), names.reach_clock(number), names.unlocking(number)]
+        made = [names.reach_objective(number), names.reach_clock(number), names.unlocking(number)]
+        yield reach.span, [*made, *([] if reach.apart is None else [names.reach_apart(number)])]
     for number, assumption in enumerate(scenario.assumptions, start=1):
-        made = [names.assumption(number), names.assumption_count(number), names.assumption_clock(number)]
-        yield assumption.span, made
+        counted = [names.assumption(number), names.assumption_count(number), names.assumption_clock(number)]
+        yield assumption.span, counted
 
 
 def _among_locations(scenario: Scenario) -> Iterator[_Stated]:

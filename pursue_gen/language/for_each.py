@@ -73,7 +73,7 @@ def variables_of(tokens: Sequence[Token]) -> FrozenSet[str]:
 
 def behind_of(tokens: Sequence[Token]) -> bool:
     """True where the last word is the `of` behind a name or a quantifier, which a name has to follow."""
-    kinds = [token.type for token in tokens[-2:]]
+    kinds = [token.type for token in tokens[1:][-2:]]  # the first word begins the statement: of is an agent behind it
     return kinds[1:] == ["OF"] and kinds[0] in ("NAME", *NAMES)
 
 
@@ -86,6 +86,6 @@ def around_of(tokens: Sequence[Token]) -> Iterator[Token]:
 
 def without_owners(tokens: Sequence[Token]) -> List[Token]:
     """The tokens without `of r` behind names."""
-    pairs = zip(tokens, tokens[1:])
-    of = [False, *(token.type == "OF" and before.type in ("NAME", *NAMES) for before, token in pairs)]
+    pairs = zip(tokens[1:], tokens[2:])
+    of = [False, False, *(token.type == "OF" and before.type in ("NAME", *NAMES) for before, token in pairs)]
     return [token for token, is_of, behind in zip(tokens, of, [False, *of]) if not is_of and not behind]

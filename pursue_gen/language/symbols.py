@@ -56,6 +56,7 @@ class Role(enum.Enum):
     SAFETY = "obj{}", "a part of an objective"
     SAFETY_CLOCK = "Cobj{}", "a part of an objective"
     SAFETY_TURN = "P{}", "a part of an objective"
+    SAFETY_PAUSE = "P{}_pause", "a part of an objective"
     IDLE = "idle", "nothing is due"
     AT_RISK = "atRisk", "a deadline is running"
     LOSE = "lose", "a promise is broken"
@@ -65,6 +66,9 @@ class Role(enum.Enum):
     START = "initial_location", "a goal does not count yet"
     UNLOCKED = "unlocked", "a goal counts, and nothing of it is done"
     DID = "did_{}", "these events of a goal have happened: {}"
+    DONE_TIMES = "did_{}_times", "the event of a goal has happened so often: {}"
+    APART = "did_{}_times_apart", "the event of a goal has happened so often, and may not count yet again: {}"
+    REACH_APART = "Capart{}", "a part of an objective"
     WIN = "win", "a goal is reached"
     LATE = "late", "the deadline of a goal has passed"
     ASSUMPTION = "assume{}", "a part of an assumption"
@@ -137,6 +141,7 @@ def numbered(role: Role, number: int) -> Symbol:
 
 _FURTHER = "([2-9]|[1-9][0-9]+)?"
 _READ = {role: "(.+)" for role in Role if "{" not in role.form or role in (*UNDER_WAY, Role.END)}
+_READ.update(dict.fromkeys((Role.DONE_TIMES, Role.APART), "([1-9][0-9]*)"))
 _READ.update({Role.DID: "([1-9][0-9_]*)", Role.SAFETY: _FURTHER, Role.REACH: _FURTHER, Role.ASSUMPTION: "([0-9]+)"})
 _FORMS = {role: re.compile(role.form.replace("{}", part)) for role, part in _READ.items()}
 """The forms of texts that are read; no name of a scenario is like one of those with parts, but for numbers."""

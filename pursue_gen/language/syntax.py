@@ -52,7 +52,7 @@ _OPENS = frozenset(("CONTROLLABLE", "MOBILE", *MAY_BE_NAMES)) - {"LABEL"}
 _ENDS = frozenset(
     (
         "WORD NUMBER NAME POSE RPAR IS_TRUE IS_FALSE TRUE FALSE "
-        "COLLABORATIVE TOGETHER ONE_WAY TIMES CONTROLLABLE HUMAN ON_WAY ROBOT ROBOTS AGENTS"
+        "COLLABORATIVE TOGETHER ONE_WAY TIMES TWICE APART CONTROLLABLE HUMAN ON_WAY ROBOT ROBOTS AGENTS"
     ).split()
 )
 """Tokens behind which no name can stand: one that opens the next line begins something else."""

@@ -261,8 +261,10 @@ def _promise(scenario: Scenario) -> str:
 
 def _reaches(reach: Reach) -> str:
     goal = "reaches " + listed(f"`{ref.name}`" for ref in reach.events)
+    goal += f" {reach.often}" if reach.times > 1 else ""
+    goal += "" if reach.apart is None else f", at least {reach.apart} time units apart,"
     goal += f" after {reach.after} time units" if reach.after else ""
-    return goal if reach.within is None else f"{goal} within {reach.within} time units"
+    return goal.rstrip(",") if reach.within is None else f"{goal} within {reach.within} time units"
 
 
 def _source(scenario: Scenario, safety: Safety) -> str:

@@ -9,11 +9,12 @@ syntax iskeyword @,48-57,_
 syntax keyword pursueStatement agent assume battery connect event for group objective optional poi reach_objective rule
 syntax keyword pursueStatement state stateDependency travel
 syntax keyword pursueConstant false is_false is_true true
-syntax keyword pursueKeyword after agents all always and any at at_most avoid before between by can_do capacity
-syntax keyword pursueKeyword collaborative controllable distance do does doing duration each every except false_if from
-syntax keyword pursueKeyword holds human if in inflation initially label leaves location mobile never never_with no none
-syntax keyword pursueKeyword not of on_way one_way only_if or order patrol per place radius reacts_to recharges robot
-syntax keyword pursueKeyword robots stays takes then times to together tolerance true_if two unit uses waits way within
+syntax keyword pursueKeyword after agents all always and any apart at at_least at_most avoid before between by can_do
+syntax keyword pursueKeyword capacity collaborative controllable distance do does doing duration each every except
+syntax keyword pursueKeyword false_if from holds human if in inflation initially label leaves location mobile never
+syntax keyword pursueKeyword never_with no none not of on_way one_way only_if or order patrol per place radius reacts_to
+syntax keyword pursueKeyword recharges robot robots stays takes then times to together tolerance true_if twice two unit
+syntax keyword pursueKeyword uses waits way within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"
