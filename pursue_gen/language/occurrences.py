@@ -33,7 +33,7 @@ MEMBERS = ("POI", "agent", "event", "state")
 _OPENS = {(token, word.upper()) for token, kind in STATEMENTS.items() for word in kind.conditions_behind()}
 """The statements with a condition in them, and the word behind which it begins."""
 
-_OPENING = frozenset(("ALWAYS", "AT_LEAST", "PATROL", "PLACE", "WAY"))
+_OPENING = frozenset(("ALWAYS", "AT_LEAST", "ESCORT", "PATROL", "PLACE", "WAY"))
 """Words that may be names and with which an objective may begin."""
 _OBJECT = {"AT": "POI", "FROM": "POI", "TO": "POI", "BETWEEN": "POI", "DOING": "event"}
 _SUBJECT = {

@@ -9,7 +9,7 @@ from pursue_gen.diagnostics import error
 from pursue_gen.language import network_names as names
 from pursue_gen.language.network_names import IDLE, LOSE, agent_position
 from pursue_gen.language.objectives.base import Breaks
-from pursue_gen.language.scenario import Patrol, Pause, Reach, Respond, Safety, Scenario, StatedObjective
+from pursue_gen.language.scenario import Escort, Patrol, Pause, Reach, Respond, Safety, Scenario, StatedObjective
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.agents import Surroundings
@@ -148,5 +148,6 @@ _WITH_CLOCK: Mapping[Type[Safety], Callable[[Any, Surroundings, int], Automaton]
     Respond: respond_automaton,
     Patrol: patrol_automaton,
     Pause: pause_automaton,
+    Escort: respond_automaton,
 }
 """What makes the automata in which time runs, for each kind of objective that has one."""

@@ -17,10 +17,10 @@ let s:statement = split('
       \ travel')
 let s:goes_on = split('
       \ after agents all always and any apart at at_least at_most avoid before between by can_do capacity
-      \ collaborative controllable distance do does doing duration each every except false false_if from holds human
-      \ if in inflation initially is_false is_true label leaves location mobile never never_with no none not of on_way
-      \ one_way only_if or order patrol per place radius reacts_to recharges robot robots stays takes then times to
-      \ together tolerance true true_if twice two unit uses waits way within')
+      \ collaborative controllable distance do does doing duration each escort every except false false_if from holds
+      \ human if in inflation initially is_false is_true label leaves location mobile never never_with no none not of
+      \ on_way one_way only_if or order patrol per place radius reacts_to recharges robot robots stays takes then
+      \ times to together tolerance true true_if twice two unit uses waits way within')
 
 function! s:Begins(line, words) abort
   return index(a:words, matchstr(a:line, '^\s*\zs\w\+')) >= 0

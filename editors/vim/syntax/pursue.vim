@@ -10,11 +10,11 @@ syntax keyword pursueStatement agent assume battery connect event for group obje
 syntax keyword pursueStatement state stateDependency travel
 syntax keyword pursueConstant false is_false is_true true
 syntax keyword pursueKeyword after agents all always and any apart at at_least at_most avoid before between by can_do
-syntax keyword pursueKeyword capacity collaborative controllable distance do does doing duration each every except
-syntax keyword pursueKeyword false_if from holds human if in inflation initially label leaves location mobile never
-syntax keyword pursueKeyword never_with no none not of on_way one_way only_if or order patrol per place radius reacts_to
-syntax keyword pursueKeyword recharges robot robots stays takes then times to together tolerance true_if twice two unit
-syntax keyword pursueKeyword uses waits way within
+syntax keyword pursueKeyword capacity collaborative controllable distance do does doing duration each escort every
+syntax keyword pursueKeyword except false_if from holds human if in inflation initially label leaves location mobile
+syntax keyword pursueKeyword never never_with no none not of on_way one_way only_if or order patrol per place radius
+syntax keyword pursueKeyword reacts_to recharges robot robots stays takes then times to together tolerance true_if twice
+syntax keyword pursueKeyword two unit uses waits way within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

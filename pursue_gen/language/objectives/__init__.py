@@ -8,6 +8,7 @@ from typing import Mapping, Type
 
 from pursue_gen.language.objectives.avoid import Always, Avoid
 from pursue_gen.language.objectives.base import Safety, StatedObjective
+from pursue_gen.language.objectives.escort import Escort
 from pursue_gen.language.objectives.holds import PlaceHolds, WayHolds
 from pursue_gen.language.objectives.never_with import NeverWith
 from pursue_gen.language.objectives.patrol import Patrol
@@ -16,14 +17,14 @@ from pursue_gen.language.objectives.reach import Reach
 from pursue_gen.language.objectives.respond import Respond
 
 __all__ = [
-    "Always", "Avoid", "GivenUp", "NeverWith", "Patrol", "Pause", "PlaceHolds", "Reach", "Respond", "Safety",
+    "Always", "Avoid", "Escort", "GivenUp", "NeverWith", "Patrol", "Pause", "PlaceHolds", "Reach", "Respond", "Safety",
     "StatedObjective", "WayHolds",
 ]  # fmt: skip
 """Parts of scenarios: `language.scenario` hands them on."""
 
 KINDS: Mapping[str, Type[Safety]] = {
     "respond": Respond, "avoid": Avoid, "always": Always, "never_with": NeverWith, "patrol": Patrol,
-    "place_holds": PlaceHolds, "way_holds": WayHolds, "pause": Pause,
+    "place_holds": PlaceHolds, "way_holds": WayHolds, "pause": Pause, "escort": Escort,
 }  # fmt: skip
 """The kinds of what always holds, by their rules in the grammar."""
 

@@ -116,7 +116,7 @@ def test_a_robots_pose_begins_with_that_of_the_place() -> None:
         ('agent "new" label |', []),
         ('agent "new" location a |', ["can_do", "reacts_to"]),
         ('state "new": initially |', ["true", "false"]),
-        ("objective: |", ["if", "avoid", "always", "patrol", "place", "way", "at_least"]),
+        ("objective: |", ["if", "avoid", "always", "patrol", "place", "way", "at_least", "escort"]),
         ("objective: patrol a, b |", ["in", "every", "by"]),
         ("objective: patrol a, b in |", ["order"]),
         ('rule "new": work |', ["and", "before", "or"]),
