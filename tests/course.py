@@ -25,6 +25,7 @@ from pursue_gen.language.scenario import (
     NeverAt,
     NeverHolds,
     NotBefore,
+    Pause,
     Poi,
     Reaches,
     Ref,
@@ -311,11 +312,14 @@ class Course:
         event, stay = self.events[name], self.stays[agent]
         assert stay.to or self.now - stay.rested > float(self.scenario.rest) - 1e-9, "it has to rest"
         for each in self.scenario.assumptions:
-            if isinstance(each, Waits) and (each.agent.name, each.event.name) == (agent, name):
-                ends = [end for _, end in self.done.get((agent, name), ())]
+            if isinstance(each, Waits) and (each.agent.name, (each.then or each.event).name) == (agent, name):
+                ends = [end for _, end in self.done.get((agent, each.event.name), ())]
                 assert not ends or self.now - ends[-1] >= each.time - 1e-9, "it is assumed to wait longer"
             if isinstance(each, NotBefore) and (each.agent.name, each.event.name) == (agent, name):
                 assert self.now > each.time - 1e-9, "it is assumed to begin later"
+        for pause in (each for each in self.scenario.safety if isinstance(each, Pause)):
+            if (pause.then or pause.event).name == name and self.agents[agent].controllable:
+                assert self.now - self._ended(pause.event.name) >= pause.time - 1e-9, "the pause is not over"
         partners = self.partners(agent, event) if event.collaborative else []
         self._advance(agent, name, name)
         self.begun[name] = self.begun.get(name, 0) + 1
@@ -330,6 +334,14 @@ class Course:
         for who in (agent, *(partners if event.is_shared else ())):
             here = self.stays[who]
             self.stays[who] = Stay(here.place, self.now, event=name, doer=who == agent, came=here.came)
+
+    def _ended(self, event: str) -> float:
+        """When the event has ended last."""
+        found = [-1e9]
+        for (who, what), some in self.done.items():
+            goes_on = self.stays[who].event == event and self.stays[who].doer
+            found += [end for _, end in some[: len(some) - goes_on] if what == event]
+        return max(found)
 
     def end(self, agent: str) -> None:
         """It has done what it was busy with."""

@@ -32,6 +32,9 @@ EVENTS = ("load", "drop", "ride", "wave", "sing")
 ROOM = ("0 robots", "1 robot", "1 agent", "2 agents", "1 of bot1, guest")
 """How many a place, or a way, may hold."""
 
+PAUSES = ("load", "load and load", "sing and drop", "wave and load", "drop and wave", "call and sing", "ride")
+"""Between which events there is to be a pause."""
+
 
 def conditions(places: Sequence[str], agents: Sequence[str]) -> st.SearchStrategy[str]:
     """Conditions on these places and agents, on doing `load`, and on the state `open`."""
@@ -170,6 +173,8 @@ def _objectives(draw: st.DrawFn, small: bool, condition: st.SearchStrategy[str],
         "condition": f"objective: avoid {draw(condition)}",
         "always": f"objective: always {draw(condition)}",
         "place": f"objective: place {draw(st.sampled_from((where, 'a, b')))} holds {draw(st.sampled_from(ROOM))}",
+        "escort": f"objective: escort guest at {where} within {draw(st.integers(4, 30))} by bot1",
+        "pause": f"objective: at_least {draw(st.integers(2, 20))} between {draw(st.sampled_from(PAUSES))}",
         "way": f"objective: way a to b holds {draw(st.sampled_from(ROOM))}",
         "with": f"objective: bot1 never_with guest{draw(st.sampled_from(('', f' at {where}')))}",
         "answer": f"objective: if {draw(condition)} then {draw(condition)} within {draw(st.integers(5, 30))}",
@@ -182,5 +187,7 @@ def _objectives(draw: st.DrawFn, small: bool, condition: st.SearchStrategy[str],
     event = draw(st.sampled_from(("load", "drop", "sing", "wave")))
     later = draw(st.sampled_from(("", " after 3", f" within {draw(st.integers(10, 60))}")))
     also = " and drop" if event != "drop" and draw(st.integers(0, 3)) == 0 else ""
-    reach = [f"reach_objective: do {event}{also}{later}"] if not safety or draw(st.integers(0, 2)) else []
+    more = ("", " twice", " 3 times", f" twice at_least {draw(st.integers(2, 9))} apart")
+    often = draw(st.sampled_from(more)) if not also and draw(st.integers(0, 2)) == 0 else ""
+    reach = [f"reach_objective: do {event}{also}{often}{later}"] if not safety or draw(st.integers(0, 2)) else []
     return [kinds[kind] for kind in safety] + reach

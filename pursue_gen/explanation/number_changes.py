@@ -10,7 +10,7 @@ from pursue_gen.diagnostics import Span
 from pursue_gen.language.clauses import Domains
 from pursue_gen.language.numbers import Number, Window, whole_above, whole_below
 from pursue_gen.language.objectives.holds import Holds
-from pursue_gen.language.scenario import Battery, Endurance, Event, Scenario, Travel
+from pursue_gen.language.scenario import Battery, Endurance, Event, Pause, Reach, Scenario, Travel
 from pursue_gen.language.statements.event import MOST_TIMES
 from pursue_gen.language.times import instead, like, window_text
 from pursue_gen.solving.rules import Rules
@@ -134,6 +134,35 @@ def room_changes(scenario: Scenario, holds: Holds) -> Iterator[Repair]:
             "room", holds.where, f"more room {holds.where}", holds.most, values,
             lambda k: scenario.with_instead(holds, holds.with_room(k)),
             lambda k: f"room for {holds.with_room(k).some} {holds.where} instead of {holds.some}", holds.span,
+        )  # fmt: skip
+
+
+def pause_changes(scenario: Scenario, pause: Pause) -> Iterator[Repair]:
+    """A shorter pause between events."""
+    names = " and ".join(dict.fromkeys((pause.event.shown, pause.following.shown)))
+    values = whole_below(pause.time, 1)
+    if values:
+        yield Repair(
+            "pause", names, f"a shorter pause between {names}", pause.time, values,
+            lambda k: scenario.with_instead(pause, pause.shorter(k)),
+            lambda k: f"a pause of {instead(k, pause.time)} between {names}", pause.span,
+        )  # fmt: skip
+
+
+def times_changes(scenario: Scenario, reach: Reach) -> Iterator[Repair]:
+    """What has to happen less often, or less far apart."""
+    event, before = reach.events[0].shown, reach.apart or 0
+    if reach.times > 2 or (reach.times > 1 and reach.apart is None):
+        yield Repair(
+            "times", event, f"{event} less often", reach.times, range(reach.times - 1, 1 if before else 0, -1),
+            lambda k: scenario.with_instead(reach, replace(reach, times=k)),
+            lambda k: f"{event} {replace(reach, times=k).often} instead of {reach.often}", reach.span,
+        )  # fmt: skip
+    if before > 1:
+        yield Repair(
+            "pause", event, f"{event} less far apart", before, whole_below(before, 1),
+            lambda k: scenario.with_instead(reach, replace(reach, apart=k)),
+            lambda k: f"{event} at least {instead(k, before)} apart", reach.span,
         )  # fmt: skip
 
 

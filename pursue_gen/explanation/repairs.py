@@ -17,12 +17,24 @@ from pursue_gen.explanation.number_changes import (
     charge_changes,
     count_changes,
     event_changes,
+    pause_changes,
     room_changes,
+    times_changes,
     travel_changes,
 )
 from pursue_gen.language.numbers import Number, decimal_text, exact, whole_above, whole_below
 from pursue_gen.language.objectives.holds import Holds
-from pursue_gen.language.scenario import Agent, Connection, Endurance, Event, Poi, Reach, Scenario, StatedObjective
+from pursue_gen.language.scenario import (
+    Agent,
+    Connection,
+    Endurance,
+    Event,
+    Pause,
+    Poi,
+    Reach,
+    Scenario,
+    StatedObjective,
+)
 from pursue_gen.language.times import instead, like
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
 from pursue_gen.tga.counts import counted
@@ -101,11 +113,14 @@ def _of_objectives(scenario: Scenario) -> Iterator[Repair]:
         yield from _of_limit(scenario, safety)
         if isinstance(safety, Holds):
             yield from room_changes(scenario, safety)
-        if isinstance(safety, Endurance):
+        elif isinstance(safety, Endurance):
             yield from charge_changes(scenario, safety)
+        elif isinstance(safety, Pause):
+            yield from pause_changes(scenario, safety)
     for reach in scenario.reach:
         if reach.after > 0:
             yield _earlier(scenario, reach)
+        yield from times_changes(scenario, reach)
         yield from _of_limit(scenario, reach)
 
 

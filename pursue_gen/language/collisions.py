@@ -58,9 +58,11 @@ def _numbered(scenario: Scenario) -> Iterator[_Stated]:
         automaton = names.safety_objective(number)
         turn = [Role.SAFETY_TURN(automaton)] if safety.order else []
         charge = [names.charge_clock(number)] if isinstance(safety, Endurance) else []
-        yield safety.span, [automaton, names.safety_clock(number), *turn, *charge]
+        made = [automaton, names.safety_clock(number), names.safety_pause(number), *turn, *charge]
+        yield safety.span, made
     for number, reach in enumerate(scenario.reach):
-        yield reach.span, [names.reach_objective(number), names.reach_clock(number), names.unlocking(number)]
+        made = [names.reach_objective(number), names.reach_clock(number), names.unlocking(number)]
+        yield reach.span, [*made, *([] if reach.apart is None else [names.reach_apart(number)])]
     for number, assumption in enumerate(scenario.assumptions, start=1):
         made = [names.assumption(number), names.assumption_count(number), names.assumption_clock(number)]
         yield assumption.span, [*made, names.assumed_way(number)]

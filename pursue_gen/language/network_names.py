@@ -62,8 +62,17 @@ safety_objective, safety_clock = partial(numbered, Role.SAFETY), partial(numbere
 charge_clock = partial(numbered, Role.CHARGE_CLOCK)
 """By the number of a safety objective that is a battery, its clock of how long its robot has been at the charger."""
 
+
+def safety_pause(number: int) -> Symbol:
+    """The variable that says whether the pause of that safety objective, from 0, counts."""
+    return Role.SAFETY_PAUSE(safety_objective(number))
+
+
 reach_objective, reach_clock = partial(numbered, Role.REACH), partial(numbered, Role.REACH_CLOCK)
 """By the number of a reach objective, from 0: its automaton, `reachObj`, …, and its clock, `Creach`, …"""
+
+reach_apart = partial(numbered, Role.REACH_APART)
+"""The clock of a reach objective since its event has counted last."""
 
 unlocking = partial(numbered, Role.UNLOCKING)
 """The channel on which a reach objective is unlocked, where others are with it; else that edge has none. It is the word
@@ -74,6 +83,16 @@ def did(*events: int) -> Symbol:
     """The location of a reach objective's automaton in which these of its events have happened, from 1."""
     numbers = tuple(map(str, events))
     return Symbol(Role.DID.form.format("_".join(numbers)), Role.DID, numbers)
+
+
+def done_times(times: int) -> Symbol:
+    """The location of a reach objective's automaton in which its event has counted so often."""
+    return Role.DONE_TIMES(times)
+
+
+def apart(times: int) -> Symbol:
+    """The same, where it is too soon for it to count again."""
+    return Role.APART(times)
 
 
 def has_happened(of: Event) -> Symbol:

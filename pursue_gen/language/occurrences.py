@@ -36,7 +36,7 @@ MEMBERS = ("POI", "agent", "event", "state")
 _OPENS = {(token, word.upper()) for token, kind in STATEMENTS.items() for word in kind.conditions_behind()}
 """The statements with a condition in them, and the word behind which it begins."""
 
-_OPENING = frozenset(("ALWAYS", "PATROL", "PLACE", "WAY"))
+_OPENING = frozenset(("ALWAYS", "AT_LEAST", "ESCORT", "PATROL", "PLACE", "WAY"))
 """Words that may be names and with which an objective may begin."""
 _OBJECT = {"AT": "POI", "FROM": "POI", "TO": "POI", "BETWEEN": "POI", "DOING": "event"}
 _SUBJECT = {
@@ -167,7 +167,8 @@ def _occurrences(part: Statement, number: int) -> Iterator[Occurrence]:
 def condition_start(tokens: Sequence[Token]) -> Optional[int]:
     """The number of the first token of the condition in a statement, be it there or missing; None: it has none."""
     for number, token in enumerate(tokens):
-        if (kind_of(tokens), token.type) in _OPENS:
+        may_open = token.type not in MAY_BE_NAMES or (number > 0 and tokens[number - 1].type == "COLON")
+        if may_open and (kind_of(tokens), token.type) in _OPENS:
             following = tokens[number + 1].type if number + 1 < len(tokens) else ""
             is_name = tokens[number - 1].type != "COLON" or following == "NEVER_WITH"
             if token.type != "ALWAYS" or not is_name:  # always may be the name of an agent, or of a place

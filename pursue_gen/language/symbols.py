@@ -57,6 +57,7 @@ class Role(enum.Enum):
     SAFETY_CLOCK = "Cobj{}", "a part of an objective"
     SAFETY_TURN = "P{}", "a part of an objective"
     CHARGE_CLOCK = "Ccharge{}", "a part of a battery"
+    SAFETY_PAUSE = "P{}_pause", "a part of an objective"
     IDLE = "idle", "nothing is due"
     AT_RISK = "atRisk", "a deadline is running"
     CHARGING = "atCharger", "a battery is being charged"
@@ -68,6 +69,9 @@ class Role(enum.Enum):
     START = "initial_location", "a goal does not count yet"
     UNLOCKED = "unlocked", "a goal counts, and nothing of it is done"
     DID = "did_{}", "these events of a goal have happened: {}"
+    DONE_TIMES = "did_{}_times", "the event of a goal has happened so often: {}"
+    APART = "did_{}_times_apart", "the event of a goal has happened so often, and may not count yet again: {}"
+    REACH_APART = "Capart{}", "a part of an objective"
     WIN = "win", "a goal is reached"
     LATE = "late", "the deadline of a goal has passed"
     ASSUMPTION = "assume{}", "a part of an assumption"
@@ -141,6 +145,7 @@ def numbered(role: Role, number: int) -> Symbol:
 
 _FURTHER = "([2-9]|[1-9][0-9]+)?"
 _READ = {role: "(.+)" for role in Role if "{" not in role.form or role in (*UNDER_WAY, Role.END)}
+_READ.update(dict.fromkeys((Role.DONE_TIMES, Role.APART), "([1-9][0-9]*)"))
 _READ.update({Role.DID: "([1-9][0-9_]*)", Role.SAFETY: _FURTHER, Role.REACH: _FURTHER, Role.ASSUMPTION: "([0-9]+)"})
 _READ[Role.AWAITED] = _READ[Role.ASSUMPTION]
 _FORMS = {role: re.compile(role.form.replace("{}", part)) for role, part in _READ.items()}

@@ -19,6 +19,7 @@ from pursue_gen.solving.freer import standing, with_one_walk, without_turns
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits, Listener
+from pursue_gen.tga.apart import without_pauses
 from pursue_gen.tga.ends import is_agent
 from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.tga.objectives import stated
@@ -124,11 +125,12 @@ def _games(game: Network, wanted: Objective) -> Sequence[Network]:
 
 
 def only_promises(network: Network, objective: Objective, wanted: Objective) -> Network:
-    """The network without the automata of other parts of the objective. These only watch, and stop time where they are
-    broken."""
+    """The network without the automata of other parts of the objective, and without their pauses. These automata only
+    watch, and stop time where they are broken."""
     kept = {name for name, _ in (*wanted.goal, *wanted.bad)}
     others = {name for name, _ in (*objective.goal, *objective.bad)} - kept
-    return part_of(network, {a.name for a in network.automata if a.name not in others or is_agent(a) or a.assigned})
+    some = {a.name for a in network.automata if a.name not in others or is_agent(a) or a.assigned}
+    return part_of(without_pauses(network, others), some)
 
 
 def watched(wanted: Objective) -> Tuple[str, ...]:

@@ -140,17 +140,21 @@ def _not_before(automaton: Automaton, number: int, assumption: NotBefore, *_: ob
 
 def _waits(automaton: Automaton, number: int, assumption: Waits, *_: object) -> Automaton:
     """The first time is free; a clock runs from the end of each one to the next."""
-    count, clock, event = names.assumption_count(number), names.assumption_clock(number), assumption.event.name
-    lasts = any(edge.sent == names.done(event) for edge in automaton.edges)
+    count, clock = names.assumption_count(number), names.assumption_clock(number)
+    first, following = assumption.event.name, assumption.following.name
+    lasts = any(edge.sent == names.done(first) for edge in automaton.edges)
 
     def edges(edge: Edge) -> List[Edge]:
-        if edge.sent == names.done(event):
+        if edge.sent == names.done(first):
             return [edge.plus(resets=(clock,))]
-        if edge.sent != event:
+        if edge.sent not in (first, following):
             return [edge]
-        begun = edge if lasts else edge.plus(resets=(clock,))
+        begun = edge.plus(resets=(clock,)) if edge.sent == first and not lasts else edge
+        counted = ((count, 1),) if edge.sent == first else ()
+        if edge.sent != following:
+            return [begun.plus(assign=counted)]
         again = begun.plus((Test(count, 1),), bounds=(ClockBound(clock, ">=", exact(assumption.time)),))
-        return [begun.plus((Test(count, 0),), assign=((count, 1),)), again, _when_broken(begun, number)]
+        return [begun.plus((Test(count, 0),), assign=counted), again, _when_broken(begun, number)]
 
     return automaton.with_each(edges)
 

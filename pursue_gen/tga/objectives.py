@@ -10,10 +10,21 @@ from pursue_gen.language import network_names as names
 from pursue_gen.language.network_names import IDLE, LOSE, agent_position
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.objectives.base import Breaks
-from pursue_gen.language.scenario import Endurance, Patrol, Reach, Respond, Safety, Scenario, StatedObjective
+from pursue_gen.language.scenario import (
+    Endurance,
+    Escort,
+    Patrol,
+    Pause,
+    Reach,
+    Respond,
+    Safety,
+    Scenario,
+    StatedObjective,
+)
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.agents import Surroundings
+from pursue_gen.tga.apart import pause_automaton
 from pursue_gen.tga.endurance import endurance_automaton
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Objective, Sync, Test
 from pursue_gen.tga.patrols import patrol_automaton
@@ -66,7 +77,7 @@ def reach_automaton(reach: Reach, happened: Happened, number: int = 0, unlocking
     """`do e1 and e2 after T within D`: unlocked once T has passed, won when each event has happened since then.
 
     A deadline is the invariant of all locations before; `late` is what remains to do when it is reached. `unlocking`:
-    the channel of the first step, if others are unlocked with it.
+    the channel of the first step, if others are unlocked with it. An event that has to happen several times is counted.
     """
     clock = names.reach_clock(number)
     passed = (ClockBound(clock, ">", exact(reach.after)),) if unlocking is None or unlocking.sends else ()
@@ -74,7 +85,10 @@ def reach_automaton(reach: Reach, happened: Happened, number: int = 0, unlocking
     count = len(reach.events)
     places = [Location(names.START, limit), Location(names.UNLOCKED, limit, named=False)]
     edges = [Edge(names.START, names.UNLOCKED, Guard(passed), unlocking)]
-    for size in range(count):
+    if reach.times > 1:
+        counted = _several_times(reach, happened[reach.events[0].name], names.reach_apart(number), limit)
+        places, edges = [*places, *counted[0]], [*edges, *counted[1]]
+    for size in range(count if reach.times == 1 else 0):
         for done in combinations(range(count), size):
             places += [Location(_done(done, count), limit)] if done else []
             for k in (k for k in range(count) if k not in done):
@@ -83,6 +97,27 @@ def reach_automaton(reach: Reach, happened: Happened, number: int = 0, unlocking
     late = [] if reach.within is None else [Location(names.LATE)]
     edges += [Edge(place.name, names.LATE) for place in places for _ in late]
     return Automaton(names.reach_objective(number), (*places, Location(names.WIN), *late), names.START, tuple(edges))
+
+
+def _several_times(
+    reach: Reach, happens: str, clock: str, limit: Tuple[ClockBound, ...]
+) -> Tuple[List[Location], List[Edge]]:
+    """What is behind `unlocked` where an event has to happen several times. Where it has to be apart, the controller
+    makes a step once the time has passed, as it does for `after`; what comes before that step does not count."""
+    places: List[Location] = []
+    edges: List[Edge] = []
+    here: str = names.UNLOCKED
+    for times in range(1, reach.times + 1):
+        counted = names.WIN if times == reach.times else names.done_times(times)
+        waits = reach.apart is not None and times < reach.times
+        target = names.apart(times) if waits else counted
+        edges.append(Edge(here, target, sync=Sync(happens, sends=False), resets=(clock,) if waits else ()))
+        if waits:
+            places.append(Location(target, limit))
+            edges.append(Edge(target, counted, Guard((ClockBound(clock, ">=", exact(reach.apart or 0)),))))
+        places += [Location(counted, limit)] if times < reach.times else []
+        here = counted
+    return places, edges
 
 
 def _done(events: Sequence[int], count: int) -> str:
@@ -94,8 +129,8 @@ def _done(events: Sequence[int], count: int) -> str:
 
 def safety_automaton(safety: Safety, around: Surroundings, number: int = 0) -> Automaton:
     """The automaton that goes to `lose` when the safety objective of the scenario is broken."""
-    if safety.breaks.begins is not None:
-        return _WITH_LIMIT[type(safety)](safety, around, number)
+    if type(safety) in _WITH_CLOCK:
+        return _WITH_CLOCK[type(safety)](safety, around, number)
     name, breaks = names.safety_objective(number), safety.breaks
     broken = [] if breaks.condition is None else around.conditions.ways_to_hold(breaks.condition)
     edges = [Edge(IDLE, LOSE, Guard(integers=one), controllable=False) for one in (*broken, *_together(breaks, around))]
@@ -121,9 +156,11 @@ def _together(breaks: Breaks, around: Surroundings) -> Iterator[Tuple[Clause, ..
         yield tuple(tuple(Test(agent_position(agent), code) for code in codes) for agent in breaks.pair)
 
 
-_WITH_LIMIT: Mapping[Type[Safety], Callable[[Any, Surroundings, int], Automaton]] = {
+_WITH_CLOCK: Mapping[Type[Safety], Callable[[Any, Surroundings, int], Automaton]] = {
     Respond: respond_automaton,
     Patrol: patrol_automaton,
     Endurance: endurance_automaton,
+    Pause: pause_automaton,
+    Escort: respond_automaton,
 }
-"""What makes the automata in which the time runs that something may take, for each kind of objective."""
+"""What makes the automata in which time runs, for each kind of objective that has one."""

@@ -14,7 +14,7 @@ from pursue_gen.language.clauses import Clauses, Domains, clauses_of, holds_at_s
 from pursue_gen.language.conditions import At, Condition, Holds, OnWay, atoms
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.language.numbers import exact
-from pursue_gen.language.scenario import Ref, Respond, Scenario
+from pursue_gen.language.scenario import Escort, Ref, Respond, Scenario
 from pursue_gen.tga.agents import Surroundings
 from pursue_gen.tga.changes import Change, arriving, happening, setting_off
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Sync
@@ -31,7 +31,7 @@ def awaited_by(condition: Condition, scenario: Scenario, domains: Domains) -> It
             yield from ((agent, place) for agent in domains.among(atom.who) for place in places)
 
 
-def respond_automaton(respond: Respond, around: Surroundings, number: int) -> Automaton:
+def respond_automaton(respond: Union[Respond, Escort], around: Surroundings, number: int) -> Automaton:
     """The automaton of a duty to answer within a deadline: it is at risk from what is to be answered to the answer."""
     scenario, conditions, clock = around.scenario, around.conditions, names.safety_clock(number)
     domains = conditions.domains

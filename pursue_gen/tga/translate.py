@@ -10,6 +10,7 @@ from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.agents import Surroundings, agent_automaton
+from pursue_gen.tga.apart import apart, pause_variables
 from pursue_gen.tga.assumptions import assumed, assumption_clocks, assumption_variables
 from pursue_gen.tga.awaited import ways_awaited
 from pursue_gen.tga.batteries import battery_variables, powered
@@ -43,7 +44,7 @@ def translate(scenario: Scenario) -> Network:
     states = states_automaton(scenario.states)
     automata = [states] if states else []
     agents = [powered(agent_automaton(agent, around), scenario) for agent in scenario.agents]
-    automata += [assumed(bound(agent, own), scenario, conditions) for agent in agents]
+    automata += [apart(assumed(bound(agent, own), scenario, conditions), scenario) for agent in agents]
     automata += ways_awaited(scenario, codes)
     automata += [safety_automaton(each, around, k) for k, each in enumerate(scenario.safety)]
     steps = unlocking(scenario)
@@ -52,6 +53,7 @@ def translate(scenario: Scenario) -> Network:
     variables = _variables(scenario, codes.pois) + _busy(around) + conditions.variables()
     variables += assumption_variables(scenario) + turns(scenario)
     variables += tuple((turn.variable, 0) for turn in own)
+    variables += pause_variables(scenario)
     variables += battery_variables(scenario)
     network = Network(_clocks(scenario), variables, _channels(scenario), tuple(automata))
     _check_names(network)
@@ -75,6 +77,7 @@ def _clocks(scenario: Scenario) -> Tuple[str, ...]:
     clocks = [names.agent_clock(agent.name) for agent in scenario.agents]
     clocks += [names.safety_clock(k) for k, _ in enumerate(scenario.safety)]
     clocks += [names.reach_clock(k) for k, _ in enumerate(scenario.reach)]
+    clocks += [names.reach_apart(k) for k, reach in enumerate(scenario.reach) if reach.apart is not None]
     return (*clocks, *assumption_clocks(scenario), *charge_clocks(scenario))
 
 

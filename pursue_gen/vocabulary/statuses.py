@@ -9,7 +9,7 @@ from typing import Iterator, List, Tuple
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.batteries import levels
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.scenario import Pause, Scenario
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Automaton, Network
@@ -86,5 +86,9 @@ def _objectives(scenario: Scenario, network: Network) -> Iterator[Status]:
         if objective.order and names.rule_turn(name) in variables:
             following = {str(k): f"next: {scenario.shown(place)}" for k, place in enumerate(objective.order)}
             yield Status(names.rule_turn(name), objective.text, following)
+        if isinstance(objective, Pause):
+            begun = f"{objective.following.shown} has begun too soon"
+            said = {"0": "no pause", "1": f"since the end of {objective.event.shown}", "2": begun}
+            yield Status(Role.SAFETY_PAUSE(name), objective.text, said)
         texts = {place.name: objective.status(place.name) for place in network.automaton(name).locations}
         yield Status(name, objective.text + objective.words.which, texts)

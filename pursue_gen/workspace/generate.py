@@ -263,8 +263,10 @@ def _promise(scenario: Scenario) -> str:
 
 def _reaches(reach: Reach) -> str:
     goal = "reaches " + listed(f"`{ref.name}`" for ref in reach.events)
+    goal += f" {reach.often}" if reach.times > 1 else ""
+    goal += "" if reach.apart is None else f", at least {time_units(reach.apart)} apart,"
     goal += f" after {time_units(reach.after)}" if reach.after else ""
-    return goal if reach.within is None else f"{goal} within {time_units(reach.within)}"
+    return goal.rstrip(",") if reach.within is None else f"{goal} within {time_units(reach.within)}"
 
 
 def _source(scenario: Scenario, safety: Safety) -> str:

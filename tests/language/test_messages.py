@@ -161,7 +161,7 @@ SLIPS = [
     ("reach_objective: avoid a", "PML010", 18, "expected `do`", "is an objective"),
     ("reach_objective: do a within", "PML010", 29, "expected a number", "after and within are optional"),
     ("reach_objective: do a within 3 after 2", "PML010", 32, "found `after`", "do e1 and e2 after 10 within 60"),
-    ("reach_objective: do a, b", "PML010", 22, "expected `and`", "do e1 and e2"),
+    ("reach_objective: do a, b", "PML010", 22, "expected a number, `and`", "do e1 and e2"),
     ("reach_objective: do a after", "PML010", 28, "expected a number", "the form is"),
     ("/* never closed", "PML013", 1, "never closed: expected `*/`", "use // for one line"),
     ('poi "a" /* never closed', "PML013", 9, "never closed", "use // for one line"),

@@ -1,36 +1,50 @@
-"""`assume: agent waits T between event`."""
+"""`assume: agent waits T between event and event`."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, Sequence, Tuple
+from typing import ClassVar, Iterator, Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Span, units
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, units
 from pursue_gen.language.assumptions.at_most import AtMost
 from pursue_gen.language.assumptions.base import Assumption, NotSooner, Setting
 from pursue_gen.language.numbers import Number, whole_above
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
 from pursue_gen.language.word import Form, Numbers, Word
 
 
 @dataclass(frozen=True)
 class Waits(NotSooner):
-    """`assume: agent waits time between event`: so many time units from the end of one to the beginning of the next."""
+    """`assume: agent waits time between event and then`: so many time units from each end of `event` to the next
+    beginning of `then` (None: of the same event)."""
 
     agent: Ref
     event: Ref
     time: Number
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=guest} waits {time:time=5} between {event=call}")
+    then: Optional[Ref] = None
+    template: ClassVar[Template] = Template("{agent=guest} waits {time:time=5} between {event=call} [and {then:event}]")
     own_words: ClassVar[Tuple[Word, ...]] = (Word("waits", "How many units of time it waits at least.", True),)
     forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody waits in between", template.to_fill_in),)
     numbers: ClassVar[Numbers] = {"waits": "The next one begins {} after the end of the last, or later.".format}
     counts: ClassVar[bool] = True  # whether it has happened: the first time is free
 
     @property
+    def following(self) -> Ref:
+        """The event with which it waits."""
+        return self.event if self.then is None else self.then
+
+    @property
     def clause(self) -> str:
-        return f"{self.agent.shown} waits {units(self.time)} between one {self.event.shown} and the next"
+        if self.following.name == self.event.name:
+            return f"{self.agent.shown} waits {units(self.time)} between one {self.event.shown} and the next"
+        between = f"a {self.event.shown} and the next {self.following.shown}"
+        return f"{self.agent.shown} waits {units(self.time)} between {between}"
+
+    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+        return super().wrong(agent, setting) or self.never_does(agent, self.following)
 
     @property
     def since(self) -> str:

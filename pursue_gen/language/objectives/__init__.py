@@ -9,21 +9,23 @@ from typing import Mapping, Type
 from pursue_gen.language.objectives.avoid import Always, Avoid
 from pursue_gen.language.objectives.base import Safety, StatedObjective
 from pursue_gen.language.objectives.endurance import Endurance
+from pursue_gen.language.objectives.escort import Escort
 from pursue_gen.language.objectives.holds import PlaceHolds, WayHolds
 from pursue_gen.language.objectives.never_with import NeverWith
 from pursue_gen.language.objectives.patrol import Patrol
+from pursue_gen.language.objectives.pause import Pause
 from pursue_gen.language.objectives.reach import Reach
 from pursue_gen.language.objectives.respond import Respond
 
 __all__ = [
-    "Always", "Avoid", "Endurance", "GivenUp", "NeverWith", "Patrol", "PlaceHolds", "Reach", "Respond", "Safety",
-    "StatedObjective", "WayHolds",
+    "Always", "Avoid", "Endurance", "Escort", "GivenUp", "NeverWith", "Patrol", "Pause", "PlaceHolds", "Reach",
+    "Respond", "Safety", "StatedObjective", "WayHolds",
 ]  # fmt: skip
 """Parts of scenarios: `language.scenario` hands them on."""
 
 KINDS: Mapping[str, Type[Safety]] = {
     "respond": Respond, "avoid": Avoid, "always": Always, "never_with": NeverWith, "patrol": Patrol,
-    "place_holds": PlaceHolds, "way_holds": WayHolds,
+    "place_holds": PlaceHolds, "way_holds": WayHolds, "pause": Pause, "escort": Escort,
 }  # fmt: skip
 """The kinds of what always holds, by their rules in the grammar."""
 

@@ -131,8 +131,8 @@ class StatedObjective(Written):
 
 
 class Breaks(NamedTuple):
-    """How a safety objective is broken: by an event; by a condition; by a pair of agents at one place; or since what is
-    due has not come within its limit."""
+    """How a safety objective is broken: by an event; by a condition; by a pair of agents at one place; by an event that
+    comes too soon; or since what is due has not come within its limit."""
 
     event: Optional[Ref] = None
     condition: Optional[Condition] = None
@@ -140,6 +140,9 @@ class Breaks(NamedTuple):
     place: Optional[str] = None  # … at this place; None: nowhere, nor on a connection
     begins: Optional[EventOrCondition] = None  # with what something becomes due …
     ends: Optional[EventOrCondition] = None  # … and with what it has come; None: that depends on turns
+    too_soon: Optional[Ref] = None  # an event that may not begin less than a pause …
+    last: Optional[Ref] = None  # … after the end of this one …
+    pause: Number = 0  # … in time units
     by_robots: bool = False  # nothing but what robots do can keep it
     stands: Tuple[At, ...] = ()  # who is at which place when it is kept, or broken: this has to be possible
 

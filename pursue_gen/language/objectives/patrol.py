@@ -25,6 +25,10 @@ def _read_who(reader: TreeReader, tree: Any) -> Who:
     return Who(agent, agent is None)
 
 
+PATROLLER = Filling("patroller", _read_who, who_text, "agent", rules="patroller: ref | ANY ROBOT")
+"""Who has to be there."""
+
+
 @dataclass(frozen=True)
 class Patrol(Safety):
     """`patrol place every T by who`: it is at the place again so many time units after it left, or after the start.
@@ -46,7 +50,7 @@ class Patrol(Safety):
 
     template: ClassVar[Template] = Template(
         "patrol {place:POIs=a, b} [in order] [every {every:time=60}] by {who:patroller=bot1}",
-        patroller=Filling("patroller", _read_who, who_text, "agent", rules="patroller: ref | ANY ROBOT"),
+        patroller=PATROLLER,
     )
     note: ClassVar[str] = "or: by any robot; in order and every are optional"
     own_words: ClassVar[Tuple[Word, ...]] = (

@@ -224,7 +224,7 @@ def _words(place: _Place, expected: FrozenSet[str], grouped: bool) -> Iterator[C
     elif place.behind[0].type == "FOR" and not body_of(place.behind):
         names_hide = set()
     if [token.type for token in place.behind[-2:]] == ["OBJECTIVE", "COLON"]:
-        names_hide -= {"ALWAYS", "PATROL", "PLACE", "WAY"}
+        names_hide -= {"ALWAYS", "AT_LEAST", "ESCORT", "PATROL", "PLACE", "WAY"}
     if [token.type for token in place.behind[-2:]] == ["ASSUME", "COLON"]:
         names_hide.discard("AT_MOST")
     if "BY" in (token.type for token in place.behind):

@@ -106,7 +106,7 @@ def later_deadline(document: Draft, finding: Diagnostic, part: Statement, at: in
     """A deadline that ends after what is to be done begins to count."""
     after, within = part.pair("AFTER"), part.pair("WITHIN")
     start = read_time(document, after[1]) if after is not None else None
-    if start is not None and within is not None:
+    if start is not None and within is not None and part.first("APART") is None:
         number = written_time(like(exact(start + 1), start))
         yield f"Write within {number}", (written(within[1], number),)
 

@@ -45,8 +45,10 @@ class Promises:
         ends = (way for connection in scenario.connections for way in connection.directions)
         self._ways: Dict[str, FrozenSet[str]] = {going(*way): frozenset(way) for way in ends}
         self._places = [poi.name for poi in scenario.pois]
-        self._done: List[Set[str]] = [set() for _ in scenario.reach]
+        self._done: List[List[str]] = [[] for _ in scenario.reach]
+        self._counted: Dict[int, float] = {}
         self._since: Dict[int, float] = {}
+        self._ended: Dict[str, float] = {}
         self._held: Set[int] = set()  # whose conditions that are to be answered have held in the state before
         self._how = [safety.breaks for safety in scenario.safety]
         named = ((names.safety_objective(k), how.condition) for k, how in enumerate(self._how))
@@ -81,22 +83,27 @@ class Promises:
         self._check_conditions(state)
         # A deadline that ends now is missed where the mission is lost, and kept where it is not.
         latest = at + EPSILON if state.status == LOST else at - EPSILON
-        event = self._events.get(state.event, "") if state.seq > self._seq else ""
+        word = state.event if state.seq > self._seq else ""
+        event = self._events.get(word, "")
         self._seq = max(self._seq, state.seq)
         visited = self._visited(state)
         late = [number for number, safety in enumerate(self._scenario.safety) if self._is_empty(number, safety, latest)]
         self._charges.on_state(state.locations, at)
         for number, safety in enumerate(self._scenario.safety):
-            if number in late or self._breaks(number, safety, event, latest, state):
+            too_soon = self._is_too_soon(self._how[number], word, at, latest) and state.status != WON
+            if number in late or too_soon or self._breaks(number, safety, event, latest, state):
                 self._broken.setdefault(safety.text, at)
             if number in visited:
                 self._since.pop(number, None)
+        self._ended[event] = at
         self._count(at)
-        for reach, done in zip(self._scenario.reach, self._done):
+        for number, (reach, done) in enumerate(zip(self._scenario.reach, self._done)):
             in_time = reach.within is None or latest <= reach.within
-            if event in {ref.name for ref in reach.events} and at > reach.after - EPSILON and in_time:
-                done.add(event)
-            if not in_time and len(done) < len(reach.events):
+            soon = reach.apart is not None and at - self._counted.get(number, -1e9) < reach.apart - EPSILON
+            if event in {ref.name for ref in reach.events} and at > reach.after - EPSILON and in_time and not soon:
+                done.append(event)
+                self._counted[number] = at
+            if not in_time and not reach.is_done(done):
                 self._broken.setdefault(reach.text, at)
         if self._exact:
             self._check(state)
@@ -157,6 +164,13 @@ class Promises:
         since = self._charges.since(number)
         return since is not None and safety.limit is not None and latest - since > safety.limit
 
+    def _is_too_soon(self, breaks: Breaks, word: str, at: float, latest: float) -> bool:
+        """True if an event begins before the pause after another one is over."""
+        if breaks.too_soon is None or breaks.last is None or word != names.event(breaks.too_soon.name):
+            return False
+        ended = self._ended.get(breaks.last.name)
+        return ended is not None and 2 * at - latest - ended < breaks.pause
+
     def _is_lost(self, breaks: Breaks, state: SystemState) -> bool:
         """True if its condition holds, or its two agents are together."""
         if breaks.condition is not None:
@@ -211,7 +225,7 @@ class Promises:
     def _check(self, state: SystemState) -> None:
         if state.status == WON:
             for reach, done in zip(self._scenario.reach, self._done):
-                if len(done) < len(reach.events):
+                if not reach.is_done(done):
                     self.problems.append(f"the mission is won, but not '{reach.text}'")
             for text in self._broken:
                 self.problems.append(f"the mission is won, but '{text}' was broken")

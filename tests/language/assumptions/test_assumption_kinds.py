@@ -46,7 +46,8 @@ EVENTS = st.sampled_from(["call", "clean"]).map(Ref)
 WHO = AGENTS.map(Who)
 ATOMS: st.SearchStrategy[Condition] = st.builds(At, WHO, PLACES) | st.builds(OnWay, WHO) | st.builds(Doing, WHO, EVENTS)
 VALUES: Dict[str, st.SearchStrategy[Any]] = {
-    "agent": AGENTS, "event": EVENTS, "place": PLACES, "times": st.integers(0, 3), "time": st.integers(2, 20),
+    "agent": AGENTS, "event": EVENTS, "then": st.none() | EVENTS, "place": PLACES,
+    "times": st.integers(0, 3), "time": st.integers(2, 20),
     "least": st.integers(0, 6), "most": st.integers(6, 20),
     "events": st.lists(EVENTS, min_size=1, max_size=2, unique=True).map(tuple),
     "condition": ATOMS | ATOMS.map(Not),
@@ -96,7 +97,7 @@ def test_it_names_what_editors_find_in_its_text(kind: Type[Assumption], data: st
         (found.kind, found.name) for found in occurrences(Draft.of(one.text, "story.pur").statements)
     }
     values = [getattr(one, hole.fields[0]) for hole in kind.template.holes if hole.filling.of]
-    outside = [ref.name for value in values for ref in (value if isinstance(value, tuple) else (value,))]
+    outside = [ref.name for value in values if value for ref in (value if isinstance(value, tuple) else (value,))]
     assert [ref.name for _, ref in one.names()] == outside and all(name in one.clause for name in outside)
     assert one.is_about("guest") == ("guest" in re.findall(r"\w+", one.text)) and not one.is_about("bot")
 

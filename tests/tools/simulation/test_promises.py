@@ -54,6 +54,9 @@ DUTY = "objective: if fall then wave within 4"
 ROOM = "objective: place lab holds 1 agent"
 WAY = "objective: way lab to hall holds 1 agent"
 APART = "objective: bot never_with kid"
+PAUSE = "objective: at_least 4 between load and wave"
+TWICE = "reach_objective: do load twice at_least 4 apart within 9"
+AGAIN = "objective: at_least 4 between load"
 
 
 def test_how_often_an_objective_is_called_upon_is_counted_with_its_latest_answer() -> None:
@@ -76,6 +79,12 @@ def test_how_often_an_objective_is_called_upon_is_counted_with_its_latest_answer
         (BOTH, [(3, WAVE, "lab", "lab"), (8.5, LOAD, "hall", "lab")]),
         (f"{DUTY}\n{ONE}", [(1, FALL, "hall", "lab"), (5, WAVE, "lab", "lab"), (9, LOAD, "hall", "lab")]),
         (f"{APART}\n{ONE}", [(1, "bot_hall2lab", "going_hall_to_lab", "lab"), (3, LOAD, "hall", "lab")]),
+        ("reach_objective: do load twice", [(1, LOAD, "hall", "lab"), (2, LOAD, "hall", "lab")]),
+        (TWICE, [(1, LOAD, "hall", "lab"), (4, LOAD, "hall", "lab"), (5, LOAD, "hall", "lab")]),
+        (f"{PAUSE}\n{BOTH}", [(3, WAVE, "lab", "lab"), (4, LOAD, "hall", "lab")]),
+        (f"{PAUSE}\n{BOTH}", [(3, LOAD, "hall", "lab"), (7.5, WAVE, "lab", "lab")]),
+        (f"{AGAIN}\n{BOTH}", [(1, LOAD, "hall", "lab"), (5, "load", "hall", "lab"), (6, LOAD, "hall", "lab"),
+                              (8, WAVE, "lab", "lab")]),
         (f"{ROOM}\n{WAY}\n{ONE}", [(1, "bot_hall2lab", "going_hall_to_lab", "lab"), (3, LOAD, "hall", "lab")]),
     ],
 )  # fmt: skip
@@ -90,6 +99,8 @@ def test_a_mission_that_keeps_its_promises_is_won_and_not_lost(objectives: str, 
         ("reach_objective: do load", [(1, "load", "doing_load_in_hall", "lab")], "not 'do load'"),
         (BOTH, [(1, WAVE, "lab", "lab"), (9, LOAD, "hall", "lab")], "not 'do load and wave after 2 within 9'"),
         (BOTH, [(3, LOAD, "hall", "lab")], "not 'do load and wave"),
+        (TWICE, [(1, LOAD, "hall", "lab"), (4, LOAD, "hall", "lab")], "not 'do load twice"),
+        (TWICE, [(1, LOAD, "hall", "lab"), (10, LOAD, "hall", "lab")], "within 9' was broken"),
         (f"{DUTY}\n{ONE}", [(1, FALL, "hall", "lab"), (6, LOAD, "hall", "lab")], "wave within 4' was"),
         (f"objective: avoid fall\n{ONE}", [(1, FALL, "hall", "lab"), (2, LOAD, "hall", "lab")], "avoid"),
         (f"{APART}\n{ONE}", [(1, "x", "lab", "lab"), (2, LOAD, "hall", "lab")], "never_with kid' was"),
@@ -104,6 +115,9 @@ def test_a_mission_that_keeps_its_promises_is_won_and_not_lost(objectives: str, 
             [(1, "x", "going_hall_to_lab", "going_lab_to_hall"), (2, LOAD, "hall", "lab")],
             "never_with kid' was",
         ),
+        (f"{PAUSE}\n{BOTH}", [(1, LOAD, "hall", "lab"), (3, WAVE, "lab", "lab"), (8, LOAD, "hall", "lab")], "wave' w"),
+        (f"{AGAIN}\n{BOTH}", [(1, LOAD, "hall", "lab"), (4, "load", "hall", "lab"), (6, LOAD, "hall", "lab"),
+                              (8, WAVE, "lab", "lab")], "between load' was"),
         (BOTH, [(3, WAVE, "lab", "lab"), (10, LOAD, "hall", "lab")], "within 9' was broken"),
     ],
 )  # fmt: skip
@@ -119,6 +133,7 @@ def test_a_mission_that_is_won_with_a_promise_broken_is_a_problem(
         (BOTH, [(3, WAVE, "lab", "lab"), (9, "reachObj_going_unlocked2late", "hall", "lab")]),
         (DUTY, [(1, FALL, "hall", "lab"), (5, "obj_atRisk2lose", "hall", "lab")]),
         ("objective: avoid fall", [(1, FALL, "hall", "lab")]),
+        (PAUSE, [(1, LOAD, "hall", "lab"), (5, WAVE, "lab", "lab")]),
     ],
 )
 def test_a_mission_is_lost_with_what_is_broken(objectives: str, steps: List[Step]) -> None:
