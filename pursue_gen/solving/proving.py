@@ -11,6 +11,7 @@ from pursue_gen.proof.checker import LIMIT, ProofReport, pruned, pruned_ranks, v
 from pursue_gen.proof.independence import named_part
 from pursue_gen.proof.simplify import simplified
 from pursue_gen.solving.options import DEFAULT, SolveOptions
+from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.tga.network import Network, Objective
 
@@ -57,6 +58,9 @@ def prove(
         hint = "this is a fault of the strategy, not of the scenario" + play_that_shows(report)
         raise NotProven([error("SYN020", f"the strategy does not win: {report.reason}", hint=hint)])
     kept = pruned(strategy, report)
+    if objective.reaches and ranks is None and kept is not strategy:
+        # The search that follows each play to its end says too little of what it used where it meets itself again.
+        kept = _proven_again(network, objective, reaction, kept, strategy, states, limits.since(start))
     if not simpler or closed or report.states > _LITTLE or kept.in_parts:
         return kept
     left = None if ranks is None else pruned_ranks(strategy, report, ranks)
@@ -65,7 +69,23 @@ def prove(
         again = verify(network, objective, fewer, reaction, 2 * _LITTLE, limits=limits.since(start), progress=progress)
     except LimitHit:
         return kept  # what is proven stays so when there is no time left to simplify it
-    return pruned(fewer, again) if again.ok else kept
+    if not again.ok:
+        return kept
+    least = pruned(fewer, again)
+    if objective.reaches and least is not fewer:
+        least = _proven_again(network, objective, reaction, least, fewer, 2 * _LITTLE, limits.since(start))
+    return least
+
+
+def _proven_again(
+    network: Network, objective: Objective, reaction: Fraction, kept: Strategy, whole: Strategy, states: int,
+    limits: Limits,
+) -> Strategy:  # fmt: skip
+    """A pruned strategy, if it is proven as well; else the whole one."""
+    try:
+        return kept if verify(network, objective, kept, reaction, states, limits=limits).ok else whole
+    except LimitHit:
+        return whole
 
 
 def play_that_shows(report: ProofReport) -> str:
