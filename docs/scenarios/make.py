@@ -20,6 +20,7 @@ import functools
 import math
 import re
 import sys
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, Dict, List, Mapping, Optional, Tuple
@@ -32,7 +33,7 @@ from pursue_gen.language import load, parse
 from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.language.sentences import periods_found, promise_words
 from pursue_gen.language.times import unit_name
-from pursue_gen.outcomes import Lost
+from pursue_gen.outcomes import LimitHit, Lost
 from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.least_time import Guarantee
 from pursue_gen.solving.optional import promised
@@ -42,6 +43,7 @@ from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.shares import can_be_shared
 from pursue_gen.solving.solution import Solution, solution
 from pursue_gen.solving.solvers import solved
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga.network import Kind
 from pursue_gen.tools.report import timeline
@@ -105,15 +107,21 @@ def facts(path: Path) -> Facts:
     return Facts(path.stem, scenario, found.scenario, states, found.solution, found.solution.guarantee)
 
 
+_WORK = 20_000_000
+"""The work for a game of several promises in one piece: about a second. Measured on care_round."""
+
+
 def _verdict(scenario: Scenario) -> Tuple[bool, int]:
     """Whether the default game is won, with nothing optional, and the states that were looked at: of the game in one
-    piece, which takes less time than a proof; in shares, where several promises can be shared out, as it may be too
-    large else."""
+    piece, which takes less time than a proof; in another way where it is too large for that (`_WORK`), and in shares,
+    where several promises can be shared out."""
     rules, (network, objective) = Rules(), game_of(scenario.giving_up(scenario.optional))
     game = played(network, rules)
     if len(objective.bad) < 2 or not can_be_shared(game, objective):
-        verdict = solve(game, objective, rules.reaction)
-        return verdict.won, verdict.stats.discrete_states
+        limits = NO_LIMITS if len(objective.bad) < 2 else Limits(work=_WORK)
+        with suppress(LimitHit):
+            verdict = solve(game, objective, rules.reaction, limits=limits)
+            return verdict.won, verdict.stats.discrete_states
     try:
         stats = solution(network, objective, rules).stats
     except Lost:
