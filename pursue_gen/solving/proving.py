@@ -11,7 +11,7 @@ from pursue_gen.proof.checker import LIMIT, ProofReport, pruned, pruned_ranks, v
 from pursue_gen.proof.independence import named_part
 from pursue_gen.proof.simplify import simplified
 from pursue_gen.solving.options import DEFAULT, SolveOptions
-from pursue_gen.synthesis.limits import Limits
+from pursue_gen.synthesis.limits import NO_LIMITS, Limits
 from pursue_gen.synthesis.strategy import Strategy, ZoneKey
 from pursue_gen.tga.network import Network, Objective
 
@@ -57,10 +57,10 @@ def prove(
     if not report.ok:
         hint = "this is a fault of the strategy, not of the scenario" + play_that_shows(report)
         raise NotProven([error("SYN020", f"the strategy does not win: {report.reason}", hint=hint)])
-    kept = pruned(strategy, report)
-    if objective.reaches and ranks is None and kept is not strategy:
-        # The search that follows each play to its end says too little of what it used where it meets itself again.
-        kept = _proven_again(network, objective, reaction, kept, strategy, states, limits.since(start))
+    if ranks is not None:
+        kept = pruned(strategy, report)
+    else:
+        kept = reached_part(network, objective, strategy, report, reaction, limits.since(start), states)
     if not simpler or closed or report.states > _LITTLE or kept.in_parts:
         return kept
     left = None if ranks is None else pruned_ranks(strategy, report, ranks)
@@ -71,21 +71,24 @@ def prove(
         return kept  # what is proven stays so when there is no time left to simplify it
     if not again.ok:
         return kept
-    least = pruned(fewer, again)
-    if objective.reaches and least is not fewer:
-        least = _proven_again(network, objective, reaction, least, fewer, 2 * _LITTLE, limits.since(start))
-    return least
+    return reached_part(network, objective, fewer, again, reaction, limits.since(start), 2 * _LITTLE)
 
 
-def _proven_again(
-    network: Network, objective: Objective, reaction: Fraction, kept: Strategy, whole: Strategy, states: int,
-    limits: Limits,
+def reached_part(
+    network: Network, objective: Objective, strategy: Strategy, report: ProofReport, reaction: Fraction,
+    limits: Limits = NO_LIMITS, states: int = LIMIT,
 ) -> Strategy:  # fmt: skip
-    """A pruned strategy, if it is proven as well; else the whole one."""
+    """The part of a strategy that plays reach, by a report without ranks; the whole of it where the part is not proven.
+
+    The search that follows each play to a goal says too little of what it used where it meets itself again.
+    """
+    kept = pruned(strategy, report)
+    if not objective.reaches or kept is strategy:
+        return kept
     try:
-        return kept if verify(network, objective, kept, reaction, states, limits=limits).ok else whole
+        return kept if verify(network, objective, kept, reaction, states, limits=limits).ok else strategy
     except LimitHit:
-        return whole
+        return strategy
 
 
 def play_that_shows(report: ProofReport) -> str:

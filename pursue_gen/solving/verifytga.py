@@ -25,9 +25,9 @@ from typing import Dict, Mapping, Optional, Sequence, Tuple, Type
 
 from pursue_gen.diagnostics import Diagnostic, PursueError, error
 from pursue_gen.outcomes import LimitHit, Lost, NotProven, Unavailable
-from pursue_gen.proof.checker import pruned, verify
+from pursue_gen.proof.checker import verify
 from pursue_gen.solving.least_time import unscaled
-from pursue_gen.solving.proving import play_that_shows
+from pursue_gen.solving.proving import play_that_shows, reached_part
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits, Listener
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.solve import Stats, Verdict
@@ -314,7 +314,7 @@ def _proven(
     start = limits.now()
     report = verify(network, objective, strategy, reaction, limits=limits, progress=progress)
     if report.ok:
-        return pruned(strategy, report)
+        return reached_part(network, objective, strategy, report, reaction, limits.since(start))
     if report.reason.startswith("limit"):
         message, hint = f"the strategy of {TOOL} is not proven: {report.reason}", f"it is too large; {_OURS}"
         raise ToolLimit([error("SYN010", message, hint=hint)], run)

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "batteries.hpp"
 #include "chargers.hpp"
 
 namespace pursue {
@@ -40,7 +41,8 @@ class Duties {
             }
         }
         detours_.resize(facts_);
-        for (const int robot : robots_) find_battery(robot);
+        for (const int robot : robots_)
+            if (const auto battery = battery_of(game, robot)) batteries_.emplace(robot, *battery);
         set_turns();
     }
 
@@ -282,42 +284,6 @@ class Duties {
         visits_.resize(game_.automata.size());
         for (const auto& [turn, comes, a] : order) visits_[a] = comes || chargers_.watches(a);
         for (std::size_t n = 0; n < order.size(); ++n) turns_[std::get<2>(order[n])] = watching_[n];
-    }
-
-    // A robot's battery is a variable that each of its ways lowers, and something that it does raises.
-    struct Battery {
-        int level, full;  // index in the discrete state, and the largest value
-        std::set<int> charging;
-    };
-
-    void find_battery(int robot) {
-        const auto& edges = game_.automata[robot].edges;
-        // By how much an edge changes a variable that it tests, 0: it does not, or in several ways.
-        const auto change = [](const Edge& edge, int variable) {
-            for (const auto& clause : edge.clauses)
-                for (const auto& set : edge.assign)
-                    if (clause.size() == 1 && clause.front().variable == variable && set.variable == variable)
-                        return set.value - clause.front().value;
-            return 0;
-        };
-        const auto is_way = [&](const Edge& edge) {
-            return edge.controllable && std::any_of(edges.begin(), edges.end(), [&](const Edge& end) {
-                return end.source == edge.target && end.target != edge.source;
-            });
-        };
-        for (int variable = 0; variable < static_cast<int>(game_.variables.size()); ++variable) {
-            Battery battery{static_cast<int>(game_.automata.size()) + variable, 0, {}};
-            bool lowered = false, otherwise = false;
-            for (const Edge& edge : edges) {
-                const int by = change(edge, variable);
-                if (is_way(edge)) (by < 0 ? lowered : otherwise) = true;
-                if (by <= 0) continue;
-                if (is_timed(robot, edge.source)) battery.charging.insert(edge.source);
-                for (const auto& set : edge.assign)
-                    if (set.variable == variable) battery.full = std::max(battery.full, set.value);
-            }
-            if (lowered && !otherwise && !battery.charging.empty()) batteries_.emplace(robot, battery);
-        }
     }
 
     void forget() {

@@ -377,26 +377,4 @@ class Forward {
     std::size_t followed_ = 0;
 };
 
-inline constexpr std::size_t ZONES_OF_CALLS = 16;  // a charge that a call breaks off has each time gone on for another while
-
-// The first policy that wins, or none. `joints`, `duties`: of the game.
-template <class Z>
-std::unique_ptr<Forward<Z>> winning_guess(const Game& game, LimitMonitor& monitor, Joints& joints, Duties& duties,
-                                          const std::vector<int>& late) {
-    const std::vector<int> charges = duties.has_batteries() ? std::vector<int>{0, 60, 100} : std::vector<int>{0};
-    for (const Charging charging : duties.chargers().none() ? std::vector<Charging>{Charging::in_turn} : CHARGINGS)
-        for (Guess each : late.empty() ? GUESSES : late_guesses(late))
-            for (const int charge : charges) {
-                each.charge = charge;
-                each.charging = charging;
-                if (charging != Charging::in_turn) each.zones = ZONES_OF_CALLS;
-                auto forward = std::make_unique<Forward<Z>>(game, monitor, joints, duties, each);
-                if (!each.shared_out && forward->robots() < 2) continue;  // the same as one that was tried
-                if (each.relieved && !forward->has_guards()) continue;    // likewise
-                if (each.alternates == Alternates::long_limits && !forward->alternates()) continue;
-                if (forward->wins()) return forward;
-            }
-    return nullptr;
-}
-
 }  // namespace pursue

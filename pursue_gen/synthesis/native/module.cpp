@@ -2,7 +2,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include "forward.hpp"
+#include "guesses.hpp"
 #include "reach.hpp"
 #include "safety.hpp"
 #include "zones/native/minimal.hpp"

@@ -14,11 +14,10 @@ enum class Idle { stays, goes_home, goes_to_post, prepares };
 
 // What a robot does in turn with anything else that it is asked for: visits, or what has the longest limits.
 enum class Alternates { nothing, visits, long_limits };
+
 // When a robot that has a battery by time goes to its charger: in its turn, until it is full; likewise, but it leaves when it
 // is called; or when it has nothing else to do, until it has.
 enum class Charging { in_turn, until_called, when_idle };
-
-inline const std::vector<Charging> CHARGINGS = {Charging::in_turn, Charging::until_called, Charging::when_idle};
 
 struct Guess {
     Next next = Next::in_turn;
@@ -35,37 +34,6 @@ struct Guess {
     int charge = 0;          // a robot that charges goes on until its battery has so many hundredths
     Charging charging = Charging::in_turn;
 };
-
-// One after the other.
-inline const std::vector<Guess> GUESSES = {
-    {Next::in_turn, true, Idle::stays, 1, false}, {Next::in_turn, true, Idle::stays, 1, true, true}, {Next::in_turn, true},
-    {Next::in_turn, true, Idle::goes_home},       {Next::in_turn, true, Idle::goes_to_post},
-    {Next::nearest, true, Idle::stays, 4, true, false, {}, 0, false, true},
-    {Next::in_turn, false},                       {Next::in_turn, false, Idle::goes_home},
-    {Next::soonest_due, true},                    {Next::soonest_due, true, Idle::goes_home},
-    {Next::soonest_due, true, Idle::goes_to_post},
-    {Next::nearest, false},                       {Next::nearest, false, Idle::goes_home},
-    {Next::in_turn, true, Idle::stays, 4},        {Next::soonest_due, true, Idle::stays, 4},
-    {Next::in_turn, true, Idle::stays, 1, false, false, {}, 0, false, false, Alternates::visits},
-    {Next::in_turn, true, Idle::stays, 1, false, false, {}, 0, false, false, Alternates::long_limits},
-    {Next::in_turn, true, Idle::prepares},        {Next::in_turn, true, Idle::prepares, 16},
-};
-
-// Likewise, where patrols wait until they are due, as late as is won.
-inline std::vector<Guess> late_guesses(const std::vector<int>& patrols) {
-    std::vector<Guess> out;
-    for (const int reserve : {5, 10, 15, 20, 25, 30, 45, 60})
-        for (Guess guess : GUESSES) {
-            guess.patrols = patrols;
-            guess.reserve = reserve;
-            if (guess.next == Next::in_turn && guess.shared_out && guess.zones == 1)
-                for (const bool sets_off : {false, true}) {
-                    guess.sets_off = sets_off;
-                    out.push_back(guess);
-                }
-        }
-    return out;
-}
 
 inline constexpr std::size_t BOUNDS_OF_A_STATE = 1024;  // a look at one takes about as long as at so many bounds
 
