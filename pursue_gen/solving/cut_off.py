@@ -132,13 +132,16 @@ def _closed(network: Network, agent: Automaton, at: str, meetings: Sequence[_Mee
 
 
 def _soonest(agent: Automaton, start: str, goal: str) -> Union[Number, float]:
-    """How long an agent that has rested takes at least from one location to another, where nobody can keep it."""
+    """How long an agent takes at least from one location to another, where nobody can keep it. It has rested, unless
+    it may have asked for something there just before."""
     back: Dict[str, List[Tuple[str, Number]]] = {}
     for edge in filter(is_free, agent.edges):
         back.setdefault(edge.target, []).append((edge.source, edge.guard.since))
     far = distances_to([goal], back)
-    led = (far[edge.target] for edge in agent.edges if edge.source == start and is_free(edge) and edge.target in far)
-    return min(led, default=math.inf)
+    own = [edge for edge in agent.edges if edge.source == start]
+    asks = any(edge.sent is not None and not edge.sets_off for edge in own)
+    led = [edge for edge in own if is_free(edge) and edge.target in far]
+    return min((far[edge.target] + (edge.guard.since if asks else 0) for edge in led), default=math.inf)
 
 
 def _past(robot: Automaton, edge: Edge, location: str) -> Number:

@@ -102,6 +102,17 @@ def test_who_may_come_before_a_robot_is_gone_cuts_it_off_too() -> None:
         assert solve(network, objective, DEFAULT.reaction).won == (not lost)
 
 
+def test_who_asks_for_something_rests_before_it_comes() -> None:
+    """The bed sets off 1 after it has asked, at the soonest: a robot may be gone then."""
+    leaves = CLINIC + "assume: bed leaves lift within 20\nassume: bed never at store\nassume: bed never at ward\n"
+    asks = leaves.replace("location ward can_do ask", "location ward")
+    asks = asks.replace("mobile 1 location office", "mobile 1 location office can_do ask")
+    for distance, cut in ((2, True), (3, False)):
+        network, objective = game(asks.replace("lift and office distance 2", f"lift and office distance {distance}"))
+        assert (cut_off_by_a_stay(network, objective) is not None) == cut
+        assert not (cut and solve(network, objective, DEFAULT.reaction).won)
+
+
 def test_the_message_says_who_stays_where() -> None:
     with pytest.raises(Lost) as problem:
         solve_scenario(parse(CLINIC + "objective: avoid r1 at office\n", "clinic.pur", "clinic"), DEFAULT)
@@ -119,9 +130,10 @@ PLACES = ("store", "lift", "ward", "office")
     st.sampled_from(PLACES),
     st.booleans(),
     st.sampled_from((DEFAULT, IDEAL)),
+    st.booleans(),
 )
 def test_what_is_cut_off_is_lost_in_the_exact_game(
-    ways: Sequence[Tuple[str, str]], picked: str, handed: str, met: str, rule: bool, rules: Rules
+    ways: Sequence[Tuple[str, str]], picked: str, handed: str, met: str, rule: bool, rules: Rules, asks: bool
 ) -> None:
     roads = "".join(f"connect {a} and {b} distance 2\n" for a, b in ways)
     text = "".join(line for line in CLINIC.splitlines(keepends=True) if not line.startswith("connect"))
@@ -129,6 +141,9 @@ def test_what_is_cut_off_is_lost_in_the_exact_game(
     text = text.replace("location store duration", f"location {picked} duration")
     text = text.replace("location ward duration", f"location {handed} duration")
     text = text if rule else text.replace('rule "medicine": pick before hand', "")
+    if asks:
+        text = text.replace("location ward can_do ask", "location ward")
+        text = text.replace("mobile 1 location office", "mobile 1 location office can_do ask")
     network, objective = game(text.replace("within 90", "within 40"), rules)
     try:
         won = solve(network, objective, rules.reaction, NATIVE, Limits(work=20_000_000)).won
