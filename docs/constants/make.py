@@ -93,7 +93,7 @@ ELSEWHERE = {
     ),
     ("synthesis/native/safety.hpp", "per_state"): "The work that exploring a state counts as. Not measured.",
     ("synthesis/native/safety.hpp", "largest"): "The most zones of what is lost in a state, likewise. Not measured.",
-    ("synthesis/native/forward.hpp", "ZONES_OF_CALLS"): (
+    ("synthesis/native/guesses.hpp", "ZONES_OF_CALLS"): (
         "So many zones of a state where calls break charges off. Measured on a robot that answers calls and charges."
     ),
     ("synthesis/native/tasks.hpp", "BOUNDS_OF_A_STATE"): (

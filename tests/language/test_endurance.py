@@ -51,7 +51,8 @@ def test_it_is_a_promise_behind_the_objectives_wherever_it_stands() -> None:
 
 def test_what_is_said_of_it() -> None:
     scenario = parse(HOUSE.format(FULL), "x.pur", "x")
-    assert battery().sentence(str) == "The battery of bot lasts 60 units away from dock, and is full after 20 there."
+    said = "The battery of bot lasts 60 units away from dock, and is full after 20 units there."
+    assert battery().sentence(str) == said
     assert speed_words(scenario.agents[0], scenario).endswith("battery lasts 60, full after 20 at dock")
     assert "empty: not at dock within 60" in battery().broken(str)
     assert [battery().status(place) for place in ("idle", "atCharger", "atChargerEmpty", "atRisk", "lose")] == [

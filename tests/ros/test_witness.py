@@ -124,6 +124,7 @@ def test_where_nobody_knows_the_mission_any_more_it_stops_with_the_reason(
 ) -> None:
     with launched(ros, scenario, tmp_path, use_sim_time=True, delays="middle", speed=1, lost_after=FOR_EVER) as run:
         run.until_step("bot1_inb")
+        run.until(lambda: ("bot1", "bot1_inb") in run.orders())  # recorded later, perhaps
         journal = journal_of(run)
         for node in NODES:
             if node != "sim_clock":
