@@ -90,7 +90,8 @@ def are_names(tokens: Sequence[Token]) -> List[bool]:
         opens = before is not None and before.type == "COLON"
         begins = opens and kind == "OBJECTIVE" and token.type in _OPENING and following != "NEVER_WITH"
         begins = begins or (opens and kind == "ASSUME" and (token.type, following) == ("AT_MOST", "NUMBER"))
-        named.append(token.type == "WORD" or (token.type in MAY_BE_NAMES and behind and not begins))
+        whoever = token.type == "ANY" and following in ("ROBOT", "AGENT")
+        named.append(token.type == "WORD" or (token.type in MAY_BE_NAMES and behind and not begins and not whoever))
     return named
 
 

@@ -19,7 +19,9 @@ from tests.conftest import ROOT
 from tests.survey.maps import drawn, ground_of
 
 CELL = 0.25
-SCENARIOS = sorted((ROOT / "scenarios").glob("*/*.pur"))[::15]
+SOME = sorted((ROOT / "scenarios").glob("*/*.pur"))[::15]
+SCENARIOS = [file for file in SOME if file.read_text(encoding="utf-8").count("\npoi ") > 1]
+"""One place alone cannot be measured."""
 
 
 def with_poses(text: str) -> str:
