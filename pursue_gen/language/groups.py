@@ -12,7 +12,7 @@ from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language.for_each import NAMES, Range, body_of, ranges_of, with_groups
-from pursue_gen.language.kinds import DECLARED, STATEMENTS
+from pursue_gen.language.kinds import DECLARED, MAY_BE_NAMES, STATEMENTS
 from pursue_gen.language.members import ROBOTS, Refused, Tokens, Words, between
 from pursue_gen.language.similar import closest
 from pursue_gen.language.tokens import bare, span_of
@@ -113,6 +113,10 @@ class _Groups:
         if not well_formed(name):
             hint = f"use letters, digits and _, a letter first, for example {fitting(name)}"
             raise Refused(error("PML101", f'"{name}" cannot be the name of a group', self._at(tokens[1]), hint))
+        if name in MAY_BE_NAMES.values() and name != ROBOTS:
+            message = f"{name} is a word of the language and cannot be the name of a group"
+            hint = f"choose another name: else each {name} of a sentence would be taken for the group"
+            raise Refused(error("PML102", message, self._at(tokens[1]), hint))
         if name in self._declared:
             kind, first = self._declared[name]
             message = f"{name} is {_a(kind)} in line {first.line} and a group here: a name stands for one thing"

@@ -251,6 +251,7 @@ def changed(old: str, new: str) -> str:
         (HOTEL + "objective: avoid any of rooms", "PML411", 13, 18, "`any of`"),
         (changed('group "rooms"', 'group "bob"'), "PML104", 5, 7, "bob is an agent in line 11 and a group here"),
         (HOTEL + 'group "rooms": room1', "PML103", 13, 7, "rooms is declared twice; line 5"),
+        (HOTEL + 'group "all": room1\nmission ends when all is answered', "PML102", 13, 7, "all is a word"),
         (changed('group "rooms"', 'group "my rooms"'), "PML101", 5, 7, '"my rooms" cannot be the name of a group'),
         (changed("room2, room3", "room2, rom3"), "PML110", 5, 30, "nothing is called rom3"),
         (changed("for each r in rooms: connect", "for each r of rooms: connect"), "PML010", 6, 12, "expected `in`"),
