@@ -10,7 +10,7 @@ robots that are there. No game is played.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations, product
 from typing import (
     AbstractSet,
@@ -119,9 +119,12 @@ def _closed(network: Network, agent: Automaton, at: str, meetings: Sequence[_Mee
     """What robots cannot do any more while the agent stays there; `comes`: until one of them is too near."""
     found: Dict[Place, Set[Tuple[str, Edge]]] = {}
     soonest: Dict[str, Union[Number, float]] = {}
+    kept_at = {edge.target for edge in agent.edges if edge.source == at and edge.received is not None} - {at}
     for each in meetings:
         robot = network.automaton(each.robot)
-        if each.other == at:
+        if each.other == at and not all(replace(each, other=busy) in meetings for busy in kept_at):
+            edges = []  # not while it takes part in what others do
+        elif each.other == at:
             edges = [edge for edge in robot.edges if each.location in (edge.source, edge.target)]
         else:
             if each.other not in soonest:
@@ -132,13 +135,15 @@ def _closed(network: Network, agent: Automaton, at: str, meetings: Sequence[_Mee
 
 
 def _soonest(agent: Automaton, start: str, goal: str) -> Union[Number, float]:
-    """How long an agent takes at least from one location to another, where nobody can keep it. It has rested, unless
-    it may have asked for something there just before."""
+    """How long an agent takes at least from one location to another, where nobody can keep it, not even by something
+    that both take part in. It has rested, unless it may have asked for something there just before."""
     back: Dict[str, List[Tuple[str, Number]]] = {}
     for edge in filter(is_free, agent.edges):
         back.setdefault(edge.target, []).append((edge.source, edge.guard.since))
     far = distances_to([goal], back)
     own = [edge for edge in agent.edges if edge.source == start]
+    if any(edge.received is not None for edge in own):
+        return math.inf
     asks = any(edge.sent is not None and not edge.sets_off for edge in own)
     led = [edge for edge in own if is_free(edge) and edge.target in far]
     return min((far[edge.target] + (edge.guard.since if asks else 0) for edge in led), default=math.inf)
@@ -146,7 +151,7 @@ def _soonest(agent: Automaton, start: str, goal: str) -> Union[Number, float]:
 
 def _past(robot: Automaton, edge: Edge, location: str) -> Number:
     """How long it may take from this edge on until the robot can leave the location, where the edge begins a movement
-    that leads nowhere else; 0 for any other edge."""
+    or an action that ends nowhere else; 0 for any other edge."""
     ends = [end for end in robot.edges if end.source == edge.target]
     if edge.source == edge.target or edge.target not in robot.stays or any(end.target != location for end in ends):
         return 0

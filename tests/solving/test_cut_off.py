@@ -113,6 +113,15 @@ def test_who_asks_for_something_rests_before_it_comes() -> None:
         assert not (cut and solve(network, objective, DEFAULT.reaction).won)
 
 
+def test_whom_a_robot_can_keep_busy_may_not_come_in_time() -> None:
+    leaves = CLINIC + "assume: bed leaves lift within 20\nassume: bed never at store\nassume: bed never at ward\n"
+    wash = 'event "wash" collaborative together duration 3\n'
+    keeps = leaves.replace('event "ask"', f'{wash}event "ask"').replace("pick, hand", "pick, hand, wash")
+    keeps = keeps.replace("mobile 1 location office", "mobile 1 location office reacts_to wash")
+    assert cut_off_by_a_stay(*game(leaves)) is not None
+    assert cut_off_by_a_stay(*game(keeps)) is None
+
+
 def test_the_message_says_who_stays_where() -> None:
     with pytest.raises(Lost) as problem:
         solve_scenario(parse(CLINIC + "objective: avoid r1 at office\n", "clinic.pur", "clinic"), DEFAULT)
