@@ -48,9 +48,7 @@ def survey(
     speed: List[str] = typer.Option(
         [], metavar="[ROBOT=]M/S", help="The speed of all robots, or of this one: gives it travel times; repeatable."
     ),
-    time_unit: Optional[float] = typer.Option(
-        None, metavar="SECONDS", help="A time unit of the mission (~time_unit): the scenario's, or 1."
-    ),
+    time_unit: Optional[float] = typer.Option(None, metavar="SECONDS", help="A time unit: the scenario's, or 1."),
     turning: float = typer.Option(0.5, metavar="RAD/S", help="How fast robots turn on the spot."),
     acceleration: float = typer.Option(0.5, metavar="M/S^2", help="How fast robots start and stop."),
     start: float = typer.Option(2.0, metavar="SECONDS", help="How long planning may take in a movement."),
