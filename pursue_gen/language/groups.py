@@ -113,7 +113,7 @@ class _Groups:
         if not well_formed(name):
             hint = f"use letters, digits and _, a letter first, for example {fitting(name)}"
             raise Refused(error("PML101", f'"{name}" cannot be the name of a group', self._at(tokens[1]), hint))
-        if name in MAY_BE_NAMES.values() and name != ROBOTS:
+        if name in MAY_BE_NAMES.values() and name not in (ROBOTS, "robot"):  # which are told apart where they stand
             message = f"{name} is a word of the language and cannot be the name of a group"
             hint = f"choose another name: else each {name} of a sentence would be taken for the group"
             raise Refused(error("PML102", message, self._at(tokens[1]), hint))
