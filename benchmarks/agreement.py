@@ -1,9 +1,10 @@
 """Do all who can tell who wins say the same? `python -m benchmarks.agreement --games 10000 --scenarios 3000 --out docs`
 
 So many random games, and games of random scenarios, a kind and a game after the other; what differs is printed at once.
-`--labs` adds small lab scenarios. `--out docs` writes the counts into docs/benchmarks.md. The same numbers give the
-same games and the same outcome on every machine: all limits are on work. What is compared is in opinions.py, what is
-drawn in random_games.py, random_stories.py and lab_scenarios.py.
+`--labs` adds small lab scenarios, `--varied` smaller ones with statements of all kinds. `--out docs` writes the counts
+into docs/benchmarks.md. The same numbers give the same games and the same outcome on every machine: all limits are on
+work. What is compared is in opinions.py, what is drawn in random_games.py, random_stories.py, lab_scenarios.py and
+random_wishes.py.
 """
 
 from __future__ import annotations
@@ -20,11 +21,12 @@ from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Se
 
 from benchmarks.lab_scenarios import Size, lab_scenario
 from benchmarks.measure import Row
-from benchmarks.opinions import Opinions, on_game, on_scenario
+from benchmarks.opinions import Opinions, on_game, on_scenario, on_varied
 from benchmarks.random_games import random_game
 from benchmarks.random_stories import random_story
+from benchmarks.random_wishes import random_wishes
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.language import parse
+from pursue_gen.language.checks import checked
 from pursue_gen.solving.rules import DEFAULT, IDEAL, Rules
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Kind
@@ -35,11 +37,22 @@ LEAST = 3
 GAMES = {"ideal": IDEAL, "default": DEFAULT, "late": Rules(reaction=Fraction(1))}
 """Random games are played as these; in the last one commands take effect up to one time unit late."""
 
-SCENARIO, LAB = "scenario", "lab scenario"
+SCENARIO, LAB, VARIED = "scenario", "lab scenario", "varied scenario"
 """How groups of random scenarios are called; others are called as their kind of objective."""
 
 SMALL_LAB = Size(places=3, robots=2, people=1, promises=2)
 """Of lab scenarios of this size about half are decided in one piece within the limits."""
+
+
+TINY = (
+    Size(places=3, robots=2, people=1, promises=1),
+    Size(places=3, robots=2, people=1, promises=2),
+    Size(places=3, robots=1, people=1, promises=2),
+    Size(places=3, robots=1, people=2, promises=1),
+    Size(places=4, robots=1, people=1, promises=1),
+    Size(places=4, robots=1, people=1, promises=2),
+)
+"""The sizes of varied scenarios, in turn. Of those without errors about six in ten are decided in one piece."""
 
 
 class Job(NamedTuple):
@@ -57,11 +70,11 @@ def opinions_of(job: Job) -> Optional[Opinions]:
         network, objective = random_game(job.number, Kind(job.name))
         return on_game(network, objective, rules, LEAST)
     try:
-        scenario = parse(DRAWN[job.name](job.number), "story.pur", "story")
+        scenario = checked(DRAWN[job.name](job.number), "story.pur", "story")
         network, objective = translate(scenario), scenario_objective(scenario)
     except PursueError:
         return None
-    return on_scenario(network, objective, rules)
+    return (on_varied if job.name == VARIED else on_scenario)(network, objective, rules)
 
 
 def story(number: int) -> str:
@@ -74,7 +87,12 @@ def lab(number: int) -> str:
     return lab_scenario(number, SMALL_LAB)
 
 
-DRAWN: Dict[str, Callable[[int], str]] = {SCENARIO: story, LAB: lab}
+def varied(number: int) -> str:
+    """The text of the varied scenario of this number."""
+    return random_wishes(number, TINY[number % len(TINY)])
+
+
+DRAWN: Dict[str, Callable[[int], str]] = {SCENARIO: story, LAB: lab, VARIED: varied}
 """The text of a random scenario by its number, by how its group is called."""
 
 
@@ -111,12 +129,12 @@ def add(row: Row, number: int, found: Opinions) -> None:
         print(f"{row['name']}, {row['game']}, number {number}: {found.verdicts} {found.faults}", flush=True)
 
 
-def groups(games: int, scenarios: int, labs: int = 0) -> Iterator[Any]:
+def groups(games: int, scenarios: int, labs: int = 0, varied: int = 0) -> Iterator[Any]:
     """(name, game, count) of each group."""
     for kind in Kind:
         for game in GAMES:
             yield kind.value, game, -(-games // (len(Kind) * len(GAMES)))
-    for name, count in ((SCENARIO, scenarios), (LAB, labs)):
+    for name, count in ((SCENARIO, scenarios), (LAB, labs), (VARIED, varied)):
         for game in ("ideal", "default"):
             yield name, game, -(-count // 2)
 
@@ -127,11 +145,12 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     parser.add_argument("--games", type=int, default=900, help="random games (900)")
     parser.add_argument("--scenarios", type=int, default=100, help="games of random scenarios (100)")
     parser.add_argument("--labs", type=int, default=0, help="games of small random lab scenarios (0)")
+    parser.add_argument("--varied", type=int, default=0, help="games of small scenarios with all statements (0)")
     parser.add_argument("--processes", type=int, default=1, help="that work at the same time (1)")
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="write the counts to benchmarks.md there")
     given = parser.parse_args(arguments)
     rows: List[Row] = []
-    for name, game, count in groups(given.games, given.scenarios, given.labs):
+    for name, game, count in groups(given.games, given.scenarios, given.labs, given.varied):
         if count:
             rows.append(compared(name, game, count, given.processes))
             print(json.dumps(rows[-1]), flush=True)

@@ -105,6 +105,11 @@ class Cast:
 
 def lab_scenario(seed: int, size: Size = SMALL) -> str:
     """The PuRSUE-ML of the scenario of this seed."""
+    return lab_scenario_with(seed, size)[1]
+
+
+def lab_scenario_with(seed: int, size: Size) -> Tuple[Cast, str]:
+    """The floor of the scenario of this seed with who is on it, and its PuRSUE-ML."""
     draw = Random(f"lab {seed} {size}")
     cast = _cast(draw, size)
     promises: List[Promise] = []
@@ -115,7 +120,7 @@ def lab_scenario(seed: int, size: Size = SMALL) -> str:
                 break
             promise = _promise(draw, cast, number)
         promises.append(promise)
-    return _text(cast, promises)
+    return cast, _text(cast, promises)
 
 
 def _cast(draw: Random, size: Size) -> Cast:

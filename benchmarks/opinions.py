@@ -6,11 +6,12 @@ Limits count work, states and zones, never seconds, so a game ends the same on e
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Callable, Dict, List, Optional
+from typing import Callable, Dict, List, Optional, Sequence, Union
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.outcomes import LimitHit, Lost
 from pursue_gen.proof.checker import verify
+from pursue_gen.solving.attempts import decided_by_attempts
 from pursue_gen.solving.decomposition import won_by_some
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.options import SolveOptions
@@ -31,6 +32,7 @@ from tests.oracle.zone_graph import max_constants
 
 PLAIN, TWIN, NATIVE, IN_TURN, SOONEST, REGIONS = "plain", "python", "native", "in turn", "soonest", "regions"
 COMMAND, WHOLE, COMPOSED, NO_RESTS, FEW_CALLS = "command", "whole", "composed", "no rests", "few calls"
+ATTEMPTS = "attempts"
 
 MOST = 500
 """Random games have at most so many discrete states."""
@@ -46,6 +48,15 @@ _PROOF, _PROOF_TWIN = 20_000, 1_500
 
 _SCENARIO = Limits(states=60_000, work=40_000_000)
 """How far the game of a scenario is solved in one piece."""
+
+_VARIED = Limits(states=60_000, work=3_000_000)
+"""How far a varied scenario's game is solved in one piece. What takes longer is not compared."""
+
+_VARIED_TWIN = 200
+"""The checker in Python looks at their strategies where the native one took so many symbolic states."""
+
+_ATTEMPTS = Limits(states=60_000, work=20_000_000)
+"""How far attempts go at the game of a varied scenario."""
 
 _TWIN_STATES = 250
 """The engine in Python solves games of scenarios with so many discrete states."""
@@ -98,15 +109,16 @@ class Opinions:
         self.verdicts[who] = verdict
         return verdict
 
-    def check(self, who: str, won: Solution) -> bool:
-        """True; both checkers look at the strategy."""
+    def check(self, who: str, won: Solution, twin: int = _PROOF_TWIN) -> bool:
+        """True; both checkers look at the strategy, the one in Python if the native one took so many symbolic states
+        at most."""
         how = won.network, won.objective, won.strategy, won.reaction, _PROOF
         report = verify(*how)
         if report.reason.startswith("limit"):
             self.unproven += 1
         elif not report.ok:
             self.faults.append(f"{who}: the native checker refuses it: {report.reason}")
-        elif report.states > _PROOF_TWIN:
+        elif report.states > twin:
             self.half_proven += 1
         else:
             self.proven += 1
@@ -202,4 +214,35 @@ def on_scenario(network: Network, objective: Objective, rules: Rules) -> Opinion
     if 0 < found.states <= _TWIN_STATES:
         by_twin = SolveOptions(Limits(work=_WORK), engine=ReferenceEngine())
         found.ask(TWIN, lambda: found.check(TWIN, solution(network, objective, rules, by_twin)))
+    return found
+
+
+def on_varied(network: Network, objective: Objective, rules: Rules) -> Optional[Opinions]:
+    """What the solver says of a small scenario's game in one piece, as the command plays it, and in parts and by
+    policies alone (`decided_by_attempts`, or what wins a goal in stages or by some of the robots); None for a game that
+    takes more in one piece than is looked at here."""
+    found = Opinions()
+    game, reaction = played(network, rules), rules.reaction
+
+    def whole() -> bool:
+        verdict = solve(game, objective, reaction, NativeEngine(), _VARIED, whole=True)
+        found.states = verdict.stats.discrete_states
+        return verdict.won
+
+    def apart() -> Verdict:
+        options = SolveOptions(_ATTEMPTS)
+        if objective.reaches:
+            some: Union[Found, Sequence[Objective], None] = won_by_some(game, objective, reaction, options)
+        else:
+            some = decided_by_attempts(game, objective, reaction, options)
+        if not isinstance(some, Found):
+            return False if some else None
+        found.stages = bool(some.strategy.stages)
+        return found.check(ATTEMPTS, Solution(game, objective, some.strategy, reaction), _VARIED_TWIN)
+
+    if found.ask(WHOLE, whole) is None and not found.faults:
+        return None
+    found.ask(ATTEMPTS, apart)
+    command = SolveOptions(most_work=_SCENARIO.work)
+    found.ask(COMMAND, lambda: found.check(COMMAND, solved(network, objective, rules, command), _VARIED_TWIN))
     return found

@@ -13,13 +13,14 @@ from unittest import mock
 import pytest
 
 from benchmarks import agreement, agreement_page, opinions
-from benchmarks.agreement import LAB, SCENARIO, Job, add, compared, groups, lab, opinions_of, story
+from benchmarks.agreement import LAB, SCENARIO, VARIED, Job, add, compared, groups, lab, opinions_of, story, varied
 from benchmarks.opinions import Opinions
 from benchmarks.random_games import random_game
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.outcomes import LimitHit, Lost, NotProven
 from pursue_gen.proof.checker import ProofReport as Report
 from pursue_gen.solving.rules import IDEAL
+from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tga.network import Kind
 
 pytestmark = pytest.mark.benchmark
@@ -60,6 +61,21 @@ def test_small_lab_scenarios_are_compared_with_the_game_in_one_piece() -> None:
     else:
         raise AssertionError("none of them is decided by both")
     assert found.proven and lab(number) != lab(number + 1)
+
+
+def test_varied_scenarios_are_compared_where_they_are_decided_in_one_piece() -> None:
+    found = [each for each in (opinions_of(Job(VARIED, "default", number)) for number in range(12)) if each]
+    assert found and all(each.agreed and each.verdicts["whole"] is not None for each in found)
+    assert any(each.verdicts["attempts"] for each in found) and any(each.proven for each in found)
+    with mock.patch.object(opinions, "_VARIED", Limits(work=1)):
+        assert opinions_of(Job(VARIED, "default", 0)) is None
+
+
+def test_every_kind_of_statement_is_drawn_in_a_varied_scenario() -> None:
+    drawn = " ".join("".join(varied(number) for number in range(400)).replace(":", " ").split())
+    words = ("holds", "between", "escort", "in order", "optional", "lasts", "capacity", "travel", "rest", "twice")
+    more = ("in all", "leaves", "stays", "by", "reaches", "never at", "stateDependency", "for each", "doing", "on_way")
+    assert not [word for word in (*words, *more) if f" {word} " not in drawn]
 
 
 @pytest.mark.parametrize(
@@ -129,6 +145,7 @@ def test_the_groups_are_as_many_as_wanted() -> None:
     assert sum(count for name, _, count in wanted if name not in (SCENARIO, LAB)) >= 10_000
     assert sum(count for name, _, count in wanted if name == SCENARIO) == 3_000
     assert sum(count for name, _, count in groups(10_000, 3_000, 500) if name == LAB) == 500
+    assert sum(count for name, _, count in groups(0, 0, 0, 700) if name == VARIED) == 700
     assert {game for _, game, _ in wanted} == set(agreement.GAMES) and agreement.GAMES["late"].reaction == Fraction(1)
 
 

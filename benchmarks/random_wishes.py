@@ -1,0 +1,95 @@
+"""Random small floors with a statement or two of every other kind: what must never be, comes again, or is assumed."""
+
+from __future__ import annotations
+
+from random import Random
+from string import Formatter
+from typing import Dict, Sequence, Tuple
+
+from benchmarks.lab_scenarios import Agent, Cast, Size, lab_scenario_with
+
+MOST = 3
+"""So many statements are added at most."""
+
+
+def random_wishes(seed: int, size: Size) -> str:
+    """The PuRSUE-ML of a lab scenario of this size, with one to three statements of the kinds that lab scenarios do
+    not have. Some of them have errors: where nobody calls, what callers do is said of nobody."""
+    cast, text = lab_scenario_with(seed, size)
+    draw = Random(f"wishes {seed} {size}")
+    told = {**_drawn(draw, cast, text), **{f"t{time}": draw.randint(time // 2, time * 2) for time in _TIMES}}
+    forms = [form for form in _FORMS if all(name in told for _, name, _, _ in Formatter().parse(form) if name)]
+    kinds = draw.sample(forms, draw.randint(1, MOST))
+    return text + "".join(f"{form.format(**told)}\n" for form in kinds)
+
+
+_TIMES = (4, 10, 30, 80)
+"""Times are drawn from half of these to twice as much."""
+
+
+def _drawn(draw: Random, cast: Cast, text: str) -> Dict[str, object]:
+    """What stands in forms, by its name there; what there is nothing for is left out."""
+    room, other = draw.sample(cast.floor.rooms, 2)
+    way = draw.choice(cast.floor.ways)
+    robot, person = draw.choice(cast.robots), draw.choice(cast.people)
+    told: Dict[str, object] = {
+        "robot": robot.name,
+        "home": robot.home,
+        "person": person.name,
+        "place": draw.choice(cast.floor.halls + (other,)),
+        "room": room,
+        "other": other,
+        "way": f"{way[0]} to {way[1]}",
+        "who": draw.choice((robot.name, "any robot")),
+    }
+    done = [event for one in cast.robots for event in done_by(one, text)]
+    called = [event for one in cast.people for event in done_by(one, text)]
+    if done:
+        told["done"], told["also"] = draw.choice(done), draw.choice(done)
+    if called:
+        told["called"], told["also_called"] = draw.choice(called), draw.choice(called)
+        told["caller"] = next(one.name for one in cast.people if told["called"] in done_by(one, text))
+    return told
+
+
+def done_by(agent: Agent, text: str) -> Sequence[str]:
+    """The events that an agent can do, by the text of its scenario."""
+    line = next(line for line in text.splitlines() if line.startswith(f'agent "{agent.name}"'))
+    return line.partition(" can_do ")[2].split(", ") if " can_do " in line else ()
+
+
+_FORMS: Tuple[str, ...] = (
+    "objective: place {room} holds 1 robot",
+    "objective: place {place} holds 2 agents",
+    "objective: way {way} holds 1 robot",
+    "objective: at_least {t10} between {done}",
+    "objective: at_least {t4} between {done} and {also}",
+    "objective: escort {person} at {room} within {t30} by {who}",
+    "objective: escort {person} at {room}, {other} within {t30} by any robot",
+    "objective: patrol {room}, {place} in order every {t80} by {robot}",
+    "objective: if {person} on_way then any robot at {place} within {t30}",
+    "objective: if {robot} doing {done} then {who} at {room} within {t30}",
+    "objective: avoid {robot} on_way and {person} on_way",
+    "objective: always {robot} at {home} or not {person} at {room}",
+    "optional 1 objective: avoid any robot at {room} and {person} at {other}",
+    "reach_objective: do {done}",
+    "reach_objective: do {done} within {t80}",
+    "reach_objective: do {done} twice at_least {t10} apart",
+    "battery \"{robot}\" lasts {t80}, charges in {t4} at {home}",
+    "battery \"{robot}\" capacity {t30} uses 1 per unit",
+    "travel {robot} from {room} to {place} takes {t4}",
+    "rest 0.5",
+    'state "open": initially false, true_if {done} false_if {called}\nstateDependency: {also} only_if open is_false',
+    'rule "turns" for each robot: {done} before {also}',
+    "assume: {caller} does {called} at_most 1 times",
+    "assume: {caller} does {called} after {t10}",
+    "assume: {caller} waits {t10} between {called}",
+    "assume: {caller} waits {t10} between {called} and {also_called}",
+    "assume: at_most 2 of {called}, {also_called} in all",
+    "assume: {person} leaves {room} within {t10}",
+    "assume: {person} stays {t4} to {t30} at each place",
+    "assume: {person} at {room} by {t80}",
+    "assume: {person} reaches {room} within {t30} after {done}",
+    "assume: {person} never at {room}",
+    "assume: not ({person} at {room} or {person} at {other})",
+)
