@@ -80,7 +80,8 @@ def reached_part(
 ) -> Strategy:  # fmt: skip
     """The part of a strategy that plays reach, by a report without ranks; the whole of it where the part is not proven.
 
-    The search that follows each play to a goal says too little of what it used where it meets itself again.
+    The part wins, too. But it compares clocks with fewer constants, so the checker extrapolates zones further, which is
+    not exact where differences of clocks are compared: it may refuse the part, and whoever checks the plan would.
     """
     kept = pruned(strategy, report)
     if not objective.reaches or kept is strategy:
