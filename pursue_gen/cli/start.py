@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
 import sys
 
 from pursue_gen.needs import NEEDS
@@ -18,4 +20,7 @@ def main() -> None:
         sys.exit(Unavailable.exit_status)
     from pursue_gen.cli.app import main as run
 
+    # What is imported stays until the end, and then all memory goes: nothing of it has to be searched for garbage.
+    gc.freeze()
+    atexit.register(gc.disable)
     run()

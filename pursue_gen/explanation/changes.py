@@ -17,7 +17,13 @@ from pursue_gen.explanation.repairs import repairs
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.times import Time, like, written_time
 from pursue_gen.outcomes import LimitHit
+from pursue_gen.solving.cut_off import lost_to_a_stay
+from pursue_gen.solving.efforts import EFFORTS
+from pursue_gen.solving.lost_promises import promises
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.policies import won_by_policy
 from pursue_gen.solving.rules import Rules, played
+from pursue_gen.solving.shares import can_be_shared, won_in_shares
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.strategy import Strategy
@@ -26,6 +32,10 @@ from pursue_gen.thresholds import narrowed
 
 _SHARE = 0.5
 """The part of what is left that one attempt may take. Measured on the third ecobot."""
+
+_GUESSED = 0.1
+"""The part of what is left that a strategy in shares, or by a policy, may take where there are several promises.
+Measured on a depot with three carts, and on a ward."""
 
 _PROBES = (11, 19, 31, 63, 127, 255)
 """Where a search for a number that wins looks before the end of a long list: large ones take longer. Not measured."""
@@ -99,7 +109,8 @@ def findings(scenario: Scenario, rules: Rules, budget: Budget) -> Findings:
             won[k] = win
     if any(tried[k].what in _IN_IDEAL for k in won):
         won = {k: win for k, win in won.items() if tried[k].what != "game"}
-    helpful = sorted((k for k in won if tried[k].helps), key=lambda k: (-tried[k].helps, k))
+    helps = (k for k in won if tried[k].helps and not won[k].strategy.in_parts)
+    helpful = sorted(helps, key=lambda k: (-tried[k].helps, k))
     changes = [_change(tried[k], win) for k, win in sorted(won.items())]
     return Findings(
         tuple(sorted(changes, key=_price)),
@@ -179,5 +190,17 @@ def _price(change: Change) -> Tuple[int, Fraction]:
 
 def _strategy(scenario: Scenario, rules: Rules, budget: Budget) -> Optional[Strategy]:
     """A strategy that wins the changed game, None where it is lost. Raises LimitHit."""
-    network = played(translate(scenario), rules)
-    return verdict_of(budget, network, scenario_objective(scenario), rules.reaction, _SHARE).strategy
+    network, objective = played(translate(scenario), rules), scenario_objective(scenario)
+    if lost_to_a_stay(network, objective) is not None:
+        return None
+    if not objective.reaches and len(promises(objective)) > 1:
+        limits = budget.part(_GUESSED)
+        how = network, objective, rules.reaction
+        if can_be_shared(network, objective):
+            found = won_in_shares(*how, SolveOptions(limits), EFFORTS[:2])
+        else:
+            found = won_by_policy(*how, limits.work, SolveOptions(limits))
+        budget.spend(limits.work if found is None else min(limits.work, found.stats.work))
+        if found is not None:
+            return found.strategy
+    return verdict_of(budget, network, objective, rules.reaction, _SHARE).strategy

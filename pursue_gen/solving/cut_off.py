@@ -29,8 +29,10 @@ from typing import (
 )
 
 from pursue_gen.language.numbers import Number
+from pursue_gen.solving import due_moves
 from pursue_gen.solving.contradictions import excluded_by_a_stay
 from pursue_gen.solving.distances import distances_to
+from pursue_gen.solving.due_moves import patrols
 from pursue_gen.solving.duties import Duties, Duty, is_free
 from pursue_gen.solving.stays import LostToAStay, is_reached, standings
 from pursue_gen.solving.subgoals import commanded_agents
@@ -56,10 +58,11 @@ def cut_off_by_a_stay(network: Network, objective: Objective) -> Optional[LostTo
     are found."""
     robots = commanded_agents(network)
     all_duties = Duties(network, () if objective.reaches else objective.bad, robots)
+    visited = () if objective.reaches else due_moves.duties(network, objective, patrols(network))
     meetings: Dict[str, Sequence[_Meeting]] = {}
     for comes, (standing, arrival) in product((False, True), list(standings(network)) if robots else ()):
         duties = [duty for duty in all_duties.at(standing) if duty.ends]
-        for name, at in standing.items() if duties else ():
+        for name, at in standing.items() if duties or visited else ():
             agent = network.automaton(name)
             if (arrival is None) != (at == agent.initial):
                 continue
@@ -67,8 +70,9 @@ def cut_off_by_a_stay(network: Network, objective: Objective) -> Optional[LostTo
                 meetings[name] = tuple(_meetings(network, objective, agent, robots))
             closed = _closed(network, agent, at, meetings[name], comes)
             some = _unanswered(network, duties, robots, closed) if closed else ()
-            if some:
-                promises = {*_needed(network, some, robots, closed), *(duty.promise for duty in some)}
+            promises = {*_needed(network, some, robots, closed), *(duty.promise for duty in some)} if some else set()
+            promises = promises or next(_unvisited(network, objective, visited, closed), set())
+            if promises:
                 bad = tuple(place for place in objective.bad if place in promises)
                 return LostToAStay(Objective(Kind.SAFETY, bad=bad), name, at, comes)
     return None
@@ -130,8 +134,27 @@ def _closed(network: Network, agent: Automaton, at: str, meetings: Sequence[_Mee
             if each.other not in soonest:
                 soonest[each.other] = _soonest(agent, at, each.other) if comes else math.inf
             edges = [edge for edge in robot.edges if soonest[each.other] < _past(robot, edge, each.location)]
+            if edges and _keeps_out(agent, at, each, robot):
+                edges = [edge for edge in robot.edges if each.location in (edge.source, edge.target)]
         found.setdefault(each.promise, set()).update((each.robot, edge) for edge in edges)
     return {promise: edges for promise, edges in found.items() if edges}
+
+
+def _keeps_out(agent: Automaton, at: str, each: _Meeting, robot: Automaton) -> bool:
+    """True if the robot is not where it must not meet the agent once that has been there, and has come from there:
+    it would be back before a robot is gone that sets off for it meanwhile. (Where a robot sets off at its arrival,
+    before it has rested, it stays.)"""
+    times = [_past(robot, edge, each.location) for edge in robot.edges]
+    past = min((time for time in times if time), default=0)
+    there = 0 if each.other == agent.initial else _soonest(agent, agent.initial, each.other)
+    back = _soonest(agent, each.other, at) + _rest(agent, at) + _soonest(agent, at, each.other)
+    stays = agent.longest.get(each.other, math.inf)
+    return there < math.inf and back < past and _rest(agent, each.other) + past <= stays
+
+
+def _rest(agent: Automaton, place: str) -> Number:
+    """How long an agent rests at a place at most before it may do anything there."""
+    return max((edge.guard.since for edge in agent.edges if edge.source == place), default=0)
 
 
 def _soonest(agent: Automaton, start: str, goal: str) -> Union[Number, float]:
@@ -171,6 +194,22 @@ def _unanswered(
                     return some
         return duties
     return ()
+
+
+def _unvisited(
+    network: Network, objective: Objective, visited: Sequence[due_moves.Duty], closed: _Closed
+) -> Iterator[Set[Place]]:
+    """Patrols of places where none of their robots can be any more, each with what keeps these away."""
+    for patrol in visited:
+        edges = {
+            (name, edge)
+            for name, places in patrol.visits.items()
+            for edge in network.automaton(name).edges
+            if not {edge.source, edge.target}.isdisjoint(places)
+        }
+        if edges and all(any(each in some for some in closed.values()) for each in edges):
+            needed = {promise for promise, some in closed.items() if not edges.isdisjoint(some)}
+            yield needed | {place for place in objective.bad if place[0] == patrol.name}
 
 
 def _needed(network: Network, duties: Sequence[Duty], robots: Sequence[str], closed: _Closed) -> List[Place]:

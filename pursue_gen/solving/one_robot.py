@@ -49,7 +49,8 @@ def lost_for_one(
     limits = replace(options.limits, work=in_all, states=in_all // _STATE)
     budget = Budget(limits, options.progress, options.engine)
     for robot, alone in _alone(network, objective):
-        owned = [place for place in objective.bad if _able(alone, objective, place) == (robot,)]
+        own = (place for place in objective.bad if not _others_answer(network, place, robot))
+        owned = [place for place in own if _able(alone, objective, place) == (robot,)]
         for size in dict.fromkeys((2, len(owned))) if owned else ():
             for some in combinations(owned, size):
                 wanted = Objective(Kind.SAFETY, bad=some)
@@ -107,6 +108,14 @@ def _is_lost(game: Network, wanted: Objective, reaction: Fraction, budget: Budge
         return not budget.verdict(game, wanted, reaction, min(1.0, most / max(1.0, budget.work)), first=0).won
     except LimitHit:
         return False
+
+
+def _others_answer(network: Network, place: Place, robot: str) -> bool:
+    """True if the automaton that watches a promise hears another robot, too: then that one can do something about it.
+    To find out by `_able` takes long."""
+    robots = {*commanded_agents(network)} - {robot}
+    heard = {edge.received for edge in network.automaton(place[0]).edges}
+    return any(sender in robots for channel in heard if channel for sender, _ in network.senders.get(channel, ()))
 
 
 def _able(network: Network, objective: Objective, place: Place) -> Tuple[str, ...]:

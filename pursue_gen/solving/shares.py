@@ -61,10 +61,11 @@ _Game = Tuple[Network, Tuple[Place, ...], Tuple[Watcher, ...], bool]
 
 
 class Known:
-    """Strategies of games, games that are known to be lost, whatever the effort, with how much work policies were tried
-    in vain, and what all of it took."""
+    """Who can do something about a promise, strategies of games, games that are known to be lost, whatever the effort,
+    with how much work policies were tried in vain, and what all of it took."""
 
     def __init__(self) -> None:
+        self.able: Dict[Place, Tuple[str, ...]] = {}
         self.won: Dict[_Game, Strategy] = {}
         self.lost: Set[_Game] = set()
         self.guessed: Dict[Tuple[Network, Tuple[Place, ...], bool], float] = {}
@@ -131,7 +132,10 @@ class _SharesSearch:
 
     def found(self) -> Optional[Strategy]:
         """The first strategy that is found; raises LimitHit where the budget is used up."""
-        able = {place: self._able(place) for place in self._objective.bad}
+        able = self._known.able
+        for place in self._objective.bad:
+            if place not in able:
+                able[place] = self._able(place)
         if self._effort.few:
             return self._by_few(able)
         order = sorted(self._objective.bad, key=lambda place: len(able[place]))
@@ -162,7 +166,7 @@ class _SharesSearch:
         return tuple(name for name in self._robots if name in names)
 
     def _ways(
-        self, promises: Sequence[Place], able: Dict[Place, Tuple[str, ...]], groups: Tuple[Group, ...], turns: int
+        self, promises: Sequence[Place], able: Mapping[Place, Tuple[str, ...]], groups: Tuple[Group, ...], turns: int
     ) -> Iterator[Tuple[Group, ...]]:
         """The ways to share out these promises among groups that have some already; each group wins its game alone.
 

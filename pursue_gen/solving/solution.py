@@ -271,7 +271,7 @@ def _cannot_be_met(
         message += f"; no robot can do anything about it, as it depends on {' and '.join(alone)} alone"
         hint = "let something that a robot does matter to the objective, or make one of these agents controllable"
         return error(_CANNOT_BE_MET, message, hint=hint)
-    stay = lost_to_a_stay(network, objective)
+    stay = lost_to_a_stay(played(network, rules), objective)
     if stay is not None:
         return error(_CANNOT_BE_MET, message, hint=_without_the_stay(stay))
     if rules != IDEAL and not options.most_work and _won_ideally(network, objective, options):

@@ -14,7 +14,7 @@ agents that are left out stay where they are, and those that are not make no det
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import Dict, FrozenSet, Set, Tuple
+from typing import AbstractSet, Dict, FrozenSet, Set, Tuple
 
 from pursue_gen.synthesis.detours import Detour, detours
 from pursue_gen.synthesis.time_passes import lets_time_pass
@@ -53,6 +53,7 @@ class _Cone:
         self._clocks: Set[str] = set()
         self._objective = objective
         self._detours: Dict[str, Tuple[Detour, ...]] = {}
+        self._tests: Dict[str, AbstractSet[Tuple[str, FrozenSet[int]]]] = {}
 
     def grow(self) -> bool:
         """Take in what the part depends on by one step more; False if that is nothing."""
@@ -80,10 +81,11 @@ class _Cone:
         """By automaton the edges of the detours of which nothing that matters takes notice."""
         kept = [automaton for automaton in self._network.automata if automaton.name in self.automata]
         tests: Dict[str, Set[FrozenSet[int]]] = defaultdict(set)
-        for edge in (edge for automaton in kept for edge in automaton.edges):
-            for clause in edge.guard.integers:
-                for name in {test.variable for test in clause}:
-                    tests[name].add(frozenset(test.value for test in clause if test.variable == name))
+        for automaton in kept:
+            if automaton.name not in self._tests:
+                self._tests[automaton.name] = _tests_of(automaton)
+            for name, values in self._tests[automaton.name]:
+                tests[name].add(values)
         gone: Dict[str, FrozenSet[Edge]] = defaultdict(frozenset)
         for automaton in kept:
             if automaton.name not in self._detours:
@@ -121,3 +123,13 @@ class _Cone:
             return True
         # One who receives may make the move the environment's.
         return edge.sent in received or (edge.received in sent and not edge.controllable)
+
+
+def _tests_of(automaton: Automaton) -> AbstractSet[Tuple[str, FrozenSet[int]]]:
+    """The variables that edges of the automaton test, with the values for each of which a test holds."""
+    return {
+        (name, frozenset(test.value for test in clause if test.variable == name))
+        for edge in automaton.edges
+        for clause in edge.guard.integers
+        for name in {test.variable for test in clause}
+    }

@@ -56,13 +56,16 @@ def detours(automaton: Automaton, network: Network, objective: Objective) -> Ite
     for here, ways in tuple(out.items()):
         if here in automaton.stays or (automaton.name, here) in named or not all(edge.is_command for edge in ways):
             continue
+        hindered: Dict[FrozenSet[str], bool] = {}
         for there in dict.fromkeys(edge.target for edge in ways):
             begins = tuple(edge for edge in ways if edge.target == there)
             ends = () if there == here else tuple(out[there])
-            resets = {clock for edge in (*begins, *ends) for clock in edge.resets}
+            resets = frozenset(clock for edge in (*begins, *ends) for clock in edge.resets)
             if not resets <= clocks or any(edge.sent in network.taken_over for edge in begins):
                 continue
-            if any(_is_hindered(edge, resets) for edge in ways):
+            if resets not in hindered:
+                hindered[resets] = any(_is_hindered(edge, resets) for edge in ways)
+            if hindered[resets]:
                 continue
             if there != here and (
                 (automaton.name, there) in named

@@ -474,3 +474,24 @@ def test_what_one_of_several_robots_cannot_keep_is_shown_with_that_robot() -> No
     assert {line.who for line in explanation.play} & {"bot1", "bot2", "bot3"} == {"bot3"}
     assert explanation.preventing == ("person1",)
     assert any(change.what == "assumption" and change.name == "person1" for change in explanation.changes)
+
+DEPOT = """poi "sorter" poi "gate1" poi "gate2" poi "gate3" poi "park"
+connect sorter and gate1 distance 4 connect sorter and gate2 distance 5 connect sorter and gate3 distance 6
+connect sorter and park distance 2 connect gate1 and gate2 distance 2 connect gate2 and gate3 distance 2
+event "truck" location gate3 event "load" location sorter duration 3
+event "drop1" location gate1 duration 2 event "drop2" location gate2 duration 2 event "drop3" location gate3 duration 2
+rule "parcel" for each robot: load before (drop1 or drop2 or drop3)
+agent "c1" controllable mobile 1 location park can_do load, drop1, drop3
+agent "c2" controllable mobile 1 location park can_do load, drop2, drop3
+agent "c3" controllable mobile 1 location park can_do load, drop1, drop3
+agent "driver" location gate3 can_do truck
+agent "officer" mobile 2 location sorter
+objective: if truck then drop3 within 70
+objective: avoid any robot at gate3 and officer at gate3
+"""
+
+
+def test_what_would_keep_somebody_away_is_found_though_the_game_is_large() -> None:
+    found = explain(parse(DEPOT, "depot.pur", "depot"), DEFAULT, Limits(work=6_000_000))
+    assert "assume: officer never at gate3" in [change.sentence for change in found.changes]
+    assert [text for text in found.lost if "a deadline of" in text], "he may stay there for ever"

@@ -32,6 +32,13 @@ def test_each_form_is_read() -> None:
     assert check(scenario(PLAYROOM.format(f"{TWICE}\n{SPACED}"))) == ()
 
 
+def test_each_time_of_a_stay_has_the_unit_that_it_is_written_with() -> None:
+    text = "unit second\n" + ROOMS.format("assume: anna stays {} to 5 min at each place")
+    for least, shown in (("30", "30 s"), ("0.5 min", "0.5 min")):
+        (stays,) = parse(text.format(least), "rooms.pur", "rooms").assumptions
+        assert stays.clause == f"anna stays {shown} to 5 min at each place"
+
+
 def test_its_words_may_be_names_everywhere_else() -> None:
     text = (
         'poi "at" poi "never" poi "place" connect at and never distance 1 connect at and place distance 1 '

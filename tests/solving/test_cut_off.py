@@ -128,6 +128,72 @@ def test_the_message_says_who_stays_where() -> None:
     assert "bed may stay at lift for ever" in problem.value.diagnostics[0].hint
 
 
+WATCH = """
+poi "dock"
+poi "aisle"
+poi "rack"
+connect dock and aisle distance 5
+connect aisle and rack distance 5
+agent "ada" controllable mobile 2 location dock
+agent "bob" controllable mobile 2 location dock
+agent "tech" mobile {pace} location dock
+objective: patrol rack every 90 by any robot
+objective: avoid any robot at rack and tech at rack
+assume: tech leaves rack within {stay}
+"""
+"""Whoever stands at the rack has to leave it when the technician comes."""
+
+
+@pytest.mark.parametrize(
+    ("pace", "stay", "cut"),
+    [
+        (1, 40, True),
+        (1, 4, False),  # a robot may set off before he has to leave
+        (2, 40, False),  # and is gone before he is back
+    ],
+)
+def test_who_has_driven_robots_out_may_keep_them_from_a_place_that_is_patrolled(
+    pace: int, stay: int, cut: bool
+) -> None:
+    network, objective = game(WATCH.format(pace=pace, stay=stay))
+    found = cut_off_by_a_stay(network, objective)
+    assert found == (LostToAStay(objective, "tech", "aisle", comes=True) if cut else None)
+    assert not (cut and solve(network, objective, DEFAULT.reaction).won)
+    if cut:
+        with pytest.raises(Lost) as problem:
+            solve_scenario(parse(WATCH.format(pace=pace, stay=stay), "watch.pur", "watch"), DEFAULT)
+        assert "tech may wait at aisle for ever" in problem.value.diagnostics[0].hint
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    st.lists(st.integers(1, 4), min_size=2, max_size=3),
+    st.tuples(st.integers(1, 2), st.integers(1, 3), st.integers(4, 30), st.integers(20, 90)),
+    st.tuples(st.sampled_from(["a", "b", "c"]), st.sampled_from(["a", "b", "c"]), st.sampled_from(["a", "b", "c"])),
+    st.sampled_from(("r", "any robot")),
+    st.sampled_from((DEFAULT, IDEAL)),
+)
+def test_a_patrol_that_is_cut_off_is_lost_in_the_exact_game(
+    ways: Sequence[int], times: Tuple[int, int, int, int], places: Tuple[str, str, str], who: str, rules: Rules
+) -> None:
+    pace, slow, stay, every = times
+    start, at, met = places
+    ends = [("a", "b"), ("b", "c"), ("a", "c")]
+    roads = "".join(f"connect {a} and {b} distance {far}\n" for (a, b), far in zip(ends, ways))
+    network, objective = game(
+        f'poi "a" poi "b" poi "c"\n{roads}agent "r" controllable mobile {pace} location {start}\n'
+        f'agent "v" mobile {slow} location {at}\nobjective: avoid {who} at {met} and v at {met}\n'
+        f"objective: patrol {met} every {every} by {who}\nassume: v leaves {met} within {stay}\n",
+        rules,
+    )
+    cut = cut_off_by_a_stay(network, objective) is not None
+    event("cut off" if cut else "not cut off")
+    try:
+        assert not (cut and solve(network, objective, rules.reaction, NATIVE, Limits(work=20_000_000)).won)
+    except LimitHit:
+        return
+
+
 PLACES = ("store", "lift", "ward", "office")
 
 

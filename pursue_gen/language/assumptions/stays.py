@@ -13,7 +13,7 @@ from pursue_gen.language.numbers import Number, whole_below
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
-from pursue_gen.language.times import like, time_units, window_text, written_time
+from pursue_gen.language.times import Time, like, time_units, window_text, written_time
 from pursue_gen.language.word import Form, Numbers, Word
 
 
@@ -42,7 +42,8 @@ class Stays(Departure):
 
     @property
     def clause(self) -> str:
-        return f"{self.agent.shown} stays {written_time(self.least)} to {units(self.most)} at each place"
+        least = units(self.least) if isinstance(self.least, Time) else self.least
+        return f"{self.agent.shown} stays {least} to {units(self.most)} at each place"
 
     @property
     def window(self) -> Tuple[Number, Number]:

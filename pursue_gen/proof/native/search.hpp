@@ -227,12 +227,17 @@ class Search {
 
     // The zone together with those of the known ones with which it makes one zone.
     void join_neighbours(Z& zone, const std::vector<int>& known, const std::deque<Found>& found) const {
+        Apart last, other;  // what kept two zones apart: often the same, as in `absorb`
         for (bool grown = true; grown;) {
             grown = false;
             for (int k : known) {
-                const Z& other = found[k].entry.zone;
-                if (includes(zone, other) || !joins(zone, other)) continue;
-                zone = hull(zone, other);
+                const Z& met = found[k].entry.zone;
+                if (apart(zone, met, last) || apart(zone, met, other) || includes(zone, met)) continue;
+                if (const std::optional<Apart> by = what_parts(zone, met)) {
+                    other = std::exchange(last, *by);
+                    continue;
+                }
+                zone = hull(zone, met);
                 grown = true;
             }
         }
