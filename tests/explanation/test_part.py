@@ -197,7 +197,8 @@ def test_a_large_scenario_is_not_searched_for_long_and_what_says_most_is_tried_f
     explanation = explain(scenario, RULES, parts=[("obj", "obj2")])
     assert max(reached) <= 50_000
     assert explanation.conflict is not None and len(explanation.conflict.objectives) == 2
-    assert [change.sentence for change in explanation.changes] == ["assume: person1 never at room2"]
-    assert "a later deadline" in explanation.undecided and not explanation.play
+    assert "assume: person1 never at room2" in [change.sentence for change in explanation.changes]
+    assert any("a deadline of" in text for text in explanation.lost), "she stays in the other room"
+    assert explanation.preventing == ("person1",) and explanation.undecided
     text = render(explanation)
-    assert text.index("both together cannot") < text.index("assume: person1") < text.index("a play that shows it")
+    assert text.index("both together cannot") < text.index("person1 prevents it") < text.index("assume: person1")
