@@ -67,6 +67,7 @@ def _repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
     for battery in scenario.batteries:
         yield from battery_changes(scenario, battery)
     yield from _of_orders(scenario)
+    yield from _of_knowledge(scenario)
     yield from assumption_changes(scenario, 2 * _all_time(scenario))
     for agent in scenario.agents:
         if not agent.controllable and (agent.can_do or agent.mobile is not None):
@@ -231,6 +232,17 @@ def _of_orders(scenario: Scenario) -> Iterator[Repair]:
     spans = [span for _, span in scenario.conditions()]
     for (what, text, left_out), span in zip(without_conditions(scenario), spans):
         yield _switch("condition", what, f"{what} without only_if {text}", text, left_out(scenario), span, 1)
+
+
+def _of_knowledge(scenario: Scenario) -> Iterator[Repair]:
+    """What is not known at first known from the start: as if a robot saw it there."""
+    robots = [agent for agent in scenario.agents if agent.is_robot]
+    for state in (each for each in scenario.states if each.is_found_out):
+        for robot in robots[:1]:
+            known = scenario.with_instead(state, replace(state, seen_at=robot.location))
+            label = f"{state.name} known at the start, whatever it is (seen_at {robot.location.name})"
+            if known != scenario:
+                yield _switch("knowledge", state.name, label, "unknown", known, state.span)
 
 
 def _switch(what: str, name: str, label: str, before: str, changed: Scenario, span: Span, helps: int = 0) -> Repair:

@@ -52,6 +52,12 @@ class Role(enum.Enum):
     STATES = "states", "the automaton of all states"
     STATE = "{}", "the state {}"
     VALUE = "S{}", "the value of the state {}"
+    FACT = "{}", "whether the state {} is known"
+    FACT_CLOCK = locations.automaton_clock("{}"), "the clock of the state {}"
+    FOUND = "{}_is_{}", "that the state {} is found to be {}"
+    UNKNOWN = "unknown", "a state is not known"
+    FINDING = locations.FINDING_OUT, "a state is being found out"
+    KNOWN = "known", "a state is known"
 
     SAFETY = "obj{}", "a part of an objective"
     SAFETY_CLOCK = "Cobj{}", "a part of an objective"
@@ -93,8 +99,9 @@ class Role(enum.Enum):
     BRINGUP = "{}_bringup", "the package that starts the mission"
 
 
-UNDER_WAY = (Role.WAY, Role.WORK)
-"""The locations that are left by the end of a movement or an action: it takes time to come."""
+UNDER_WAY = (Role.WAY, Role.WORK, Role.FINDING)
+"""The locations that are left by the end of a movement or an action, or once it is known what is being found out: it
+takes time to come."""
 
 
 class Symbol(str):

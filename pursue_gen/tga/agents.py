@@ -46,10 +46,10 @@ class Surroundings:
             if channel in turns
         )
 
-    def dependencies(self, event: str) -> Tuple[Clause, ...]:
-        """Every state that the event depends on has the value it needs."""
+    def dependencies(self, event: str, agent: str) -> Tuple[Clause, ...]:
+        """Every state that the event depends on has the value it needs, for this agent."""
         return tuple(
-            (Test(names.state_value(dependency.state.name), int(dependency.value)),)
+            self.conditions.having(dependency.state.name, dependency.value, agent)
             for dependency in self.scenario.dependencies
             if dependency.event.name == event
         )
@@ -221,7 +221,7 @@ class _Shape:
         if condition is None:
             return None
         company = around.company(event, self.agent.name, company_at)
-        return company + around.turn(event.name) + around.dependencies(event.name) + condition
+        return company + around.turn(event.name) + around.dependencies(event.name, self.agent.name) + condition
 
     def _edge(
         self,

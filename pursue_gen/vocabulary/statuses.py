@@ -43,7 +43,9 @@ def courses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
     variables = {name for name, _ in network.variables}
     for state in scenario.states:
         if names.state_value(state.name) in variables:
-            found.append(Status(names.state_value(state.name), state.name, {"0": "false", "1": "true"}))
+            unknown = {str(names.UNKNOWN_VALUE): "unknown"} if state.is_found_out else {}
+            values = {"0": "false", "1": "true", **unknown}
+            found.append(Status(names.state_value(state.name), state.name, values))
     for battery in scenario.batteries:
         texts = {str(level): f"{level} of {battery.capacity}" for level in levels(scenario, battery)}
         found.append(Status(names.level(battery.agent.name), f"battery of {battery.agent.shown}", texts))

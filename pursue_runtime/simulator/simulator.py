@@ -10,10 +10,10 @@ from __future__ import annotations
 import math
 import random
 from dataclasses import dataclass
-from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Tuple
+from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Sequence, Tuple
 
 from pursue_runtime.event_words import Word, format_word
-from pursue_runtime.locations import action, is_end, is_movement, is_under_way
+from pursue_runtime.locations import FINDING_OUT, action, is_end, is_movement, is_under_way
 from pursue_runtime.model import Automaton, Edge, Model
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.state import LIVE, SystemState, older, rewinds
@@ -74,9 +74,15 @@ def end_window(model: Model, automaton: Automaton, location: str) -> Optional[En
             return _shared_window(model, edge)
         lows = {bound.right: -bound.bound for bound in edge.when if bound.right and not bound.left}
         for bound in automaton.invariants[location]:
-            if bound.left in lows:
-                return EndWindow(edge.word, bound.left, lows[bound.left], bound.bound)
+            if bound.left in lows or location == FINDING_OUT:
+                return EndWindow(edge.word, bound.left, lows.get(bound.left, 0.0), bound.bound)
     return None
+
+
+def end_words(automaton: Automaton, location: str) -> List[str]:
+    """Return the words with one of which the agent ends what it does at this location, if it ends that itself."""
+    own = (edge for edge in automaton.edges_from(location) if edge.sync != "receive")
+    return list(dict.fromkeys(edge.word for edge in own if is_end(edge.source, edge.target)))
 
 
 def _shared_window(model: Model, ending: Edge) -> Optional[EndWindow]:
@@ -117,6 +123,14 @@ class Durations(Protocol):
     def draw(self, window: EndWindow, agent: str, number: int) -> float:
         """Return time units from the start of the agent's `number`-th activity to its end, which is in the window."""
 
+    def pick(self, words: Sequence[str], agent: str, number: int) -> str:
+        """Return with which of these words it ends."""
+
+
+def picked(words: Sequence[str], seed: str) -> str:
+    """Return one of these words, the same for the same seed."""
+    return words[0] if len(words) == 1 else random.Random(f"{seed}/word").choice(words)
+
 
 class Delays:
     """Where in its window each end falls: `early`, `middle`, `late`, or at random, the same for the same seed."""
@@ -135,6 +149,10 @@ class Delays:
         width = min(1.0, window.high - window.low)
         first, last = window.low + INSIDE[0] * width, window.high - INSIDE[1] * width
         return first + share * (last - first)
+
+    def pick(self, words: Sequence[str], agent: str, number: int) -> str:
+        """With which of these words it ends."""
+        return picked(words, f"{self._seed}/{agent}/{number}")
 
 
 class Simulator:
@@ -233,8 +251,9 @@ class Simulator:
         if known is not None and known.location == location and abs(known.since - since) < same:
             return
         number = self._counts[name] = self._counts.get(name, 0) + 1
+        event = self._delays.pick(end_words(automaton, location) or [window.event], name, number)
         activity = Activity(
-            location, since, report_of(self._model, name, window.event, state.seq), window.low * state.unit,
+            location, since, report_of(self._model, name, event, state.seq), window.low * state.unit,
             since + self._delays.draw(window, name, number) * state.unit,
             under_way=automaton.kind != "robot" or newborn,
         )

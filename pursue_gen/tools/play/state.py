@@ -12,6 +12,7 @@ from typing import Iterator, Optional, Tuple
 
 from pursue_gen.explanation.policy import Window, longest, window
 from pursue_gen.explanation.position import Position
+from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.compile_game import compile_game
@@ -47,6 +48,12 @@ class Setup:
     def agents(self) -> Tuple[str, ...]:
         """All agents, in order of declaration."""
         return tuple(agent.name for agent in self.scenario.agents)
+
+    @property
+    def movers(self) -> Tuple[str, ...]:
+        """The automata whose moves people see: agents, and states of which it is found out what they are."""
+        facts = (names.finding(state.name) for state in self.scenario.states if state.is_found_out)
+        return (*self.agents, *facts)
 
     @property
     def safety(self) -> bool:
