@@ -11,6 +11,8 @@ from typing import Iterable
 
 _MOVEMENT, _ACTION = "going_", "doing_"
 
+_STOP = "STOP"
+
 FINDING_OUT = _ACTION + "finding_out"
 """The location of a state that has been shown, until it is known what it is."""
 
@@ -43,6 +45,11 @@ def is_under_way(location: str) -> bool:
 def is_end(source: str, target: str) -> bool:
     """Return True where the edge from source to target ends a movement or an action, or finds something out."""
     return source != target and is_under_way(source)
+
+
+def breaks_off(source: str, word: str) -> bool:
+    """Return True for the word with which an action at this location is broken off: that of its event, and STOP."""
+    return word.endswith(_STOP) and is_action(source) and source.startswith(action(word[: -len(_STOP)], ""))
 
 
 def action_of(location: str) -> str:

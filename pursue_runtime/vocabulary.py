@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import NamedTuple, Optional, Tuple
 
 from pursue_runtime.event_words import START
-from pursue_runtime.locations import FINDING_OUT, is_action, is_end, is_movement, is_under_way
+from pursue_runtime.locations import FINDING_OUT, action_of, is_action, is_end, is_movement, is_under_way
 from pursue_runtime.model import Automaton, Edge, Model
 from pursue_runtime.sentences import Names
 from pursue_runtime.simulator.simulator import ACTING
@@ -28,6 +28,7 @@ SETS_OFF = Deed("sets off from {} to {}", "go to {1}")
 ARRIVES = Deed("arrives at {}", "arrive at {}")
 DOES = Deed("does {}", "do {}")
 FOUND = Deed("is found to be {}", "be found to be {}")
+BREAKS_OFF = Deed("breaks off {}", "break off {}")
 BEGINS, FINISHES = Deed("begins {}", "begin {}"), Deed("finishes {}", "finish {}")  # what takes time
 
 AT, ON_WAY, AT_WORK = "at {}", "on its way from {} to {}", "doing {} at {}"
@@ -41,7 +42,9 @@ def deed(model: Names, automaton: Automaton, edge: Edge) -> Deed:
     source, target, word = (model.shown(name) for name in (edge.source, edge.target, edge.word))
     if edge.source == edge.target:  # also on its way
         return DOES.of(word)
-    if is_end(edge.source, edge.target):
+    if edge.breaks_off:
+        return BREAKS_OFF.of(model.shown(action_of(edge.source)))
+    if edge.is_end:
         begin = begin_of(automaton, edge.source)
         arrives = is_movement(edge.source)
         return ARRIVES.of(target) if arrives else FINISHES.of(word if begin is None else model.shown(begin.word))
@@ -107,7 +110,7 @@ def instruction(model: Names, automaton: Automaton, edge: Edge) -> str:
 
 def awaited(model: Model, automaton: Automaton, location: str) -> str:
     """What ends what an agent does there, as in `arrive at b`; "" where it does nothing."""
-    end = next((edge for edge in automaton.edges_from(location) if is_end(edge.source, edge.target)), None)
+    end = next((edge for edge in automaton.edges_from(location) if edge.is_end), None)
     if end is not None and location == FINDING_OUT:
         return "be found out"
     return "" if end is None else deed(model, automaton, end).do

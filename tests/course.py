@@ -35,6 +35,8 @@ from pursue_gen.tools.simulation.meaning import holds
 from pursue_runtime.locations import is_movement
 from tests.rounds import Rest, after, events_in, whole
 
+NEVER = -1e9
+
 
 @dataclass
 class Stay:
@@ -81,7 +83,8 @@ class Course:
     states: Dict[str, Optional[bool]] = field(default_factory=dict)
     shown: Dict[str, float] = field(default_factory=dict)
     """The states that are being found out, and since when."""
-    rests: Dict[Tuple[str, str], Rest] = field(default_factory=dict)
+    rounds: Dict[Tuple[str, str], List[str]] = field(default_factory=dict)
+    """What has happened in the present round of each rule, but for what was broken off."""
     begun: Dict[str, int] = field(default_factory=dict)
     done: Dict[Tuple[str, str], List[Tuple[float, float]]] = field(default_factory=dict)
     """(agent, event) → beginnings and ends"""
@@ -267,7 +270,11 @@ class Course:
 
     def _rest(self, key: Tuple[str, str]) -> Rest:
         rule = next(rule for rule in self.scenario.rules if rule.name == key[0])
-        return self.rests.get(key) or whole(rule.body, self.events)
+        rest: Optional[Rest] = whole(rule.body, self.events)
+        for symbol in self.rounds.get(key, ()):
+            rest = after(rest or "", symbol)
+        assert rest is not None, key
+        return rest
 
     # What happens ---------------------------------------------------------------------------------------------------
 
@@ -293,6 +300,8 @@ class Course:
         stay = self.stays[agent]
         if stay.to and target == stay.to:
             self.arrive(agent)
+        elif stay.event and word == f"{stay.event}STOP":
+            self.stop(agent)
         elif stay.event:
             self.end(agent)
         elif is_movement(target) and not stay.to:
@@ -337,7 +346,7 @@ class Course:
         for each in self.scenario.assumptions:
             if isinstance(each, Waits) and (each.agent.name, (each.then or each.event).name) == (agent, name):
                 ends = [end for _, end in self.done.get((agent, each.event.name), ())]
-                assert not ends or self.now - ends[-1] >= each.time - 1e-9, "it is assumed to wait longer"
+                assert self.now - max(ends, default=NEVER) >= each.time - 1e-9, "it is assumed to wait longer"
             if isinstance(each, NotBefore) and (each.agent.name, each.event.name) == (agent, name):
                 assert self.now > each.time - 1e-9, "it is assumed to begin later"
         for pause in (each for each in self.scenario.safety if isinstance(each, Pause)):
@@ -360,7 +369,7 @@ class Course:
 
     def _ended(self, event: str) -> float:
         """When the event has ended last."""
-        found = [-1e9]
+        found = [NEVER]
         for (who, what), some in self.done.items():
             goes_on = self.stays[who].event == event and self.stays[who].doer
             found += [end for _, end in some[: len(some) - goes_on] if what == event]
@@ -386,11 +395,25 @@ class Course:
                 came = other.came if who == agent else self.now
                 self.stays[who] = Stay(other.place, self.now, rested=self.now, came=came)
 
+    def may_stop(self, agent: str, name: str) -> bool:
+        """Whether it is busy with the event and may break it off."""
+        return self.stays[agent].event == name and self.stays[agent].doer and self.events[name].may_stop
+
+    def stop(self, agent: str) -> None:
+        """It breaks off what it is busy with: that has begun, and not happened."""
+        stay = self.stays[agent]
+        assert self.events[stay.event].may_stop and self.now - stay.since > float(self.scenario.rest) - 1e-9
+        beginning, _ = self.done[agent, stay.event][-1]
+        self.done[agent, stay.event][-1] = (beginning, NEVER)
+        for key in self._bound(agent, stay.event):
+            self.rounds[key].remove(stay.event)  # a rule names it once
+        self.stays[agent] = Stay(stay.place, self.now, rested=self.now, came=stay.came)
+
     def _advance(self, agent: str, event: str, symbol: str) -> None:
         for key in self._bound(agent, event):
             rest = after(self._rest(key), symbol)
             assert rest is not None, (key, symbol)
-            self.rests[key] = rest
+            self.rounds[key] = [*self.rounds.get(key, ()), symbol] if rest else []
 
     def _set_states(self, event: str) -> None:
         for state in self.scenario.states:

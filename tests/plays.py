@@ -44,6 +44,8 @@ class Play:
             for ref in agent.can_do:
                 possible = self.model.joint_move(self.position, ref.name, agent.name, timed=False) is not None
                 assert possible == self.course.may_begin(agent.name, ref.name), (agent.name, ref.name, self.lines)
+                off = self.model.joint_move(self.position, f"{ref.name}STOP", agent.name, timed=False) is not None
+                assert off == self.course.may_stop(agent.name, ref.name), (agent.name, ref.name, self.lines)
             for a in self.scenario.pois:
                 for b in self.scenario.pois:
                     word = f"{agent.name}_{a.name}2{b.name}"

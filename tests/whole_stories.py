@@ -83,12 +83,12 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     ]
     limit = f" at_most {draw(st.integers(1, 3))} times"
     lines += [
-        f'event "load" location {place()} duration {window()}{maybe(limit)}{only_if()}',
+        f'event "load" location {place()} duration {window()}{maybe(" may_stop", 1)}{maybe(limit)}{only_if()}',
         f'event "drop"{maybe(f" location {place()}", 1)}{maybe(limit)}{only_if()}',
         f'event "ride" collaborative{maybe(" together", 0 if draw(st.booleans()) else 9)} location {place()}'
         f" duration {window()}{only_if()}",
         f'event "wave" collaborative{only_if()}',
-        f'event "sing" duration {window()}{only_if()}',
+        f'event "sing" duration {window()}{maybe(" may_stop", 1)}{only_if()}',
         f'event "call"{maybe(limit, 2)}{only_if()}',
     ]
     shuffled = draw(st.permutations([*EVENTS, "call"]))

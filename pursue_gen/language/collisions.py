@@ -39,6 +39,7 @@ def _in_network(scenario: Scenario) -> Iterator[_Stated]:
     yield from ((poi.span, [names.at(poi.name)]) for poi in scenario.pois)
     for event in scenario.events:
         yield event.span, [names.event(event.name), names.done(event.name)]
+        yield event.span, [names.broken_off(event.name)] if event.may_stop else []
         yield event.span, [names.busy(event.name)] if event.is_shared else []
         yield event.span, [names.count(event.name), names.times(event.name)] if event.at_most is not None else []
     for rule in scenario.rules:

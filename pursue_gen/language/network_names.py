@@ -35,9 +35,9 @@ movement, arrival = Role.SETTING_OFF, Role.ARRIVAL
 """The channels on which an agent sets off from one POI to another, and arrives there, where somebody listens to that;
 else that edge has none. It is the word that the edge has in any case."""
 
-event, done, busy = Role.EVENT, Role.END, Role.BUSY
-"""The channels on which an event happens or begins, and on which one with a duration ends; the variable that is 1 while
-one goes on that several agents can do, and that its partners share."""
+event, done, broken_off, busy = Role.EVENT, Role.END, Role.BROKEN_OFF, Role.BUSY
+"""The channels on which an event happens or begins, on which one with a duration ends, or is broken off; the variable
+that is 1 while one goes on that several agents can do, and that its partners share."""
 
 count, times = Role.COUNT, Role.TIMES
 """The automaton that counts how often an event has begun that can happen so many times only, and its variable."""

@@ -42,6 +42,7 @@ class Role(enum.Enum):
 
     EVENT = "{}", "the event {}"
     END = "{}DONE", "the end of {}"
+    BROKEN_OFF = "{}STOP", "that {} is broken off"
     BUSY = "B{}", "that {} goes on"
     COUNT = "{}_count", "the count of {}"
     TIMES = "P{}_count", "how often {} has happened"
@@ -151,7 +152,7 @@ def numbered(role: Role, number: int) -> Symbol:
 
 
 _FURTHER = "([2-9]|[1-9][0-9]+)?"
-_READ = {role: "(.+)" for role in Role if "{" not in role.form or role in (*UNDER_WAY, Role.END)}
+_READ = {role: "(.+)" for role in Role if "{" not in role.form or role in (*UNDER_WAY, Role.END, Role.BROKEN_OFF)}
 _READ.update(dict.fromkeys((Role.DONE_TIMES, Role.APART), "([1-9][0-9]*)"))
 _READ.update({Role.DID: "([1-9][0-9_]*)", Role.SAFETY: _FURTHER, Role.REACH: _FURTHER, Role.ASSUMPTION: "([0-9]+)"})
 _READ[Role.AWAITED] = _READ[Role.ASSUMPTION]

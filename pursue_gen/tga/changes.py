@@ -75,7 +75,7 @@ def happening(channel: str, scenario: Scenario, domains: Domains) -> Change:
         for work in domains.of(agent.name):
             if work.is_work and channel == work.what:
                 becomes[agent.name, Value("at", work.where)] = work
-            elif work.is_work and channel == names.done(work.what):
+            elif work.is_work and channel in (names.done(work.what), names.broken_off(work.what)):
                 becomes[agent.name, work] = Value("at", work.where)
     return Change(becomes)
 

@@ -93,7 +93,9 @@ def _moves(what: Union[Ref, Condition], scenario: Scenario, domains: Domains) ->
             for value in (True, False) if state.is_found_out else ():
                 found[names.found(state.name, value)] = found_out(state.name, value)
         else:
-            for channel in (names.event(atom.event.name), names.done(atom.event.name)):
+            name = atom.event.name
+            stops = (names.broken_off(name),) if events[name].may_stop else ()
+            for channel in (names.event(name), names.done(name), *stops):
                 found[channel] = happening(channel, scenario, domains)
     return found
 

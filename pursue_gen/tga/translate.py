@@ -22,7 +22,7 @@ from pursue_gen.tga.objectives import reach_automaton, safety_automaton, unlocki
 from pursue_gen.tga.own_turns import bound, own_turns
 from pursue_gen.tga.patrols import arrivals, awaited, turns
 from pursue_gen.tga.positions import positions
-from pursue_gen.tga.rules import rule_automaton
+from pursue_gen.tga.rules import rule_of
 from pursue_gen.tga.states import finding_automata, first_value, found_channels, states_automaton
 
 
@@ -33,8 +33,7 @@ def translate(scenario: Scenario) -> Network:
     PursueError where two names of the scenario lead to one name of the network.
     """
     codes = positions(scenario.pois, scenario.connections)
-    lasting = frozenset(event.name for event in scenario.events if event.duration is not None)
-    rules = [rule_automaton(rule, lasting) for rule in scenario.rules if not rule.each]
+    rules = [rule_of(rule, scenario.events) for rule in scenario.rules if not rule.each]
     own = tuple(own_turns(scenario))
     rules += [count_automaton(event, most) for event, most in counted(scenario)]
     in_turn = tuple((names.rule_turn(automaton.name), turn) for automaton, turn in rules)
@@ -105,6 +104,7 @@ def _channels(scenario: Scenario) -> Tuple[str, ...]:
     ]
     for event in scenario.events:
         channels += [names.event(event.name), *([names.done(event.name)] if event.duration is not None else [])]
+        channels += [names.broken_off(event.name)] if event.may_stop else []
     unlocks = (sync.channel for sync in unlocking(scenario) if sync is not None and sync.sends)
     return (*channels, *arrivals(scenario), *found_channels(scenario), *unlocks)
 

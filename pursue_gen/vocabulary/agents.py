@@ -8,11 +8,23 @@ from typing import Optional
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import UNDER_WAY, Role, Symbol
 from pursue_gen.tga.network import Edge
-from pursue_runtime.vocabulary import ARRIVES, AT, AT_WORK, BEGINS, DOES, FINISHES, FOUND, ON_WAY, SETS_OFF, Deed
+from pursue_runtime.vocabulary import (
+    ARRIVES,
+    AT,
+    AT_WORK,
+    BEGINS,
+    BREAKS_OFF,
+    DOES,
+    FINISHES,
+    FOUND,
+    ON_WAY,
+    SETS_OFF,
+    Deed,
+)
 
 _DEEDS = {
     Role.SETTING_OFF: SETS_OFF, Role.ARRIVAL: ARRIVES, Role.WAY: ARRIVES,
-    Role.EVENT: DOES, Role.WORK: BEGINS, Role.END: FINISHES,
+    Role.EVENT: DOES, Role.WORK: BEGINS, Role.END: FINISHES, Role.BROKEN_OFF: BREAKS_OFF,
 }  # fmt: skip
 """What an agent does, by the role of its channel; of the location that it leaves or enters where that says more."""
 

@@ -56,9 +56,10 @@ def _turn(scenario: Scenario, automaton: Automaton, location: str) -> str:
     """What a rule waits for in a location, as in `next: load or wait`; or what goes on."""
     leaving = (edge.sync.channel for edge in automaton.edges if edge.source == location and edge.sync)
     channels = [Symbol.of(channel) for channel in dict.fromkeys(leaving)]
-    if channels and all(channel.role is Role.END for channel in channels):
-        return " and ".join(f"{scenario.shown(channel.parts[0])} goes on" for channel in channels)
-    shown = ("the end of " * (each.role is Role.END) + scenario.shown(each.parts[0]) for each in channels)
+    ends = [channel for channel in channels if channel.role is not Role.BROKEN_OFF]
+    if ends and all(channel.role is Role.END for channel in ends):
+        return " and ".join(f"{scenario.shown(channel.parts[0])} goes on" for channel in ends)
+    shown = ("the end of " * (each.role is Role.END) + scenario.shown(each.parts[0]) for each in ends)
     return "next: " + " or ".join(shown)
 
 

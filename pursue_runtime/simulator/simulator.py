@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Sequence, Tuple
 
 from pursue_runtime.event_words import Word, format_word
-from pursue_runtime.locations import FINDING_OUT, action, is_end, is_movement, is_under_way
+from pursue_runtime.locations import FINDING_OUT, action, is_movement, is_under_way
 from pursue_runtime.model import Automaton, Edge, Model
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.state import LIVE, SystemState, older, rewinds
@@ -68,7 +68,7 @@ def end_window(model: Model, automaton: Automaton, location: str) -> Optional[En
     Whoever takes part in what another agent does has the same window, by its own clock.
     """
     for edge in automaton.edges_from(location):
-        if not is_end(edge.source, edge.target):
+        if not edge.is_end:
             continue
         if edge.sync == "receive":
             return _shared_window(model, edge)
@@ -82,7 +82,7 @@ def end_window(model: Model, automaton: Automaton, location: str) -> Optional[En
 def end_words(automaton: Automaton, location: str) -> List[str]:
     """Return the words with one of which the agent ends what it does at this location, if it ends that itself."""
     own = (edge for edge in automaton.edges_from(location) if edge.sync != "receive")
-    return list(dict.fromkeys(edge.word for edge in own if is_end(edge.source, edge.target)))
+    return list(dict.fromkeys(edge.word for edge in own if edge.is_end))
 
 
 def _shared_window(model: Model, ending: Edge) -> Optional[EndWindow]:
@@ -109,7 +109,7 @@ def report_of(model: Model, agent: str, event: str, as_of: Optional[int] = None)
 def reports(automaton: Automaton, edge: Edge) -> bool:
     """Return True if the agent reports this edge: an event of its own or, as a robot, the end of what it does together
     with others."""
-    return edge.sync != "receive" or (automaton.kind == "robot" and is_end(edge.source, edge.target))
+    return edge.sync != "receive" or (automaton.kind == "robot" and edge.is_end)
 
 
 def _begins(order: str, location: str) -> bool:
@@ -241,7 +241,7 @@ class Simulator:
         name = automaton.name
         location = state.locations.get(name, "")
         window = end_window(self._model, automaton, location)
-        reported = any(is_end(e.source, e.target) and reports(automaton, e) for e in automaton.edges_from(location))
+        reported = any(e.is_end and reports(automaton, e) for e in automaton.edges_from(location))
         if window is None or not reported or window.clock not in state.clocks:
             self._activities.pop(name, None)
             return

@@ -19,7 +19,7 @@ from pursue_runtime.event_words import (
     one_line,
     parse_word,
 )
-from pursue_runtime.locations import FINDING_OUT, is_end, is_movement
+from pursue_runtime.locations import FINDING_OUT, is_movement
 from pursue_runtime.model import Model
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.sentences import Told, in_words
@@ -66,7 +66,7 @@ def possible_words(model: Model, state: SystemState, clocks: Dict[str, float], k
     for automaton in model.of_kind(*kinds):
         location = state.locations.get(automaton.name, "")
         for edge in automaton.edges_from(location):
-            hidden = is_end(location, edge.target) and location != FINDING_OUT and not ends
+            hidden = edge.is_end and location != FINDING_OUT and not ends
             if edge.sync == "receive" or hidden:
                 continue
             zone = edge.when + automaton.invariants[location]
@@ -104,7 +104,7 @@ def tasks(model: Model, state: SystemState, agents: Collection[str]) -> List[Tas
             found.append(Task(automaton.name, automaton.kind, text, "Resume", resume, shown))
             continue
         begin = next((edge for edge in automaton.edges if edge.target == location != edge.source), None)
-        ends = (edge for edge in automaton.edges_from(location) if is_end(edge.source, edge.target))
+        ends = (edge for edge in automaton.edges_from(location) if edge.is_end)
         end = next((edge for edge in ends if reports(automaton, edge)), None)
         if begin is not None and end is not None:
             is_person = automaton.kind == "human"
@@ -314,7 +314,7 @@ class MissionView:
             return ""
         for edge in automaton.edges:
             if edge.word == state.event and edge.target == here:
-                over, text = is_end(edge.source, edge.target), instruction(self._model, automaton, edge)
+                over, text = edge.is_end, instruction(self._model, automaton, edge)
                 return "" if over else f"{self._model.shown(person)}: {text} now"
         return ""
 

@@ -269,7 +269,7 @@ class Page:
         """One for each thing that the agent may begin, possible now or not, with the locations where it may."""
         found: Dict[str, Dict[str, Any]] = {}
         for edge in automaton.edges:
-            if edge.sync != "receive" and (not is_end(edge.source, edge.target) or edge.source == FINDING_OUT):
+            if edge.sync != "receive" and (not edge.is_end or edge.source == FINDING_OUT):
                 word = report_word(self._model, automaton.name, edge.word)
                 label = self._label(automaton.name, word)
                 button = found.setdefault(word, {"agent": automaton.name, "word": word, "label": label, "from": []})

@@ -193,7 +193,7 @@ def test_no_nonsense_follows_from_a_syntax_error() -> None:
 
 def test_an_expected_list_reads_like_a_sentence() -> None:
     (finding,) = syntax_errors('event "e" e')
-    expected = "expected `label`, `collaborative`, `location`, `duration`, `at_most`, `only_if` or the end"
+    expected = "expected `label`, `collaborative`, `location`, `duration`, `may_stop`, `at_most`, `only_if` or the end"
     assert expected in finding.message
 
 

@@ -108,9 +108,9 @@ def test_a_robots_pose_begins_with_that_of_the_place() -> None:
     ("line", "words"),
     [
         ("connect a |", ["and"]),
-        ('event "new" |', ["label", "collaborative", "location", "duration", "at_most", "only_if"]),
-        ('event "new" collaborative loc|', ["together", "location", "duration", "at_most", "only_if"]),
-        ('event "new" collaborative together |', ["location", "duration", "at_most", "only_if"]),
+        ('event "new" |', ["label", "collaborative", "location", "duration", "may_stop", "at_most", "only_if"]),
+        ('event "new" collaborative loc|', ["together", "location", "duration", "may_stop", "at_most", "only_if"]),
+        ('event "new" collaborative together |', ["location", "duration", "may_stop", "at_most", "only_if"]),
         ('agent "new" |', ["label", "location", "human", "controllable", "mobile", *SIZE]),
         ('agent "new" label "a" |', ["location", "human", "controllable", "mobile", *SIZE]),
         ('agent "new" label |', []),
