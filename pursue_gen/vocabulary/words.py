@@ -111,7 +111,8 @@ def words_of(scenario: Scenario, network: Network) -> Words:
     clocks = {clock: clocks.get(clock, "the start") for clock in network.clocks}
     texts = {each.of: each.texts for each in statuses(scenario, network)}
     for state in (each for each in scenario.states if each.is_found_out):
-        texts[names.finding(state.name)] = {names.FINDING: "being found out"}
+        said = ((names.UNKNOWN, "unknown"), (names.FINDING, "being found out"), (names.KNOWN, "known"))
+        texts[names.finding(state.name)] = {str(here): text for here, text in said}
     for watcher in (Symbol.of(automaton.name) for automaton in network.automata):
         if watcher.role is Role.WATCHER:
             texts[watcher] = texts[watcher.parts[0]]

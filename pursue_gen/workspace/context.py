@@ -105,6 +105,7 @@ def common(
         "agents": agents,
         "robots": [agent.name for agent in scenario.agents if agent.is_robot],
         "free_agents": [agent.name for agent in scenario.agents if not agent.controllable],
+        "facts": facts,
         "controllers": [sub.controller for sub in controllers],
         "reported": [agent.name for agent in scenario.agents if agent.name not in decided] + facts,
         "reaches": objective.reaches,

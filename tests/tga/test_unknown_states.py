@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from pathlib import Path
 from typing import Set, Tuple
 
 import pytest
@@ -10,23 +11,27 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.language import parse
+from pursue_gen.explanation.changes import findings
+from pursue_gen.language import load, parse
 from pursue_gen.language.conditions import Condition, condition_text
 from pursue_gen.language.scenario import Respond, Scenario
 from pursue_gen.proof.moves import Arena
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import read_network, write_network
 from pursue_gen.tools.simulation.meaning import holds
+from pursue_gen.vocabulary.words import words_of
 from tests.conditions import CONDITIONS, SCENARIO, with_only_if
 from tests.plays import model_of
 from tests.tga.networks import scenario
 from tests.tga.test_conditions import states_of
 from tests.whole_stories import stories
 
+ROOT = Path(__file__).resolve().parents[2]
 KNOWN = "initially true, true_if open false_if close, paint"
 UNKNOWN = (
     "initially unknown, true_if open false_if close, paint shown_by clean",
@@ -166,6 +171,23 @@ def test_it_is_decided_when_it_is_found_out() -> None:
     heard = [(edge.source, edge.received, edge.target) for edge in fact.edges if edge.received]
     shown = ("unknown", "lookDONE", "doing_finding_out")
     assert heard == [shown, ("unknown", "refill", "known"), ("doing_finding_out", "refill", "known")]
+
+
+def test_it_is_said_in_words() -> None:
+    story = scenario(SHELF + "reach_objective: do report")
+    network = translate(story)
+    words, (true, _) = words_of(story, network), [e for e in network.automaton("empty").edges if e.sent]
+    said = [words.place("empty", here) for here in ("unknown", "doing_finding_out", "known")]
+    assert said == ["unknown", "being found out", "known"]
+    assert words.sentence("empty", true) == "empty is found to be true"
+    assert words.texts["Sempty"] == {"0": "false", "1": "true", "2": "unknown"}
+
+
+def test_a_lost_one_says_what_knowing_it_would_change() -> None:
+    search = load(ROOT / "scenarios" / "warehouse" / "hasty_search.pur")
+    changes = findings(search, Rules(), Budget(Limits(states=20_000))).changes
+    known = [each.sentence for each in changes if each.what == "knowledge"]
+    assert known == ["onA known at the start, whatever it is (seen_at desk)"]
 
 
 def test_a_strategy_has_an_answer_for_both_and_none_without_looking() -> None:
