@@ -32,6 +32,8 @@ from pursue_gen.language.scenario import (
     Pause,
     Poi,
     Reach,
+    Ref,
+    Respond,
     Scenario,
     StatedObjective,
 )
@@ -68,6 +70,7 @@ def _repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
         yield from battery_changes(scenario, battery)
     yield from _of_orders(scenario)
     yield from _of_knowledge(scenario)
+    yield from _of_breaking_off(scenario)
     yield from assumption_changes(scenario, 2 * _all_time(scenario))
     for agent in scenario.agents:
         if not agent.controllable and (agent.can_do or agent.mobile is not None):
@@ -196,6 +199,19 @@ def _of_duration(scenario: Scenario, event: Event) -> Iterator[Repair]:
     doers = scenario.doers(event.name)
     if doers and not any(agent.controllable for agent in doers):
         yield lasting("longer", whole_above(duration, max(duration * 2, 2 * _all_time(scenario))))
+
+
+def _of_breaking_off(scenario: Scenario) -> Iterator[Repair]:
+    """What may be broken off, of what takes longer than something else may wait for its answer."""
+    due = [(each, each.deadline) for each in scenario.safety if isinstance(each, Respond)]
+    for event in scenario.events:
+        doers = scenario.doers(event.name)
+        long = [each for each, deadline in due if event.window is not None and event.window[1] > deadline]
+        others = any(not isinstance(each.response, Ref) or each.response.name != event.name for each in long)
+        if others and not (event.may_stop or event.collaborative) and any(agent.controllable for agent in doers):
+            label = f"{event.shown} that may be broken off (may_stop)"
+            freer = scenario.with_instead(event, replace(event, may_stop=True))
+            yield _switch("may_stop", event.name, label, "", freer, event.span)
 
 
 def _may_be_endless(scenario: Scenario, event: Event) -> bool:

@@ -8,10 +8,13 @@ import pytest
 from hypothesis import assume, given, settings
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.explanation.changes import findings
 from pursue_gen.language import check, parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import DEFAULT, REPORTED, Rules, played
 from pursue_gen.solving.solution import Solution, solve_scenario
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.limits import Limits
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.uppaal import read_network, write_network
 from pursue_gen.tools.simulation.mission import SimulatedMission
@@ -62,6 +65,12 @@ def test_who_may_break_off_wins_what_is_won_without(drawn: Tuple[str, Scenario])
     assume(" may_stop" in text)
     if won(parse(text.replace(" may_stop", ""), "story.pur", "story")):
         assert won(story), text
+
+
+def test_a_lost_one_says_that_it_would_do() -> None:
+    lost = scenario(GARDEN.replace(" may_stop", ""))
+    changes = findings(lost, Rules(), Budget(Limits(states=20_000))).changes
+    assert "prune that may be broken off (may_stop)" in [change.sentence for change in changes]
 
 
 def test_what_is_broken_off_has_not_happened() -> None:
