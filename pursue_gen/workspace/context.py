@@ -93,7 +93,6 @@ def common(
     """The values that every template of a workspace has (but for `package` and `summary`)."""
     agents = [{"name": agent.name, "kind": kind_of(agent)} for agent in scenario.agents]
     first_moves = [command.moves[0] for sub in controllers for _, block in sub.blocks for command in block]
-    facts = [state.name for state in scenario.states if state.is_found_out]
     decided = {move.automaton for move in first_moves if move.edge.is_end}
     return {
         "scenario": scenario.name,
@@ -105,9 +104,9 @@ def common(
         "agents": agents,
         "robots": [agent.name for agent in scenario.agents if agent.is_robot],
         "free_agents": [agent.name for agent in scenario.agents if not agent.controllable],
-        "facts": facts,
+        "facts": list(scenario.facts),
         "controllers": [sub.controller for sub in controllers],
-        "reported": [agent.name for agent in scenario.agents if agent.name not in decided] + facts,
+        "reported": [agent.name for agent in scenario.agents if agent.name not in decided] + [*scenario.facts],
         "reaches": objective.reaches,
         "bringup": bringup_of(scenario),
         "time_unit": float(options.time_unit or scenario.unit or 1),

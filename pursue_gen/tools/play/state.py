@@ -12,7 +12,6 @@ from typing import Iterator, Optional, Tuple
 
 from pursue_gen.explanation.policy import Window, longest, window
 from pursue_gen.explanation.position import Position
-from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.compile_game import compile_game
@@ -52,8 +51,7 @@ class Setup:
     @property
     def movers(self) -> Tuple[str, ...]:
         """The automata whose moves people see: agents, and states of which it is found out what they are."""
-        facts = (names.finding(state.name) for state in self.scenario.states if state.is_found_out)
-        return (*self.agents, *facts)
+        return (*self.agents, *self.scenario.facts)
 
     @property
     def safety(self) -> bool:
