@@ -1,4 +1,5 @@
-"""Names of locations: a POI, a movement (`going_<a>_to_<b>`), an action with a duration (`doing_<event>_in_<poi>`).
+"""Names of locations: a POI, a movement (`going_<a>_to_<b>`), an action with a duration (`doing_<event>_in_<poi>`); and
+of what is being found out.
 
 The only place for these two prefixes, and for those of the variable of an agent's position and of its clock; the
 generator has them from here.
@@ -9,6 +10,11 @@ from __future__ import annotations
 from typing import Iterable
 
 _MOVEMENT, _ACTION = "going_", "doing_"
+
+_STOP = "STOP"
+
+FINDING_OUT = _ACTION + "finding_out"
+"""The location of a state that has been shown, until it is known what it is."""
 
 
 def movement(origin: str, destination: str) -> str:
@@ -28,17 +34,22 @@ def is_movement(location: str) -> bool:
 
 def is_action(location: str) -> bool:
     """Return True for the location of an agent in an action with a duration."""
-    return location.startswith(_ACTION)
+    return location.startswith(_ACTION) and location != FINDING_OUT
 
 
 def is_under_way(location: str) -> bool:
-    """Return True for the location of a movement or an action."""
-    return is_movement(location) or is_action(location)
+    """Return True for the location of a movement or an action, and for what is being found out."""
+    return is_movement(location) or is_action(location) or location == FINDING_OUT
 
 
 def is_end(source: str, target: str) -> bool:
-    """Return True where the edge from source to target ends a movement or an action."""
+    """Return True where the edge from source to target ends a movement or an action, or finds something out."""
     return source != target and is_under_way(source)
+
+
+def breaks_off(source: str, word: str) -> bool:
+    """Return True for the word with which an action at this location is broken off: that of its event, and STOP."""
+    return word.endswith(_STOP) and is_action(source) and source.startswith(action(word[: -len(_STOP)], ""))
 
 
 def action_of(location: str) -> str:

@@ -7,6 +7,7 @@ from typing import Any, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Op
 
 from pursue_runtime.bounded import whole
 from pursue_runtime.data import reading
+from pursue_runtime.locations import breaks_off, is_end
 from pursue_runtime.zones import EPSILON, Zone, holds, parse_zone
 
 
@@ -22,6 +23,16 @@ class Edge(NamedTuple):
     assign: Dict[str, int]
     resets: Tuple[str, ...]
     controllable: bool
+
+    @property
+    def breaks_off(self) -> bool:
+        """True where it breaks off an action."""
+        return breaks_off(self.source, self.word)
+
+    @property
+    def is_end(self) -> bool:
+        """True where it ends a movement or an action, or finds something out; not where it breaks one off."""
+        return is_end(self.source, self.target) and not self.breaks_off
 
     def allowed(self, values: Mapping[str, int]) -> bool:
         """True where the variables let it be taken."""

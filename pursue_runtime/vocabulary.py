@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import NamedTuple, Optional, Tuple
 
 from pursue_runtime.event_words import START
-from pursue_runtime.locations import is_action, is_end, is_movement, is_under_way
+from pursue_runtime.locations import FINDING_OUT, action_of, is_action, is_end, is_movement, is_under_way
 from pursue_runtime.model import Automaton, Edge, Model
 from pursue_runtime.sentences import Names
 from pursue_runtime.simulator.simulator import ACTING
@@ -27,6 +27,8 @@ class Deed(NamedTuple):
 SETS_OFF = Deed("sets off from {} to {}", "go to {1}")
 ARRIVES = Deed("arrives at {}", "arrive at {}")
 DOES = Deed("does {}", "do {}")
+FOUND = Deed("is found to be {}", "be found to be {}")
+BREAKS_OFF = Deed("breaks off {}", "break off {}")
 BEGINS, FINISHES = Deed("begins {}", "begin {}"), Deed("finishes {}", "finish {}")  # what takes time
 
 AT, ON_WAY, AT_WORK = "at {}", "on its way from {} to {}", "doing {} at {}"
@@ -35,16 +37,30 @@ AT, ON_WAY, AT_WORK = "at {}", "on its way from {} to {}", "doing {} at {}"
 
 def deed(model: Names, automaton: Automaton, edge: Edge) -> Deed:
     """An edge of an agent in words."""
+    if edge.source == FINDING_OUT:
+        return FOUND.of(value_found(edge))
     source, target, word = (model.shown(name) for name in (edge.source, edge.target, edge.word))
     if edge.source == edge.target:  # also on its way
         return DOES.of(word)
-    if is_end(edge.source, edge.target):
+    if edge.breaks_off:
+        return BREAKS_OFF.of(model.shown(action_of(edge.source)))
+    if edge.is_end:
         begin = begin_of(automaton, edge.source)
         arrives = is_movement(edge.source)
         return ARRIVES.of(target) if arrives else FINISHES.of(word if begin is None else model.shown(begin.word))
     if is_movement(edge.target):
         return SETS_OFF.of(source, model.shown(destination(automaton, edge.target)))
     return (BEGINS if is_action(edge.target) else DOES).of(word)
+
+
+def value_found(edge: Edge) -> str:
+    """What a state is found to be by this edge: `true` or `false`."""
+    return "true" if any(edge.assign.values()) else "false"
+
+
+def is_fact(automaton: Automaton) -> bool:
+    """Return True for the automaton of a state that is not known at first."""
+    return FINDING_OUT in automaton.invariants
 
 
 def sentence(model: Model, state: SystemState, last: Optional[SystemState]) -> str:
@@ -77,6 +93,8 @@ def where(model: Names, automaton: Automaton, location: str) -> str:
 
 def _placed(model: Names, automaton: Automaton, location: str, words: Tuple[str, str, str]) -> str:
     """Where an agent is, in the words for who stands, moves, or acts."""
+    if is_fact(automaton):
+        return "being found out" if location == FINDING_OUT else location
     begin, (stands, moves, acts) = begin_of(automaton, location), words
     if begin is None:
         return stands.format(model.shown(location))
@@ -92,7 +110,9 @@ def instruction(model: Names, automaton: Automaton, edge: Edge) -> str:
 
 def awaited(model: Model, automaton: Automaton, location: str) -> str:
     """What ends what an agent does there, as in `arrive at b`; "" where it does nothing."""
-    end = next((edge for edge in automaton.edges_from(location) if is_end(edge.source, edge.target)), None)
+    end = next((edge for edge in automaton.edges_from(location) if edge.is_end), None)
+    if end is not None and location == FINDING_OUT:
+        return "be found out"
     return "" if end is None else deed(model, automaton, end).do
 
 

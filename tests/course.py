@@ -1,7 +1,7 @@
 """What the statements of a scenario permit, said without its network: for comparison with what the network permits.
 
-Kept here are where agents are, what they are busy with, states, the rest of each rule's round, counts, and levels of
-batteries. Rules are expressions of which each symbol takes away the first part (a derivative), not automata.
+Kept here are where agents are, what they are busy with, states (None: nobody knows), the rest of each rule's round,
+counts, and levels of batteries.
 """
 
 from __future__ import annotations
@@ -16,8 +16,6 @@ from pursue_gen.language.scenario import (
     Agent,
     Assumption,
     AtMost,
-    Both,
-    Choice,
     Connection,
     Event,
     InAll,
@@ -28,19 +26,16 @@ from pursue_gen.language.scenario import (
     Pause,
     Poi,
     Reaches,
-    Ref,
-    RuleBody,
     Scenario,
-    Sequence,
     Stays,
     ThereBy,
     Waits,
 )
 from pursue_gen.tools.simulation.meaning import holds
 from pursue_runtime.locations import is_movement
+from tests.rounds import Rest, after, events_in, whole
 
-Rest = Union[str, Tuple[str, "Rest", "Rest"]]
-"""The rest of a round: a symbol, or ("then" | "or" | "and", first, second); "" when it is over."""
+NEVER = -1e9
 
 
 @dataclass
@@ -85,19 +80,23 @@ class Course:
     scenario: Scenario
     now: float = 0.0
     stays: Dict[str, Stay] = field(default_factory=dict)
-    states: Dict[str, bool] = field(default_factory=dict)
-    rests: Dict[Tuple[str, str], Rest] = field(default_factory=dict)
+    states: Dict[str, Optional[bool]] = field(default_factory=dict)
+    shown: Dict[str, float] = field(default_factory=dict)
+    """The states that are being found out, and since when."""
+    rounds: Dict[Tuple[str, str], List[str]] = field(default_factory=dict)
+    """What has happened in the present round of each rule, but for what was broken off."""
     begun: Dict[str, int] = field(default_factory=dict)
     done: Dict[Tuple[str, str], List[Tuple[float, float]]] = field(default_factory=dict)
     """(agent, event) → beginnings and ends"""
     awaited: Dict[int, float] = field(default_factory=dict)
-    """The numbers of assumptions that somebody comes, and when that was called for."""
 
     def __post_init__(self) -> None:
         self.events = {event.name: event for event in self.scenario.events}
         self.agents = {agent.name: agent for agent in self.scenario.agents}
         self.stays = {agent.name: Stay(agent.location.name, 0.0) for agent in self.scenario.agents}
         self.states = {state.name: state.initially for state in self.scenario.states}
+        for name, stay in self.stays.items():
+            self._sees(name, stay.place)
         self.batteries = {battery.agent.name: battery for battery in self.scenario.batteries}
         self.levels = {name: battery.capacity for name, battery in self.batteries.items()}
 
@@ -105,17 +104,28 @@ class Course:
     def locations(self) -> Dict[str, str]:
         return {name: stay.location for name, stay in self.stays.items()}
 
-    # What may begin -------------------------------------------------------------------------------------------------
 
-    def holds(self, condition: Optional[Condition]) -> bool:
-        values = {f"S{name}": int(value) for name, value in self.states.items()}
-        return condition is None or holds(condition, self.scenario, self.locations, values)
+    def holds(self, condition: Optional[Condition], agent: str) -> bool:
+        """Whether it holds for what the agent is to do: who is controlled has to know that, of others it may be so."""
+        values = {f"S{name}": 2 if value is None else int(value) for name, value in self.states.items()}
+        whatever = all if self.agents[agent].controllable else any
+        return condition is None or holds(condition, self.scenario, self.locations, values, whatever)
+
+    def _sees(self, agent: str, place: str) -> None:
+        """A robot is there now."""
+        for state in self.scenario.states if self.agents[agent].is_robot else ():
+            if state.seen_at is not None and state.seen_at.name == place:
+                self._shows(state.name)
+
+    def _shows(self, state: str) -> None:
+        """What the state is will be found out, if it is not known."""
+        if self.states[state] is None:
+            self.shown.setdefault(state, self.now)
 
     def may_set_off(self, agent: str, a: str, b: str) -> bool:
         """Whether it may set off from a to b, whatever the time."""
         stay = self.stays[agent]
-        here_for = [poi for poi in self.scenario.pois if poi.name in (a, b)]
-        if not all(is_for(part, agent) for part in here_for):
+        if not all(is_for(poi, agent) for poi in self.scenario.pois if poi.name in (a, b)):
             return False
         ways = [way for way in self.scenario.connections if (a, b) == (way.a, way.b)]
         ways += [way for way in self.scenario.connections if (a, b) == (way.b, way.a) and not way.one_way]
@@ -132,7 +142,7 @@ class Course:
         if moves and self.levels.get(agent, 0) < self._used_on_way(agent, a, b):
             return False
         ways = [way for way in ways if is_for(way, agent)]
-        return stay.is_idle and stay.place == a and moves and any(self.holds(way.only_if) for way in ways)
+        return stay.is_idle and stay.place == a and moves and any(self.holds(way.only_if, agent) for way in ways)
 
     def _is_there_by(self, each: Assumption, agent: str) -> bool:
         return isinstance(each, ThereBy) and each.agent.name == agent
@@ -143,7 +153,10 @@ class Course:
         return [(k, each) for k, each in numbered if isinstance(each, Reaches) and agent in ("", each.agent.name)]
 
     def _has_happened(self, event: str) -> None:
-        """It has: whoever is to come then, and is not there, is awaited from now on."""
+        """It has: whoever is to come then, and is not there, is awaited from now on; states may be shown."""
+        for state in self.scenario.states:
+            if any(ref.name == event for ref in state.shown_by):
+                self._shows(state.name)
         for number, each in self._comes():
             stay = self.stays[each.agent.name]
             if each.event.name == event and (stay.to or stay.place != each.place.name):
@@ -165,7 +178,7 @@ class Course:
             return True
         under_way = {**self.stays, agent: stay}
         ahead = [(each.location, each.to or each.place) for each in under_way.values()]
-        values = {f"S{name}": int(value) for name, value in self.states.items()}
+        values = {f"S{name}": int(value or 0) for name, value in self.states.items()}  # none of these is unknown
         for chosen in product(*ahead):
             places = dict(zip(under_way, chosen))
             if any(holds(condition, self.scenario, places, values) for condition in never):
@@ -190,7 +203,9 @@ class Course:
         if event.at_most is not None and self.begun.get(name, 0) >= event.at_most:
             return False
         for dependency in self.scenario.dependencies:
-            if dependency.event.name == name and self.states[dependency.state.name] is not dependency.value:
+            value = self.states[dependency.state.name]
+            may_be = value is None and not self.agents[agent].controllable
+            if dependency.event.name == name and value is not dependency.value and not may_be:
                 return False
         times = len(self.done.get((agent, name), ()))
         limits = [each for each in self.scenario.assumptions if isinstance(each, AtMost)]
@@ -198,7 +213,8 @@ class Course:
             return False
         if not self.agents[agent].controllable and any(self._is_over(each, name) for each in self.scenario.assumptions):
             return False
-        return self.holds(event.only_if) and all(after(rest, name) is not None for rest in self._turns(agent, name))
+        turns = self._turns(agent, name)
+        return self.holds(event.only_if, agent) and all(after(rest, name) is not None for rest in turns)
 
     def _is_over(self, each: Assumption, event: str) -> bool:
         """Whether others have done all of these that they are assumed to do."""
@@ -254,7 +270,11 @@ class Course:
 
     def _rest(self, key: Tuple[str, str]) -> Rest:
         rule = next(rule for rule in self.scenario.rules if rule.name == key[0])
-        return self.rests.get(key) or whole(rule.body, self.events)
+        rest: Optional[Rest] = whole(rule.body, self.events)
+        for symbol in self.rounds.get(key, ()):
+            rest = after(rest or "", symbol)
+        assert rest is not None, key
+        return rest
 
     # What happens ---------------------------------------------------------------------------------------------------
 
@@ -274,15 +294,26 @@ class Course:
 
     def take(self, agent: str, word: str, target: str) -> None:
         """The agent does what leads it to this location; `word` is the event, where it is one."""
+        if agent in self.states:
+            self.find(agent, word.endswith("_is_true"))
+            return
         stay = self.stays[agent]
         if stay.to and target == stay.to:
             self.arrive(agent)
+        elif stay.event and word == f"{stay.event}STOP":
+            self.stop(agent)
         elif stay.event:
             self.end(agent)
         elif is_movement(target) and not stay.to:
             self.set_off(agent, stay.place, target.rpartition("_to_")[2])
         else:
             self.begin(agent, word)
+
+    def find(self, state: str, value: bool) -> None:
+        """It is found out what a state is."""
+        assert self.now - self.shown.pop(state) <= 1 + 1e-9, "it is to be found out sooner"
+        assert self.states[state] is None, "it is known"
+        self.states[state] = value
 
     def arrive(self, agent: str) -> None:
         stay = self.stays[agent]
@@ -297,6 +328,7 @@ class Course:
             if reach.place.name == stay.to:
                 self.awaited.pop(number, None)
         self.stays[agent] = Stay(stay.to, self.now, rested=self.now, came=self.now)
+        self._sees(agent, stay.to)
 
     def _window(self, agent: Agent, stay: Stay) -> Tuple[float, float]:
         """Between which times a movement ends."""
@@ -314,7 +346,7 @@ class Course:
         for each in self.scenario.assumptions:
             if isinstance(each, Waits) and (each.agent.name, (each.then or each.event).name) == (agent, name):
                 ends = [end for _, end in self.done.get((agent, each.event.name), ())]
-                assert not ends or self.now - ends[-1] >= each.time - 1e-9, "it is assumed to wait longer"
+                assert self.now - max(ends, default=NEVER) >= each.time - 1e-9, "it is assumed to wait longer"
             if isinstance(each, NotBefore) and (each.agent.name, each.event.name) == (agent, name):
                 assert self.now > each.time - 1e-9, "it is assumed to begin later"
         for pause in (each for each in self.scenario.safety if isinstance(each, Pause)):
@@ -337,7 +369,7 @@ class Course:
 
     def _ended(self, event: str) -> float:
         """When the event has ended last."""
-        found = [-1e9]
+        found = [NEVER]
         for (who, what), some in self.done.items():
             goes_on = self.stays[who].event == event and self.stays[who].doer
             found += [end for _, end in some[: len(some) - goes_on] if what == event]
@@ -363,43 +395,29 @@ class Course:
                 came = other.came if who == agent else self.now
                 self.stays[who] = Stay(other.place, self.now, rested=self.now, came=came)
 
+    def may_stop(self, agent: str, name: str) -> bool:
+        """Whether it is busy with the event and may break it off."""
+        return self.stays[agent].event == name and self.stays[agent].doer and self.events[name].may_stop
+
+    def stop(self, agent: str) -> None:
+        """It breaks off what it is busy with: that has begun, and not happened."""
+        stay = self.stays[agent]
+        assert self.events[stay.event].may_stop and self.now - stay.since > float(self.scenario.rest) - 1e-9
+        beginning, _ = self.done[agent, stay.event][-1]
+        self.done[agent, stay.event][-1] = (beginning, NEVER)
+        for key in self._bound(agent, stay.event):
+            self.rounds[key].remove(stay.event)  # a rule names it once
+        self.stays[agent] = Stay(stay.place, self.now, rested=self.now, came=stay.came)
+
     def _advance(self, agent: str, event: str, symbol: str) -> None:
         for key in self._bound(agent, event):
             rest = after(self._rest(key), symbol)
             assert rest is not None, (key, symbol)
-            self.rests[key] = rest
+            self.rounds[key] = [*self.rounds.get(key, ()), symbol] if rest else []
 
     def _set_states(self, event: str) -> None:
         for state in self.scenario.states:
-            if event in {ref.name for ref in state.true_if}:
-                self.states[state.name] = True
-            if event in {ref.name for ref in state.false_if}:
-                self.states[state.name] = False
-
-
-def events_in(body: RuleBody) -> List[str]:
-    """The events that a rule names."""
-    return [body.name] if isinstance(body, Ref) else [*events_in(body.first), *events_in(body.second)]
-
-
-def whole(body: RuleBody, events: Dict[str, Event]) -> Rest:
-    """A round as an expression over symbols: an event without duration is one, a lasting one its beginning and end."""
-    if isinstance(body, Ref):
-        return body.name if events[body.name].duration is None else ("then", body.name, f"{body.name}DONE")
-    word = {Sequence: "then", Choice: "or", Both: "and"}[type(body)]
-    return word, whole(body.first, events), whole(body.second, events)
-
-
-def after(rest: Rest, symbol: str) -> Optional[Rest]:
-    """The rest behind a symbol; None where it is not the symbol's turn."""
-    if isinstance(rest, str):
-        return "" if rest == symbol else None
-    word, first, second = rest
-    left, right = after(first, symbol), after(second, symbol)
-    if word == "or":
-        return left if left is not None else right
-    if word == "then":
-        return None if left is None else second if left == "" else (word, left, second)
-    if left is not None:
-        return second if left == "" else (word, left, second)
-    return None if right is None else first if right == "" else (word, first, right)
+            for value, refs in ((True, state.true_if), (False, state.false_if)):
+                if event in {ref.name for ref in refs}:
+                    self.states[state.name] = value
+                    self.shown.pop(state.name, None)

@@ -9,6 +9,7 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.solving.rules import DEFAULT, played
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.workspace.model_file import model_data
+from pursue_runtime.locations import FINDING_OUT
 from pursue_runtime.model import Model, Position
 from pursue_runtime.zones import due
 from tests.course import Course
@@ -30,15 +31,21 @@ class Play:
         self.model, self.course, self.scenario = model_of(scenario), Course(scenario), scenario
         self.position = self.model.initial()
         self.lines: List[str] = []
+        self._facts = [state.name for state in scenario.states if state.initially is None]
 
     def check(self) -> None:
         """Both have everybody in the same place, and let begin the same."""
         there = {name: self.position.locations[name] for name in self.course.agents}
         assert there == self.course.locations, self.lines
+        facts = {name: self.position.locations[name] for name in self._facts}
+        told = {name: "unknown" if self.course.states[name] is None else "known" for name in self._facts}
+        assert facts == {**told, **dict.fromkeys(self.course.shown, FINDING_OUT)}, self.lines
         for agent in self.scenario.agents:
             for ref in agent.can_do:
                 possible = self.model.joint_move(self.position, ref.name, agent.name, timed=False) is not None
                 assert possible == self.course.may_begin(agent.name, ref.name), (agent.name, ref.name, self.lines)
+                off = self.model.joint_move(self.position, f"{ref.name}STOP", agent.name, timed=False) is not None
+                assert off == self.course.may_stop(agent.name, ref.name), (agent.name, ref.name, self.lines)
             for a in self.scenario.pois:
                 for b in self.scenario.pois:
                     word = f"{agent.name}_{a.name}2{b.name}"
@@ -49,21 +56,21 @@ class Play:
     def moves(self) -> List[Tuple[float, str, str]]:
         """In how many time units which agent can do what, if nothing else happens before."""
         found, last = [], self._longest()
-        for agent in self.scenario.agents:
-            automaton, place = self.model.automaton(agent.name), self.position.locations[agent.name]
+        for name in (*self.course.agents, *self._facts):
+            automaton, place = self.model.automaton(name), self.position.locations[name]
             for edge in automaton.edges_from(place):
                 if edge.sync == "receive" or not edge.allowed(self.position.values):
                     continue
                 delay = due([edge.when], self.position.clocks, STILL)
                 if delay is not None and delay <= last:
-                    found.append((delay, agent.name, edge.word))
+                    found.append((delay, name, edge.word))
         return found
 
     def _longest(self) -> float:
         """The time units until somebody has to have ended what it does, or to have left."""
         bounds = [
             bound.bound - self.position.clocks[bound.left]
-            for name in (*self.course.agents, *(each.name for each in self.model.of_kind("rule")))
+            for name in (*self.course.agents, *self._facts, *(each.name for each in self.model.of_kind("rule")))
             for bound in self.model.bounds_of(name, self.position.locations[name], self.position.values)
         ]
         return min(bounds, default=1e9)

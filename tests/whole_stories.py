@@ -83,12 +83,12 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     ]
     limit = f" at_most {draw(st.integers(1, 3))} times"
     lines += [
-        f'event "load" location {place()} duration {window()}{maybe(limit)}{only_if()}',
+        f'event "load" location {place()} duration {window()}{maybe(" may_stop", 1)}{maybe(limit)}{only_if()}',
         f'event "drop"{maybe(f" location {place()}", 1)}{maybe(limit)}{only_if()}',
         f'event "ride" collaborative{maybe(" together", 0 if draw(st.booleans()) else 9)} location {place()}'
         f" duration {window()}{only_if()}",
         f'event "wave" collaborative{only_if()}',
-        f'event "sing" duration {window()}{only_if()}',
+        f'event "sing" duration {window()}{maybe(" may_stop", 1)}{only_if()}',
         f'event "call"{maybe(limit, 2)}{only_if()}',
     ]
     shuffled = draw(st.permutations([*EVENTS, "call"]))
@@ -96,8 +96,9 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
         some, word = shuffled[3 * number : 3 * number + 3], st.sampled_from(("before", "or", "and"))
         each = draw(st.sampled_from(("", "", " for each robot", " for each agent")))
         lines.append(f'rule "r{number}"{each}: ({some[0]} {draw(word)} {some[1]}) {draw(word)} {some[2]}')
-    first = draw(st.sampled_from(("true", "false")))
-    lines.append(f'state "open": initially {first}, true_if drop false_if call')
+    first = draw(st.sampled_from(("true", "false", "unknown", f"unknown seen_at {place()}")))
+    shows = f" shown_by {draw(st.sampled_from(('load', 'ride', 'wave')))}" if first == "unknown" else ""
+    lines.append(f'state "open": initially {first}, true_if drop false_if call{shows}')
     needing = draw(st.sampled_from(("load", "sing", "ride", "")))
     lines += [f"stateDependency: {needing} only_if open is_true"] if needing else []
     lines += _agents(draw, names, place)

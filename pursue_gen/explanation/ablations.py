@@ -65,7 +65,12 @@ def without_agent(scenario: Scenario, name: str) -> Optional[Scenario]:
     if not any(agent.controllable for agent in agents) or (gone | {name}) & _wanted(scenario):
         return None
     states = tuple(
-        replace(state, true_if=_others(state.true_if, gone), false_if=_others(state.false_if, gone))
+        replace(
+            state,
+            true_if=_others(state.true_if, gone),
+            false_if=_others(state.false_if, gone),
+            shown_by=_others(state.shown_by, gone),
+        )
         for state in scenario.states
     )
     named = {ref.name for condition, _ in scenario.conditions() for _, ref in names_in(condition)}

@@ -11,6 +11,7 @@ from pursue_gen.explanation.endless import may_repeat
 from pursue_gen.explanation.play import CounterStep, Play
 from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.symbols import Role
 from pursue_gen.language.times import moment
 from pursue_gen.synthesis.game import joint_moves
 from pursue_gen.tga.awaited import who_awaited
@@ -60,7 +61,8 @@ def attempt(scenario: Scenario, play: Play) -> Attempt:
         who, text = _deed(scenario, play, step.owner, step.edges)
         owner = play.game.automata[step.owner].name
         owner = who_awaited(owner, scenario) or owner
-        if owner in others and text and not play.game.origins[step.edges[0]].is_end:
+        edge = play.game.origins[step.edges[0]]
+        if text and (edge.leaves is Role.FINDING or (owner in others and not edge.is_end)):
             done.append(f"{who} {text} at {moment(step.at, scenario.unit)}")
     ending = _ending(scenario, play)[0]
     return Attempt(first, "; ".join([*done[-_MOST_OTHERS:], f"{ending.text} ({moment(ending.at, scenario.unit)})"]))

@@ -32,6 +32,8 @@ from pursue_gen.language.scenario import (
     Pause,
     Poi,
     Reach,
+    Ref,
+    Respond,
     Scenario,
     StatedObjective,
 )
@@ -67,6 +69,8 @@ def _repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
     for battery in scenario.batteries:
         yield from battery_changes(scenario, battery)
     yield from _of_orders(scenario)
+    yield from _of_knowledge(scenario)
+    yield from _of_breaking_off(scenario)
     yield from assumption_changes(scenario, 2 * _all_time(scenario))
     for agent in scenario.agents:
         if not agent.controllable and (agent.can_do or agent.mobile is not None):
@@ -197,6 +201,19 @@ def _of_duration(scenario: Scenario, event: Event) -> Iterator[Repair]:
         yield lasting("longer", whole_above(duration, max(duration * 2, 2 * _all_time(scenario))))
 
 
+def _of_breaking_off(scenario: Scenario) -> Iterator[Repair]:
+    """What may be broken off, of what takes longer than something else may wait for its answer."""
+    due = [(each, each.deadline) for each in scenario.safety if isinstance(each, Respond)]
+    for event in scenario.events:
+        doers = scenario.doers(event.name)
+        long = [each for each, deadline in due if event.window is not None and event.window[1] > deadline]
+        others = any(not isinstance(each.response, Ref) or each.response.name != event.name for each in long)
+        if others and not (event.may_stop or event.collaborative) and any(agent.controllable for agent in doers):
+            label = f"{event.shown} that may be broken off (may_stop)"
+            freer = scenario.with_instead(event, replace(event, may_stop=True))
+            yield _switch("may_stop", event.name, label, "", freer, event.span)
+
+
 def _may_be_endless(scenario: Scenario, event: Event) -> bool:
     """True if the environment alone can do the event, on its ways as often as it likes without time passing."""
     doers = scenario.doers(event.name)
@@ -231,6 +248,17 @@ def _of_orders(scenario: Scenario) -> Iterator[Repair]:
     spans = [span for _, span in scenario.conditions()]
     for (what, text, left_out), span in zip(without_conditions(scenario), spans):
         yield _switch("condition", what, f"{what} without only_if {text}", text, left_out(scenario), span, 1)
+
+
+def _of_knowledge(scenario: Scenario) -> Iterator[Repair]:
+    """What is not known at first known from the start: as if a robot saw it there."""
+    robots = [agent for agent in scenario.agents if agent.is_robot]
+    for state in (each for each in scenario.states if each.is_found_out):
+        for robot in robots[:1]:
+            known = scenario.with_instead(state, replace(state, seen_at=robot.location))
+            label = f"{state.name} known at the start, whatever it is (seen_at {robot.location.name})"
+            if known != scenario:
+                yield _switch("knowledge", state.name, label, "unknown", known, state.span)
 
 
 def _switch(what: str, name: str, label: str, before: str, changed: Scenario, span: Span, helps: int = 0) -> Repair:

@@ -212,9 +212,10 @@ class _Course:
         self.states = {state.name: state for state in reversed(scenario.states)}
 
     def setters(self, dependency: Dependency) -> Optional[FrozenSet[str]]:
-        """The events that give the state the value that is needed; None: it has it at the start, or is unknown."""
+        """The events that give the state the value that is needed; None: it has it at the start, or may be found to
+        have it, or there is no such state."""
         state = self.states.get(dependency.state.name)
-        if state is None or state.initially == dependency.value:
+        if state is None or state.is_found_out or state.initially == dependency.value:
             return None
         return frozenset(ref.name for ref in (state.true_if if dependency.value else state.false_if))
 

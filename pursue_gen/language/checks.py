@@ -21,6 +21,7 @@ from pursue_gen.language.scenario import Agent, Poi, Respond, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
 from pursue_gen.language.times import in_units, written_time
 from pursue_gen.language.tokens import shown
+from pursue_gen.language.unknown_checks import check_unknown
 
 _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
 """Codes of findings that need a scenario that was read as a whole."""
@@ -80,6 +81,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
             findings += check_conditions(scenario)
             findings += check_poses(scenario)
             findings += check_assumptions(scenario)
+            findings += check_unknown(scenario)
             findings += check_batteries(scenario)
         if not any(f.severity is Severity.ERROR for f in findings):
             findings += _islands(scenario)

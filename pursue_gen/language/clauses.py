@@ -8,10 +8,23 @@ from __future__ import annotations
 
 from itertools import combinations, product
 from math import comb
-from typing import Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Callable, Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_gen.language.behaviour import places_of
-from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Atom, Condition, Doing, Holds, Not, OnWay, Who
+from pursue_gen.language.conditions import (
+    AllOf,
+    AnyOf,
+    At,
+    AtMostOf,
+    Atom,
+    Condition,
+    Doing,
+    Holds,
+    Not,
+    OnWay,
+    Who,
+    names_in,
+)
 from pursue_gen.language.scenario import Agent, Event, Scenario
 
 MOST_CLAUSES = 200
@@ -44,6 +57,8 @@ class Value(NamedTuple):
 
 
 TRUE, FALSE = Value("is", "true"), Value("is", "false")
+UNKNOWN = Value("is", "unknown")
+"""A state is one of the two, and nobody knows which: no clause lists this value but those of what may be so."""
 
 Values = FrozenSet[Value]
 Clause = Mapping[str, Values]
@@ -64,6 +79,8 @@ class Domains:
     def __init__(self, scenario: Scenario) -> None:
         self._agents = {agent.name: agent for agent in scenario.agents}
         self._states = frozenset(state.name for state in scenario.states)
+        self.unknown = tuple(state.name for state in scenario.states if state.is_found_out)
+        """The states that are not known at first."""
         self._events = {event.name: event for event in scenario.events}
         self._scenario, self._places = scenario, places_of(scenario)
         self._found: Dict[str, Values] = {}
@@ -73,6 +90,10 @@ class Domains:
         if variable not in self._found:
             self._found[variable] = frozenset(self._values(variable))
         return self._found[variable]
+
+    def ever(self, variable: str) -> Values:
+        """The same, and that a state is not known, where that may be."""
+        return self.of(variable) | {UNKNOWN} if variable in self.unknown else self.of(variable)
 
     def among(self, who: Who) -> Tuple[str, ...]:
         """The agents that are meant, in the order of their declaration."""
@@ -173,6 +194,22 @@ def any_of(parts: Iterable[Clauses], domains: Domains) -> Clauses:
     return found
 
 
+def possibly(clauses: Clauses, domains: Domains) -> Clauses:
+    """Clauses for what may hold, as far as it is known: for some values of the states that are not known. Exact, as two
+    clauses that a state cannot both satisfy leave what the rest of one of them says. Raises TooMany."""
+    found = list(clauses)
+    for name in domains.unknown:
+        with_true, with_false = ([c for c in found if c.get(name) == frozenset((v,))] for v in (TRUE, FALSE))
+        for pair in product(with_true, with_false):
+            rest = _either(*pair)
+            found.append({other: values for other, values in rest.items() if other != name})
+    found = list(simplified(found, domains))
+    return tuple(
+        {name: values | {UNKNOWN} if name in domains.unknown else values for name, values in clause.items()}
+        for clause in found
+    )
+
+
 def given(clauses: Clauses, variable: str, value: Value) -> Optional[Clauses]:
     """What remains to be required where the variable is known to have the value; None: it cannot hold."""
     kept = []
@@ -186,11 +223,17 @@ def given(clauses: Clauses, variable: str, value: Value) -> Optional[Clauses]:
     return tuple(kept)
 
 
-def holds_at_start(condition: Condition, scenario: Scenario, domains: Domains) -> bool:
-    """True if a condition holds before anything has happened."""
+def holds_at_start(
+    condition: Condition, scenario: Scenario, domains: Domains, whatever: Callable[[Iterable[object]], bool] = all
+) -> bool:
+    """True if a condition holds before anything has happened, whatever states are that are not known; with `any` if it
+    may hold."""
     first = {agent.name: Value("at", agent.location.name) for agent in scenario.agents}
     first.update({state.name: TRUE if state.initially else FALSE for state in scenario.states})
-    return _holds(condition, first, domains)
+    unknown = [name for _, ref in names_in(condition) for name in domains.unknown if name == ref.name]
+    names = tuple(dict.fromkeys(unknown))
+    some = product((TRUE, FALSE), repeat=len(names))
+    return whatever(_holds(condition, {**first, **dict(zip(names, values))}, domains) for values in some)
 
 
 def _holds(condition: Condition, now: Mapping[str, Value], domains: Domains) -> bool:
@@ -215,7 +258,7 @@ def simplified(clauses: Iterable[Clause], domains: Domains) -> Clauses:
     several: List[Clause] = []
     for clause in clauses:
         kept = {name: values for name, values in clause.items() if values}
-        if any(values == domains.of(name) for name, values in kept.items()):
+        if any(values >= domains.of(name) for name, values in kept.items()):
             continue
         if not kept:
             return NEVER

@@ -39,13 +39,17 @@ def _in_network(scenario: Scenario) -> Iterator[_Stated]:
     yield from ((poi.span, [names.at(poi.name)]) for poi in scenario.pois)
     for event in scenario.events:
         yield event.span, [names.event(event.name), names.done(event.name)]
+        yield event.span, [names.broken_off(event.name)] if event.may_stop else []
         yield event.span, [names.busy(event.name)] if event.is_shared else []
         yield event.span, [names.count(event.name), names.times(event.name)] if event.at_most is not None else []
     for rule in scenario.rules:
         yield rule.span, [names.rule(rule.name), names.rule_turn(rule.name), names.rule_clock(rule.name)]
         yield rule.span, [names.own_turn(rule.name, agent.name) for agent in scenario.bound_by(rule)]
     for state in scenario.states:
-        yield state.span, [names.state(state.name), names.state_value(state.name)]
+        automaton = [names.finding(state.name), names.finding_clock(state.name)]
+        automaton += [names.found(state.name, value) for value in (True, False)]
+        yield state.span, automaton if state.is_found_out else [names.state(state.name)]
+        yield state.span, [names.state_value(state.name)]
     for agent in scenario.agents:
         yield agent.span, [names.agent(agent.name), names.agent_position(agent.name), names.agent_clock(agent.name)]
         yield agent.span, [names.busy_with(agent.name)] if any(scenario.conditions()) else []

@@ -89,7 +89,7 @@ def _room(scenario: Scenario, safety: Safety, domains: Domains) -> Iterator[Diag
 def _lost_at_start(scenario: Scenario, safety: Safety, domains: Domains) -> Iterator[Diagnostic]:
     """An objective that is broken before anything has happened."""
     broken = safety.breaks.condition
-    if broken is not None and holds_at_start(broken, scenario, domains):
+    if broken is not None and holds_at_start(broken, scenario, domains, any):
         message = f"the objective is lost before anything moves: {condition_words(broken)}"
         hint = "let agents start somewhere else, start the states with other values, or correct the condition"
         yield error("PML234", message, safety.span, hint)

@@ -35,9 +35,9 @@ movement, arrival = Role.SETTING_OFF, Role.ARRIVAL
 """The channels on which an agent sets off from one POI to another, and arrives there, where somebody listens to that;
 else that edge has none. It is the word that the edge has in any case."""
 
-event, done, busy = Role.EVENT, Role.END, Role.BUSY
-"""The channels on which an event happens or begins, and on which one with a duration ends; the variable that is 1 while
-one goes on that several agents can do, and that its partners share."""
+event, done, broken_off, busy = Role.EVENT, Role.END, Role.BROKEN_OFF, Role.BUSY
+"""The channels on which an event happens or begins, on which one with a duration ends, or is broken off; the variable
+that is 1 while one goes on that several agents can do, and that its partners share."""
 
 count, times = Role.COUNT, Role.TIMES
 """The automaton that counts how often an event has begun that can happen so many times only, and its variable."""
@@ -47,7 +47,22 @@ rule, rule_turn, rule_clock, own_turn = Role.RULE, Role.TURN, Role.RULE_CLOCK, R
 the number of an agent's own turn in a rule."""
 
 state, state_value = Role.STATE, Role.VALUE
-"""A state, as people call it, and the variable that holds it, 0 or 1."""
+"""A state, as people call it, and the variable that holds it, 0 or 1; or UNKNOWN_VALUE."""
+
+UNKNOWN_VALUE = 2
+"""The value of a state's variable while it is not known which of the two it is."""
+
+UNKNOWN, FINDING, KNOWN = Role.UNKNOWN(), Role.FINDING(), Role.KNOWN()
+"""The locations of the automaton of a state that is not known at first."""
+
+finding, finding_clock = Role.FACT, Role.FACT_CLOCK
+"""This automaton, called like its state, and its clock."""
+
+
+def found(name: str, value: bool) -> Symbol:
+    """The channel on which it is said that a state is true, or false."""
+    return Role.FOUND(name, str(value).lower())
+
 
 assumption, assumption_count, assumption_clock = Role.ASSUMPTION, Role.ASSUMED_TIMES, Role.ASSUMED_TIME
 """By the number of an assumption (the first has number 1): its variable, 1, or 0 in a mission in which it has been

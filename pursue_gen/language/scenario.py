@@ -125,6 +125,11 @@ class Scenario:
         """What people read for a name: its label, or the name itself."""
         return self.labels.get(name, name)
 
+    @property
+    def facts(self) -> Tuple[str, ...]:
+        """The states that are not known at first: the world says what they are, as it says what agents do."""
+        return tuple(state.name for state in self.states if state.is_found_out)
+
     def bound_by(self, rule: Rule) -> Tuple[Agent, ...]:
         """The agents that have a turn of their own in a rule for each of them; none where all have one turn."""
         named = {ref.name for ref in rule.events} if rule.each else set()

@@ -42,6 +42,7 @@ class Role(enum.Enum):
 
     EVENT = "{}", "the event {}"
     END = "{}DONE", "the end of {}"
+    BROKEN_OFF = "{}STOP", "that {} is broken off"
     BUSY = "B{}", "that {} goes on"
     COUNT = "{}_count", "the count of {}"
     TIMES = "P{}_count", "how often {} has happened"
@@ -52,6 +53,12 @@ class Role(enum.Enum):
     STATES = "states", "the automaton of all states"
     STATE = "{}", "the state {}"
     VALUE = "S{}", "the value of the state {}"
+    FACT = "{}", "whether the state {} is known"
+    FACT_CLOCK = locations.automaton_clock("{}"), "the clock of the state {}"
+    FOUND = "{}_is_{}", "that the state {} is found to be {}"
+    UNKNOWN = "unknown", "a state is not known"
+    FINDING = locations.FINDING_OUT, "a state is being found out"
+    KNOWN = "known", "a state is known"
 
     SAFETY = "obj{}", "a part of an objective"
     SAFETY_CLOCK = "Cobj{}", "a part of an objective"
@@ -93,8 +100,9 @@ class Role(enum.Enum):
     BRINGUP = "{}_bringup", "the package that starts the mission"
 
 
-UNDER_WAY = (Role.WAY, Role.WORK)
-"""The locations that are left by the end of a movement or an action: it takes time to come."""
+UNDER_WAY = (Role.WAY, Role.WORK, Role.FINDING)
+"""The locations that are left by the end of a movement or an action, or once it is known what is being found out: it
+takes time to come."""
 
 
 class Symbol(str):
@@ -144,7 +152,7 @@ def numbered(role: Role, number: int) -> Symbol:
 
 
 _FURTHER = "([2-9]|[1-9][0-9]+)?"
-_READ = {role: "(.+)" for role in Role if "{" not in role.form or role in (*UNDER_WAY, Role.END)}
+_READ = {role: "(.+)" for role in Role if "{" not in role.form or role in (*UNDER_WAY, Role.END, Role.BROKEN_OFF)}
 _READ.update(dict.fromkeys((Role.DONE_TIMES, Role.APART), "([1-9][0-9]*)"))
 _READ.update({Role.DID: "([1-9][0-9_]*)", Role.SAFETY: _FURTHER, Role.REACH: _FURTHER, Role.ASSUMPTION: "([0-9]+)"})
 _READ[Role.AWAITED] = _READ[Role.ASSUMPTION]

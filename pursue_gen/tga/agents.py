@@ -46,10 +46,10 @@ class Surroundings:
             if channel in turns
         )
 
-    def dependencies(self, event: str) -> Tuple[Clause, ...]:
-        """Every state that the event depends on has the value it needs."""
+    def dependencies(self, event: str, agent: str) -> Tuple[Clause, ...]:
+        """Every state that the event depends on has the value it needs, for this agent."""
         return tuple(
-            (Test(names.state_value(dependency.state.name), int(dependency.value)),)
+            self.conditions.having(dependency.state.name, dependency.value, agent)
             for dependency in self.scenario.dependencies
             if dependency.event.name == event
         )
@@ -170,10 +170,15 @@ class _Shape:
         conditions = self._conditions(event, codes.at(poi), Value("at", poi))
         if conditions is None:
             return (ending,)
+        stops: Tuple[Edge, ...] = ()
+        if event.may_stop:
+            stop = names.broken_off(event.name)
+            off = self._edge(at_work, poi, stop, self.rest, self.around.turn(stop), codes.at(poi))
+            stops = (off.plus(assign=working.ends(self.agent.name)),)
         start = self._edge(poi, at_work, names.event(event.name), self.rest, conditions, codes.doing(poi))
         start = start.plus(assign=working.begins(self.agent.name, event.name, poi))
         if not self.around.is_contested(event):
-            return start, ending
+            return (start, ending, *stops)
         busy = names.busy(event.name)
         return start.plus((Test(busy, 0),), assign=((busy, 1),)), ending.plus(assign=((busy, 0),))
 
@@ -221,7 +226,7 @@ class _Shape:
         if condition is None:
             return None
         company = around.company(event, self.agent.name, company_at)
-        return company + around.turn(event.name) + around.dependencies(event.name) + condition
+        return company + around.turn(event.name) + around.dependencies(event.name, self.agent.name) + condition
 
     def _edge(
         self,

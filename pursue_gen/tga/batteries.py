@@ -36,7 +36,7 @@ def _with_battery(automaton: Automaton, scenario: Scenario, battery: Battery) ->
     def edges(edge: Edge) -> List[Edge]:
         if edge.source == edge.target:
             return [edge]
-        use, gain = uses.get(edge.target, 0), gains.get(edge.source, 0)
+        use, gain = uses.get(edge.target, 0), 0 if edge.breaks_off else gains.get(edge.source, 0)
         if not use and not gain:
             return [edge]
         after = ((level, min(battery.capacity, level - use + gain)) for level in possible if level >= use)

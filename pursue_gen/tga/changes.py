@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Dict, Iterable, Mapping, Optional, Tuple
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.clauses import FALSE, NEVER, TRUE, Clauses, Domains, Value, given, simplified
+from pursue_gen.language.clauses import FALSE, NEVER, TRUE, UNKNOWN, Clauses, Domains, Value, given, simplified
 from pursue_gen.language.scenario import Scenario
 
 Becomes = Mapping[Tuple[str, Value], Value]
@@ -24,7 +24,7 @@ class Change:
         """What has to hold before the move so that the clauses hold after it."""
         return tuple(
             {
-                name: frozenset(v for v in domains.of(name) if self.becomes.get((name, v), v) in values)
+                name: frozenset(v for v in domains.ever(name) if self.becomes.get((name, v), v) in values)
                 for name, values in clause.items()
             }
             for clause in clauses
@@ -56,8 +56,13 @@ def states_set(channel: str, scenario: Scenario) -> Becomes:
     for state in scenario.states:
         for value, refs in ((TRUE, state.true_if), (FALSE, state.false_if)):
             if any(ref.name == channel for ref in refs):
-                becomes.update(((state.name, old), value) for old in (TRUE, FALSE))
+                becomes.update(((state.name, old), value) for old in (TRUE, FALSE, UNKNOWN))
     return becomes
+
+
+def found_out(state: str, value: bool) -> Change:
+    """It is found out that a state is true, or false."""
+    return Change({(state, UNKNOWN): TRUE if value else FALSE})
 
 
 def happening(channel: str, scenario: Scenario, domains: Domains) -> Change:
@@ -70,7 +75,7 @@ def happening(channel: str, scenario: Scenario, domains: Domains) -> Change:
         for work in domains.of(agent.name):
             if work.is_work and channel == work.what:
                 becomes[agent.name, Value("at", work.where)] = work
-            elif work.is_work and channel == names.done(work.what):
+            elif work.is_work and channel in (names.done(work.what), names.broken_off(work.what)):
                 becomes[agent.name, work] = Value("at", work.where)
     return Change(becomes)
 

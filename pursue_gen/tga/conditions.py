@@ -6,12 +6,28 @@ from itertools import combinations
 from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Tuple
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.clauses import NEVER, TRUE, Clause, Clauses, Domains, Value, clauses_of, given, simplified
+from pursue_gen.language.clauses import (
+    FALSE,
+    NEVER,
+    TRUE,
+    UNKNOWN,
+    Clause,
+    Clauses,
+    Domains,
+    Value,
+    clauses_of,
+    given,
+    possibly,
+    simplified,
+)
 from pursue_gen.language.conditions import AllOf, AnyOf, AtMostOf, Condition, Doing, Not, atoms
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.tga.network import Clause as Tests
 from pursue_gen.tga.network import Test
 from pursue_gen.tga.positions import Positions
+
+_NUMBERS = {FALSE: 0, TRUE: 1, UNKNOWN: names.UNKNOWN_VALUE}
+"""By what a state is, the value of its variable."""
 
 
 class Conditions:
@@ -19,12 +35,16 @@ class Conditions:
 
     An agent's position says where it is at work, not at what. Where a condition has to tell two events apart that the
     agent can do at one place, one more variable says what it is busy with: 0, or the number of event and place.
+
+    Of what depends on states that are not known yet, agents that are controlled begin what they may begin whatever
+    these are; the others begin what they may for some of their values, as nobody knows what keeps them from it.
     """
 
     def __init__(self, scenario: Scenario, positions: Positions) -> None:
         self.domains = Domains(scenario)
         self._positions = positions
         self._states = frozenset(state.name for state in scenario.states)
+        self._controlled = frozenset(agent.name for agent in scenario.agents if agent.controllable)
         self._work = dict(self._numbers(scenario))
         self._ways = {
             way: clauses_of(connection.only_if, self.domains)
@@ -40,16 +60,26 @@ class Conditions:
 
     def setting_off(self, agent: str, a: str, b: str) -> Optional[Tuple[Tests, ...]]:
         """What has to hold when the agent sets off from a to b; None: that it cannot."""
-        return self._guard(self._ways.get((a, b), ()), agent, Value("at", a))
+        return self._guard(self._for(agent, self._ways.get((a, b), ())), agent, Value("at", a))
 
     def beginning(self, event: str, agent: str, where: Value) -> Optional[Tuple[Tests, ...]]:
         """What has to hold when the agent, which is there, does or begins the event; None: that it cannot."""
-        return self._guard(self._events.get(event, ()), agent, where)
+        return self._guard(self._for(agent, self._events.get(event, ())), agent, where)
+
+    def having(self, state: str, value: bool, agent: str) -> Tests:
+        """What has to hold when the agent does what needs this value of a state."""
+        unknown = state in self.domains.unknown and agent not in self._controlled
+        variable = names.state_value(state)
+        return (Test(variable, int(value)), *([Test(variable, names.UNKNOWN_VALUE)] if unknown else []))
 
     def ways_to_hold(self, condition: Condition) -> Tuple[Tuple[Tests, ...], ...]:
-        """Guards of which one holds if and only if the condition does; none for one that never does."""
-        found = _alternatives(condition, self.domains)
+        """Guards of which one holds if and only if the condition does, or may; none for one that never does."""
+        found = (possibly(clauses, self.domains) for clauses in _alternatives(condition, self.domains))
         return tuple(self.tests(clauses) for clauses in found if clauses != NEVER)
+
+    def _for(self, agent: str, clauses: Clauses) -> Clauses:
+        """What has to hold for the agent: what it knows, or what may be so."""
+        return clauses if agent in self._controlled else possibly(clauses, self.domains)
 
     def _guard(self, clauses: Clauses, agent: str, where: Value) -> Optional[Tuple[Tests, ...]]:
         rest = given(clauses, agent, where)
@@ -92,7 +122,7 @@ class Conditions:
 
     def _tests_of(self, variable: str, values: FrozenSet[Value]) -> List[Test]:
         if variable in self._states:
-            return [Test(names.state_value(variable), int(value == TRUE)) for value in sorted(values)]
+            return [Test(names.state_value(variable), _NUMBERS[value]) for value in sorted(values)]
         domain, position = self.domains.of(variable), names.agent_position(variable)
         tests: Dict[Test, None] = {}
         for value in sorted(values):

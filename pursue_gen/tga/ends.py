@@ -61,6 +61,11 @@ def is_agent(automaton: Automaton) -> bool:
     )
 
 
+def is_fact(automaton: Automaton) -> bool:
+    """True for the automaton of a state that is not known at first: nobody commands it, though it listens to robots."""
+    return any(location.role is Role.FINDING for location in automaton.locations)
+
+
 def is_nobodys(automaton: Automaton) -> bool:
     """True for the automaton of an agent whom nobody controls."""
     return is_agent(automaton) and not any(edge.controllable for edge in automaton.edges)

@@ -120,8 +120,13 @@ class Edge:
 
     @property
     def is_end(self) -> bool:
-        """True for the end of a movement or an action."""
-        return self.leaves in UNDER_WAY and self.source != self.target
+        """True for the end of a movement or an action; not for breaking one off, which is decided."""
+        return self.leaves in UNDER_WAY and self.source != self.target and not self.breaks_off
+
+    @property
+    def breaks_off(self) -> bool:
+        """True where an action ends before it is done."""
+        return self.leaves is Role.WORK and self.channel is not None and role_of(self.channel) is Role.BROKEN_OFF
 
     @property
     def sets_off(self) -> bool:

@@ -13,7 +13,7 @@ from typing import Iterator, List, Sequence, Tuple
 from pursue_gen.language import network_names as names
 from pursue_gen.language.scenario import Rule, Scenario
 from pursue_gen.tga.network import Automaton, Edge, Test
-from pursue_gen.tga.rules import rule_automaton
+from pursue_gen.tga.rules import rule_of
 
 
 @dataclass(frozen=True)
@@ -36,10 +36,9 @@ class OwnTurn:
 
 def own_turns(scenario: Scenario) -> Iterator[OwnTurn]:
     """The turns of all agents in rules for each of them, in the order of the rules."""
-    lasting = frozenset(event.name for event in scenario.events if event.duration is not None)
     for rule in scenario.rules:
         for agent in scenario.bound_by(rule):
-            order, _ = rule_automaton(rule, lasting)
+            order, _ = rule_of(rule, scenario.events)
             yield OwnTurn(rule, agent.name, agent.shown, names.own_turn(rule.name, agent.name), order)
 
 

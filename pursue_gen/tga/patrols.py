@@ -15,16 +15,18 @@ from pursue_gen.tga.endurance import batteries_by_time
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.positions import Positions
 from pursue_gen.tga.responses import awaited_by
+from pursue_gen.tga.states import seen_by
 
 _NOTHING: Tuple[Tuple[str, int], ...] = ()
 
 
 def awaited(scenario: Scenario) -> FrozenSet[Tuple[str, str]]:
-    """The agents with the POIs to whose arrival there an objective listens: these edges have a channel."""
+    """The agents with the POIs to whose arrival there somebody listens: these edges have a channel."""
     found = {(agent.name, each.place.name) for each in scenario.patrols for agent in scenario.on_patrol(each)}
     followed = {each.agent.name for each in scenario.assumptions if isinstance(each, Reaches)}
     found |= {(name, poi.name) for name in followed for poi in scenario.pois}
     found.update((each.agent.name, each.dock.name) for _, each in batteries_by_time(scenario))
+    found.update((agent.name, place) for agent, place in seen_by(scenario))
     heard = [condition for each in scenario.safety if each.breaks.condition is None for condition in each.conditions]
     if heard:
         domains = Domains(scenario)

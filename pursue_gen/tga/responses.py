@@ -2,7 +2,8 @@
 
 An event has a channel. A condition comes to hold by a move, so the automaton listens to the moves that change one of
 its parts: who sets off and arrives, what begins and ends, which events set a state. A receiver's guard is evaluated
-before the move; it says what has to hold there so that the condition holds afterwards.
+before the move; it says what has to hold there so that the condition holds afterwards. Where states are not known, a
+condition comes to hold when it is known that it does.
 """
 
 from __future__ import annotations
@@ -10,13 +11,13 @@ from __future__ import annotations
 from typing import Dict, Iterable, Iterator, List, Optional, Tuple, Union
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.clauses import Clauses, Domains, clauses_of, holds_at_start
+from pursue_gen.language.clauses import Clauses, Domains, clauses_of, holds_at_start, possibly
 from pursue_gen.language.conditions import At, Condition, Holds, OnWay, atoms
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import Escort, Ref, Respond, Scenario
 from pursue_gen.tga.agents import Surroundings
-from pursue_gen.tga.changes import Change, arriving, happening, setting_off
+from pursue_gen.tga.changes import Change, arriving, found_out, happening, setting_off
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Sync
 
 _Moves = Dict[str, Change]
@@ -43,9 +44,9 @@ def respond_automaton(respond: Union[Respond, Escort], around: Surroundings, num
         answers = _comes(response, move, domains) if channel in answered else None
         at_once = isinstance(response, Ref) and channel in answered
         if channel in due and not at_once:
-            parts = [] if isinstance(response, Ref) else [move.before(clauses_of(response, domains, False), domains)]
+            parts = [] if isinstance(response, Ref) else [move.before(_fails(response, domains), domains)]
             if not isinstance(trigger, Ref):
-                parts.append(clauses_of(trigger, domains, False))
+                parts.append(_fails(trigger, domains))
                 parts.append(move.before(clauses_of(trigger, domains), domains))
             guard = move.guard(parts, domains)
             if guard is not None:
@@ -57,6 +58,11 @@ def respond_automaton(respond: Union[Respond, Escort], around: Surroundings, num
     locations = (Location(IDLE), Location(LOSE), Location(AT_RISK, (ClockBound(clock, "<=", exact(respond.deadline)),)))
     waits = _holds_first(trigger, scenario, domains) and not _holds_first(response, scenario, domains)
     return Automaton(names.safety_objective(number), locations, AT_RISK if waits else IDLE, tuple(edges))
+
+
+def _fails(condition: Condition, domains: Domains) -> Clauses:
+    """What has to hold where it is not known that a condition does: it may not."""
+    return possibly(clauses_of(condition, domains, False), domains)
 
 
 def _comes(what: Union[Ref, Condition], move: Change, domains: Domains) -> Optional[Clauses]:
@@ -84,8 +90,12 @@ def _moves(what: Union[Ref, Condition], scenario: Scenario, domains: Domains) ->
             (state,) = (state for state in scenario.states if state.name == atom.state.name)
             for ref in (*state.true_if, *state.false_if):
                 found[names.event(ref.name)] = happening(ref.name, scenario, domains)
+            for value in (True, False) if state.is_found_out else ():
+                found[names.found(state.name, value)] = found_out(state.name, value)
         else:
-            for channel in (names.event(atom.event.name), names.done(atom.event.name)):
+            name = atom.event.name
+            stops = (names.broken_off(name),) if events[name].may_stop else ()
+            for channel in (names.event(name), names.done(name), *stops):
                 found[channel] = happening(channel, scenario, domains)
     return found
 

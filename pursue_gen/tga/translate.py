@@ -22,8 +22,8 @@ from pursue_gen.tga.objectives import reach_automaton, safety_automaton, unlocki
 from pursue_gen.tga.own_turns import bound, own_turns
 from pursue_gen.tga.patrols import arrivals, awaited, turns
 from pursue_gen.tga.positions import positions
-from pursue_gen.tga.rules import rule_automaton
-from pursue_gen.tga.states import states_automaton
+from pursue_gen.tga.rules import rule_of
+from pursue_gen.tga.states import finding_automata, first_value, found_channels, states_automaton
 
 
 def translate(scenario: Scenario) -> Network:
@@ -33,8 +33,7 @@ def translate(scenario: Scenario) -> Network:
     PursueError where two names of the scenario lead to one name of the network.
     """
     codes = positions(scenario.pois, scenario.connections)
-    lasting = frozenset(event.name for event in scenario.events if event.duration is not None)
-    rules = [rule_automaton(rule, lasting) for rule in scenario.rules if not rule.each]
+    rules = [rule_of(rule, scenario.events) for rule in scenario.rules if not rule.each]
     own = tuple(own_turns(scenario))
     rules += [count_automaton(event, most) for event, most in counted(scenario)]
     in_turn = tuple((names.rule_turn(automaton.name), turn) for automaton, turn in rules)
@@ -42,7 +41,7 @@ def translate(scenario: Scenario) -> Network:
     around = Surroundings(scenario, codes, in_turn, conditions, awaited(scenario))
     happened = {event.name: names.has_happened(event) for event in scenario.events}
     states = states_automaton(scenario.states)
-    automata = [states] if states else []
+    automata = [*([states] if states else []), *finding_automata(scenario)]
     agents = [powered(agent_automaton(agent, around), scenario) for agent in scenario.agents]
     automata += [apart(assumed(bound(agent, own), scenario, conditions), scenario) for agent in agents]
     automata += ways_awaited(scenario, codes)
@@ -78,13 +77,14 @@ def _clocks(scenario: Scenario) -> Tuple[str, ...]:
     clocks += [names.safety_clock(k) for k, _ in enumerate(scenario.safety)]
     clocks += [names.reach_clock(k) for k, _ in enumerate(scenario.reach)]
     clocks += [names.reach_apart(k) for k, reach in enumerate(scenario.reach) if reach.apart is not None]
-    return (*clocks, *assumption_clocks(scenario), *charge_clocks(scenario))
+    finding = (names.finding_clock(state.name) for state in scenario.states if state.is_found_out)
+    return (*clocks, *assumption_clocks(scenario), *charge_clocks(scenario), *finding)
 
 
 def _variables(scenario: Scenario, pois: Mapping[str, int]) -> Tuple[Tuple[str, int], ...]:
     variables = [(names.rule_turn(rule.name), 0) for rule in scenario.rules if not rule.each]
     variables += [(names.agent_position(agent.name), pois[agent.location.name]) for agent in scenario.agents]
-    variables += [(names.state_value(state.name), int(state.initially)) for state in scenario.states]
+    variables += [(names.state_value(state.name), first_value(state)) for state in scenario.states]
     variables += [(names.times(event.name), 0) for event, _ in counted(scenario)]
     return tuple(variables)
 
@@ -104,8 +104,9 @@ def _channels(scenario: Scenario) -> Tuple[str, ...]:
     ]
     for event in scenario.events:
         channels += [names.event(event.name), *([names.done(event.name)] if event.duration is not None else [])]
+        channels += [names.broken_off(event.name)] if event.may_stop else []
     unlocks = (sync.channel for sync in unlocking(scenario) if sync is not None and sync.sends)
-    return (*channels, *arrivals(scenario), *unlocks)
+    return (*channels, *arrivals(scenario), *found_channels(scenario), *unlocks)
 
 
 def _check_names(network: Network) -> None:

@@ -12,7 +12,7 @@ from typing import AbstractSet, Iterable, Iterator, Optional, Set, Tuple
 
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.language.symbols import Role, Symbol
-from pursue_gen.tga.ends import is_agent
+from pursue_gen.tga.ends import is_agent, is_fact
 from pursue_gen.tga.network import Automaton, Clause, Edge, Guard, Location, Network
 
 
@@ -77,7 +77,8 @@ def _only_of_others(network: Network, team: Iterable[str]) -> Tuple[Set[str], Se
     sent: Tuple[Set[str], Set[str]] = set(), set()
     assigned: Tuple[Set[str], Set[str]] = set(), set()
     for automaton in network.automata:
-        other = is_agent(automaton) and automaton.name not in team and any(e.controllable for e in automaton.edges)
+        other = is_agent(automaton) and automaton.name not in team and not is_fact(automaton)
+        other = other and any(edge.controllable for edge in automaton.edges)
         assigned[other].update(automaton.assigned)
         sent[other].update(edge.sent for edge in automaton.edges if edge.sent is not None)
     return sent[True] - sent[False], assigned[True] - assigned[False]

@@ -8,11 +8,23 @@ from typing import Optional
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import UNDER_WAY, Role, Symbol
 from pursue_gen.tga.network import Edge
-from pursue_runtime.vocabulary import ARRIVES, AT, AT_WORK, BEGINS, DOES, FINISHES, ON_WAY, SETS_OFF, Deed
+from pursue_runtime.vocabulary import (
+    ARRIVES,
+    AT,
+    AT_WORK,
+    BEGINS,
+    BREAKS_OFF,
+    DOES,
+    FINISHES,
+    FOUND,
+    ON_WAY,
+    SETS_OFF,
+    Deed,
+)
 
 _DEEDS = {
     Role.SETTING_OFF: SETS_OFF, Role.ARRIVAL: ARRIVES, Role.WAY: ARRIVES,
-    Role.EVENT: DOES, Role.WORK: BEGINS, Role.END: FINISHES,
+    Role.EVENT: DOES, Role.WORK: BEGINS, Role.END: FINISHES, Role.BROKEN_OFF: BREAKS_OFF,
 }  # fmt: skip
 """What an agent does, by the role of its channel; of the location that it leaves or enters where that says more."""
 
@@ -28,6 +40,8 @@ def place(scenario: Scenario, location: str) -> str:
 def deed(scenario: Scenario, automaton: str, edge: Edge) -> Optional[Deed]:
     """What an agent does by that edge; None where it is no agent, or there are no words for it."""
     symbol = Symbol.of(edge.sync.channel if edge.sync else edge.source)
+    if symbol.role is Role.FOUND and edge.leaves is Role.FINDING:
+        return FOUND.of(symbol.parts[-1])
     role = Role.WORK if symbol.role is Role.EVENT and edge.enters is Role.WORK else symbol.role
     said = _DEEDS.get(role) if any(agent.name == automaton for agent in scenario.agents) else None
     parts = symbol.parts[-1:] if said is ARRIVES else symbol.parts[-2:]

@@ -43,7 +43,9 @@ def courses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
     variables = {name for name, _ in network.variables}
     for state in scenario.states:
         if names.state_value(state.name) in variables:
-            found.append(Status(names.state_value(state.name), state.name, {"0": "false", "1": "true"}))
+            unknown = {str(names.UNKNOWN_VALUE): "unknown"} if state.is_found_out else {}
+            values = {"0": "false", "1": "true", **unknown}
+            found.append(Status(names.state_value(state.name), state.name, values))
     for battery in scenario.batteries:
         texts = {str(level): f"{level} of {battery.capacity}" for level in levels(scenario, battery)}
         found.append(Status(names.level(battery.agent.name), f"battery of {battery.agent.shown}", texts))
@@ -54,9 +56,10 @@ def _turn(scenario: Scenario, automaton: Automaton, location: str) -> str:
     """What a rule waits for in a location, as in `next: load or wait`; or what goes on."""
     leaving = (edge.sync.channel for edge in automaton.edges if edge.source == location and edge.sync)
     channels = [Symbol.of(channel) for channel in dict.fromkeys(leaving)]
-    if channels and all(channel.role is Role.END for channel in channels):
-        return " and ".join(f"{scenario.shown(channel.parts[0])} goes on" for channel in channels)
-    shown = ("the end of " * (each.role is Role.END) + scenario.shown(each.parts[0]) for each in channels)
+    ends = [channel for channel in channels if channel.role is not Role.BROKEN_OFF]
+    if ends and all(channel.role is Role.END for channel in ends):
+        return " and ".join(f"{scenario.shown(channel.parts[0])} goes on" for channel in ends)
+    shown = ("the end of " * (each.role is Role.END) + scenario.shown(each.parts[0]) for each in ends)
     return "next: " + " or ".join(shown)
 
 

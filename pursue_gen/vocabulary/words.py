@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import chain
 from typing import Dict, Iterator, Mapping, Optional
 
 from pursue_gen.language import network_names as names
@@ -28,7 +29,7 @@ class Words:
     objectives: Mapping[str, StatedObjective]
 
     def place(self, automaton: str, location: str) -> str:
-        """Where it is, as in "at c", "on its way from c to b", "doing catch at b", "next: load or wait"."""
+        """Where it is, as in "at c", "on its way from c to b", "doing catch at b", "next: load or wait", "unknown"."""
         return self.texts.get(automaton, {}).get(location) or place(self.scenario, location)
 
     def move(self, automaton: str, edge: Edge) -> str:
@@ -56,7 +57,9 @@ class Words:
         return self._who(automaton, ": ") + (self.move(automaton, edge) if done is None else done.do)
 
     def _who(self, automaton: str, behind: str) -> str:
-        return next((each.shown + behind for each in self.scenario.agents if each.name == automaton), "")
+        agents = (each.shown + behind for each in self.scenario.agents if each.name == automaton)
+        facts = (each.name + behind for each in self.scenario.states if each.is_found_out and each.name == automaton)
+        return next(chain(agents, facts), "")
 
     def when(self, zone: Zone) -> str:
         """The zone in words; "at any time" for the one without constraints."""
@@ -107,6 +110,9 @@ def words_of(scenario: Scenario, network: Network) -> Words:
         clocks[names.assumption_clock(number)] = assumption.since
     clocks = {clock: clocks.get(clock, "the start") for clock in network.clocks}
     texts = {each.of: each.texts for each in statuses(scenario, network)}
+    for state in (each for each in scenario.states if each.is_found_out):
+        said = ((names.UNKNOWN, "unknown"), (names.FINDING, "being found out"), (names.KNOWN, "known"))
+        texts[names.finding(state.name)] = {str(here): text for here, text in said}
     for watcher in (Symbol.of(automaton.name) for automaton in network.automata):
         if watcher.role is Role.WATCHER:
             texts[watcher] = texts[watcher.parts[0]]

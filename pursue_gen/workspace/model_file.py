@@ -51,6 +51,8 @@ def model_data(network: Network, objective: Objective, scenario: Scenario, react
 
 def _format(has_partners: bool, scenario: Scenario, objective: Objective) -> int:
     """The format of model.yaml, the oldest that can say all of it."""
+    if any(state.is_found_out for state in scenario.states):
+        return 5
     if scenario.ends:
         return 4
     return 3 if has_partners else 2 if scenario.assumptions or _has_several(objective) else 1
@@ -96,8 +98,9 @@ def _given_up(scenario: Scenario) -> Dict[str, Any]:
 
 
 _WATCHING = dict.fromkeys((Role.SAFETY, Role.WATCHER, Role.TOUR), "safety")
-_KINDS = {Role.STATES: "states", Role.REACH: "reach", **_WATCHING}
-"""By the role of an automaton its kind; all others but agents follow events as a rule does."""
+_KINDS = {Role.STATES: "states", Role.FACT: "agent", Role.REACH: "reach", **_WATCHING}
+"""By the role of an automaton its kind; all others but agents follow events as a rule does. Of what a state is that is
+not known at first, the world decides, as of what an agent does that nobody controls."""
 
 
 def _kind(automaton: str, scenario: Scenario) -> str:

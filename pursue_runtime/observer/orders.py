@@ -57,6 +57,8 @@ class Orders:
                     yield Order(name, first.word, seq, edge.target, at_once=True)
             elif is_under_way(edge.target):
                 yield Order(name, first.word, seq, edge.target)
+            elif edge.breaks_off and is_commanded:
+                yield Order(name, first.word, seq, edge.target, at_once=True)
         moved = {name for name, _ in moves}
         for robot, events in self._reacts_to.items():
             place = locations[robot]

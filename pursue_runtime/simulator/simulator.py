@@ -10,10 +10,10 @@ from __future__ import annotations
 import math
 import random
 from dataclasses import dataclass
-from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Tuple
+from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Sequence, Tuple
 
 from pursue_runtime.event_words import Word, format_word
-from pursue_runtime.locations import action, is_end, is_movement, is_under_way
+from pursue_runtime.locations import FINDING_OUT, action, is_movement, is_under_way
 from pursue_runtime.model import Automaton, Edge, Model
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.state import LIVE, SystemState, older, rewinds
@@ -68,15 +68,21 @@ def end_window(model: Model, automaton: Automaton, location: str) -> Optional[En
     Whoever takes part in what another agent does has the same window, by its own clock.
     """
     for edge in automaton.edges_from(location):
-        if not is_end(edge.source, edge.target):
+        if not edge.is_end:
             continue
         if edge.sync == "receive":
             return _shared_window(model, edge)
         lows = {bound.right: -bound.bound for bound in edge.when if bound.right and not bound.left}
         for bound in automaton.invariants[location]:
-            if bound.left in lows:
-                return EndWindow(edge.word, bound.left, lows[bound.left], bound.bound)
+            if bound.left in lows or location == FINDING_OUT:
+                return EndWindow(edge.word, bound.left, lows.get(bound.left, 0.0), bound.bound)
     return None
+
+
+def end_words(automaton: Automaton, location: str) -> List[str]:
+    """Return the words with one of which the agent ends what it does at this location, if it ends that itself."""
+    own = (edge for edge in automaton.edges_from(location) if edge.sync != "receive")
+    return list(dict.fromkeys(edge.word for edge in own if edge.is_end))
 
 
 def _shared_window(model: Model, ending: Edge) -> Optional[EndWindow]:
@@ -103,7 +109,7 @@ def report_of(model: Model, agent: str, event: str, as_of: Optional[int] = None)
 def reports(automaton: Automaton, edge: Edge) -> bool:
     """Return True if the agent reports this edge: an event of its own or, as a robot, the end of what it does together
     with others."""
-    return edge.sync != "receive" or (automaton.kind == "robot" and is_end(edge.source, edge.target))
+    return edge.sync != "receive" or (automaton.kind == "robot" and edge.is_end)
 
 
 def _begins(order: str, location: str) -> bool:
@@ -116,6 +122,14 @@ class Durations(Protocol):
 
     def draw(self, window: EndWindow, agent: str, number: int) -> float:
         """Return time units from the start of the agent's `number`-th activity to its end, which is in the window."""
+
+    def pick(self, words: Sequence[str], agent: str, number: int) -> str:
+        """Return with which of these words it ends."""
+
+
+def picked(words: Sequence[str], seed: str) -> str:
+    """Return one of these words, the same for the same seed."""
+    return words[0] if len(words) == 1 else random.Random(f"{seed}/word").choice(words)
 
 
 class Delays:
@@ -135,6 +149,10 @@ class Delays:
         width = min(1.0, window.high - window.low)
         first, last = window.low + INSIDE[0] * width, window.high - INSIDE[1] * width
         return first + share * (last - first)
+
+    def pick(self, words: Sequence[str], agent: str, number: int) -> str:
+        """With which of these words it ends."""
+        return picked(words, f"{self._seed}/{agent}/{number}")
 
 
 class Simulator:
@@ -223,7 +241,7 @@ class Simulator:
         name = automaton.name
         location = state.locations.get(name, "")
         window = end_window(self._model, automaton, location)
-        reported = any(is_end(e.source, e.target) and reports(automaton, e) for e in automaton.edges_from(location))
+        reported = any(e.is_end and reports(automaton, e) for e in automaton.edges_from(location))
         if window is None or not reported or window.clock not in state.clocks:
             self._activities.pop(name, None)
             return
@@ -233,8 +251,9 @@ class Simulator:
         if known is not None and known.location == location and abs(known.since - since) < same:
             return
         number = self._counts[name] = self._counts.get(name, 0) + 1
+        event = self._delays.pick(end_words(automaton, location) or [window.event], name, number)
         activity = Activity(
-            location, since, report_of(self._model, name, window.event, state.seq), window.low * state.unit,
+            location, since, report_of(self._model, name, event, state.seq), window.low * state.unit,
             since + self._delays.draw(window, name, number) * state.unit,
             under_way=automaton.kind != "robot" or newborn,
         )

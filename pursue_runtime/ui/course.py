@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_runtime.locations import is_end
+from pursue_runtime.locations import FINDING_OUT
 from pursue_runtime.model import Model, Position
 from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import RUNNING, SystemState
@@ -35,8 +35,8 @@ class Step(NamedTuple):
 def course(model: Model, strategies: Sequence[Strategy], state: SystemState) -> List[Step]:
     """The next events by these strategies, one for each controller, in order; none where the mission does not run.
 
-    It ends at the goal, where the strategies know nothing more to do, and where somebody who is not controlled has to
-    act.
+    It ends at the goal, where the strategies know nothing more to do, where somebody who is not controlled has to act,
+    and where it is being found out what a state is.
     """
     if state.status != RUNNING:
         return []
@@ -86,8 +86,11 @@ def _ends(model: Model, here: Position, lost: "set[str]") -> Iterator[_Move]:
     for automaton in model.of_kind(*ACTING):
         location = here.locations[automaton.name]
         for edge in automaton.edges_from(location):
-            if edge.sync == "receive" or edge.controllable or not is_end(edge.source, edge.target):
+            if edge.sync == "receive" or edge.controllable or not edge.is_end:
                 continue
+            if location == FINDING_OUT:
+                yield 0.0, automaton.name, "", False  # nobody knows what comes of it
+                break
             if automaton.name not in lost and edge.allowed(here.values):
                 yield due([edge.when], here.clocks, _MARGIN) or 0.0, automaton.name, edge.word, False
                 break
@@ -98,7 +101,7 @@ def _patience(model: Model, here: Position) -> float:
     rooms = [float("inf")]
     for automaton in model.of_kind("agent"):
         location = here.locations[automaton.name]
-        if not any(is_end(edge.source, edge.target) for edge in automaton.edges_from(location)):
+        if not any(edge.is_end for edge in automaton.edges_from(location)):
             bounds = model.bounds_of(automaton.name, location, here.values)
             rooms += [bound.bound - here.clocks[bound.left] for bound in bounds if bound.left]
     return min(rooms)

@@ -12,6 +12,7 @@ from pursue_runtime.state import SystemState
 from pursue_runtime.ui.mission_view import MARGIN, Environment, possible_words
 from pursue_runtime.ui.options import Options
 from pursue_runtime.ui.trace import TraceError, TraceStep, read_trace
+from pursue_runtime.vocabulary import is_fact
 
 MIN_PAUSE = 1.0  # time units after a word without effect until the next one
 LATE = 1.0  # time units after which a step of a trace that a restart has missed is skipped
@@ -53,7 +54,9 @@ class RandomEnvironment:
         if self._state is None:
             return
         delay = pause + self._random.expovariate(1.0 / self._pace)
-        offers = possible_words(self._model, self._state, self._state.clocks_at(now))
+        able = possible_words(self._model, self._state, self._state.clocks_at(now))
+        # What states are found to be is said by the simulator.
+        offers = [offer for offer in able if not is_fact(self._model.automaton(offer.agent))]
         then = [offer for offer in offers if offer.opens <= delay and delay <= offer.closes - MARGIN]
         if then:
             self._plan = (now + delay * self._state.unit, self._random.choice(then).word)

@@ -19,14 +19,14 @@ from pursue_runtime.event_words import (
     one_line,
     parse_word,
 )
-from pursue_runtime.locations import is_end, is_movement
+from pursue_runtime.locations import FINDING_OUT, is_movement
 from pursue_runtime.model import Model
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.sentences import Told, in_words
 from pursue_runtime.simulator.simulator import ACTING, report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
-from pursue_runtime.vocabulary import deed, instruction, said_at_start, sentence, where
+from pursue_runtime.vocabulary import deed, instruction, is_fact, said_at_start, sentence, where
 from pursue_runtime.zones import due
 
 MARGIN = 0.05  # time units: how far inside an open bound something counts as possible
@@ -60,12 +60,14 @@ class Task(NamedTuple):
 
 def possible_words(model: Model, state: SystemState, clocks: Dict[str, float], kinds: Collection[str] = ("agent",),
              ends: bool = False) -> List[PossibleWord]:
-    """What agents of these kinds can start (and with `ends` also end) in this state, in system order."""
+    """What agents of these kinds can start (and with `ends` also end) in this state, in system order, and what states
+    can be found to be that are being found out."""
     found: Dict[str, PossibleWord] = {}
     for automaton in model.of_kind(*kinds):
         location = state.locations.get(automaton.name, "")
         for edge in automaton.edges_from(location):
-            if edge.sync == "receive" or (is_end(edge.source, edge.target) and not ends):
+            hidden = edge.is_end and location != FINDING_OUT and not ends
+            if edge.sync == "receive" or hidden:
                 continue
             zone = edge.when + automaton.invariants[location]
             opens = due([zone], clocks, MARGIN) if edge.allowed(state.values) else None
@@ -82,7 +84,8 @@ def reporters(model: Model, ends: bool, settings: Mapping[str, Any]) -> List[str
     """The agents whose ends a person reports: people, and with `ends` all whose ends are reported (`settings` are
     those of ui.yaml), since nobody is simulated then."""
     reported = settings.get("reports", [automaton.name for automaton in model.automata]) if ends else ()
-    return [agent.name for agent in model.of_kind(*ACTING) if agent.kind == "human" or agent.name in reported]
+    agents = [agent for agent in model.of_kind(*ACTING) if not is_fact(agent)]
+    return [agent.name for agent in agents if agent.kind == "human" or agent.name in reported]
 
 
 def tasks(model: Model, state: SystemState, agents: Collection[str]) -> List[Task]:
@@ -101,7 +104,7 @@ def tasks(model: Model, state: SystemState, agents: Collection[str]) -> List[Tas
             found.append(Task(automaton.name, automaton.kind, text, "Resume", resume, shown))
             continue
         begin = next((edge for edge in automaton.edges if edge.target == location != edge.source), None)
-        ends = (edge for edge in automaton.edges_from(location) if is_end(edge.source, edge.target))
+        ends = (edge for edge in automaton.edges_from(location) if edge.is_end)
         end = next((edge for edge in ends if reports(automaton, edge)), None)
         if begin is not None and end is not None:
             is_person = automaton.kind == "human"
@@ -311,7 +314,7 @@ class MissionView:
             return ""
         for edge in automaton.edges:
             if edge.word == state.event and edge.target == here:
-                over, text = is_end(edge.source, edge.target), instruction(self._model, automaton, edge)
+                over, text = edge.is_end, instruction(self._model, automaton, edge)
                 return "" if over else f"{self._model.shown(person)}: {text} now"
         return ""
 

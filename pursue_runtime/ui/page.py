@@ -9,7 +9,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 
 from pursue_runtime.data import reading
 from pursue_runtime.event_words import START
-from pursue_runtime.locations import is_action, is_end, is_movement
+from pursue_runtime.locations import FINDING_OUT, is_action, is_end, is_movement
 from pursue_runtime.model import Automaton, Model
 from pursue_runtime.poses import read_poses
 from pursue_runtime.sentences import Told, in_words, listed
@@ -23,7 +23,7 @@ from pursue_runtime.ui.outlook import Outlook
 from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_now
 from pursue_runtime.ui.statuses import Status, status_texts
 from pursue_runtime.ui.strategies import strategies_in
-from pursue_runtime.vocabulary import awaited, begin_of, deed, place, said_at_start, sentence, where
+from pursue_runtime.vocabulary import awaited, begin_of, deed, place, said_at_start, sentence, value_found, where
 
 MAX_ENTRIES = 300  # entries of the log
 NOTE, GOOD, BAD = "note", "good", "bad"
@@ -269,7 +269,7 @@ class Page:
         """One for each thing that the agent may begin, possible now or not, with the locations where it may."""
         found: Dict[str, Dict[str, Any]] = {}
         for edge in automaton.edges:
-            if edge.sync != "receive" and not is_end(edge.source, edge.target):
+            if edge.sync != "receive" and (not edge.is_end or edge.source == FINDING_OUT):
                 word = report_word(self._model, automaton.name, edge.word)
                 label = self._label(automaton.name, word)
                 button = found.setdefault(word, {"agent": automaton.name, "word": word, "label": label, "from": []})
@@ -283,6 +283,8 @@ class Page:
         event = word.rpartition(":")[2]
         edges = (edge for edge in automaton.edges if edge.word == event and edge.source != edge.target)
         edge = next(edges, None)
+        if edge is not None and edge.source == FINDING_OUT:
+            return f"is {value_found(edge)}"
         moves = edge is not None and is_movement(edge.target)
         return where(self._model, automaton, edge.target) if edge and moves else self._model.shown(event)
 

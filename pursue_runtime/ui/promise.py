@@ -9,7 +9,7 @@ import math
 from typing import Any, Dict, FrozenSet, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.data import DataError, reading
-from pursue_runtime.locations import is_end
+from pursue_runtime.locations import breaks_off, is_end
 from pursue_runtime.model import Model
 from pursue_runtime.sentences import listed
 from pursue_runtime.simulator.simulator import ACTING, end_window
@@ -198,7 +198,8 @@ class Guarantee:
         if last is None or agent is None or last.seq != state.seq - 1 or agent.name in self._excused:
             return ""
         before, here = last.locations.get(agent.name, ""), state.locations.get(agent.name, "")
-        window = end_window(self._model, agent, before) if is_end(before, here) else None
+        off = breaks_off(before, state.event)
+        window = end_window(self._model, agent, before) if is_end(before, here) and not off else None
         if window is None or window.clock not in last.clocks:
             return ""
         took = last.clocks_at(state.stamp)[window.clock]

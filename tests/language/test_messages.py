@@ -120,7 +120,7 @@ SLIPS = [
     ('rule "r": a before b)', "PML010", 21, "found `)`", "this `)` has no `(`"),
     ('rule "r": ' + "(" * 41 + "a", "PML016", 51, "more than 40 brackets", "split the rule"),
     ('state "s": initially false true_if a', "PML010", 28, "expected `,`", "put a comma behind true or false"),
-    ('state "s": initially maybe, true_if a', "PML010", 22, "expected `true` or `false`", "the form is"),
+    ('state "s": initially maybe, true_if a', "PML010", 22, "expected `true`, `false` or `unknown`", "the form is"),
     ('state "s": false', "PML010", 12, "expected `initially`", "the form is"),
     ('state "s": initially false, true_if a, false_if b', "PML010", 40, "expected a name", "false_if is a word"),
     ("stateDependency: a only_if s", "PML010", 29, "expected `is_true` or `is_false`", "the form is"),
@@ -193,7 +193,7 @@ def test_no_nonsense_follows_from_a_syntax_error() -> None:
 
 def test_an_expected_list_reads_like_a_sentence() -> None:
     (finding,) = syntax_errors('event "e" e')
-    expected = "expected `label`, `collaborative`, `location`, `duration`, `at_most`, `only_if` or the end"
+    expected = "expected `label`, `collaborative`, `location`, `duration`, `may_stop`, `at_most`, `only_if` or the end"
     assert expected in finding.message
 
 

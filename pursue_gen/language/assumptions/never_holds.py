@@ -48,6 +48,10 @@ class NeverHolds(Assumption):
         controlled = [agent for agent in setting.agents if agent.controllable]
         if isinstance(atom, Holds):
             state = atom.state
+            if any(each.name == state.name and each.is_found_out for each in setting.states):
+                message = f"{state.name} is unknown at first: nobody could tell what this keeps agents from"
+                hint = "name states that are known from the start, or let it be found out and write an objective"
+                return [error("PML432", message, state.span, hint)]
             events = {r.name for s in setting.states if s.name == state.name for r in (*s.true_if, *s.false_if)}
             doers = [(agent.name, ref.name) for agent in controlled for ref in agent.can_do if ref.name in events]
             said = [f"{who} is controlled, and its {event} sets {state.name}: {_DECIDED}" for who, event in doers]

@@ -25,6 +25,7 @@ class Event(Labelled):
     it can happen in all; None: as often as one likes.
     `together`: whoever takes part in a collaborative event is busy until it ends; else only the one who does it.
     `only_if`: what has to hold when it begins; None: nothing. `label`: what people read; None: the name.
+    `may_stop`: who does it may break it off; it has not happened then.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Event(Labelled):
     at_most: Optional[int] = None
     only_if: Optional[Condition] = None
     label: Optional[str] = None
+    may_stop: bool = False
 
     listed_in: ClassVar[str] = "events"
     symbol: ClassVar[str] = "Event"
@@ -50,12 +52,13 @@ class Event(Labelled):
             "How long it takes, in the unit of time that you chose: 3 is up to 4. Without it, it takes no time.",
         ),
         Word("to", "Where the agent arrives; or, behind a number, the latest time.", True),
+        Word("may_stop", "It may be broken off before it ends, and has not happened then.", True),
         Word("at_most", "So many and no more: how often it happens in all, or of how many something holds.", True),
         Word("times", "In the whole mission.", True),
     )
     template: ClassVar[Template] = Template(
         'event {name="work"} [label {label:name}] [collaborative] [together] [location {location:POI=a}]'
-        " [duration {duration,latest:window=6}] [at_most {at_most:count=2} times]"
+        " [duration {duration,latest:window=6}] [may_stop] [at_most {at_most:count=2} times]"
         " [only_if {only_if:condition=open is_true}]"
     )
     note: ClassVar[str] = (
@@ -64,6 +67,7 @@ class Event(Labelled):
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("something that can happen at a place", 'event "{=work}" location {POI} duration {=1}'),
         Form("something that takes more or less time", 'event "{=work}" location {POI} duration {=3} to {=5}'),
+        Form("something that may be broken off", 'event "{=work}" location {POI} duration {=20} may_stop'),
         Form("something that happens so many times only", 'event "{=call}" at_most {=2} times'),
         Form(
             "something that can happen only while something holds",
@@ -94,11 +98,18 @@ class Event(Labelled):
 
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         own = (kind, name) == ("event", self.name)
+        if own and self.may_stop:
+            yield "may be broken off, and has not happened then"
         if self.only_if is not None and (own or (kind == "state" and self.speaks_of(kind, name))):
             yield f"{'' if own else f'{self.name} '}only while {shown(condition_words(self.only_if))}"
 
     def check(self) -> Iterator[Diagnostic]:
         name, duration, most = self.name, self.duration, self.at_most
+        if self.may_stop and (duration is None or self.collaborative):
+            what, hint = "is collaborative", "delete may_stop"
+            if duration is None:
+                what, hint = "takes no time", "write how long it takes, as in duration 20 may_stop; or delete may_stop"
+            yield error("PML433", f"{name} {what}: it cannot be broken off", self.span, hint)
         if duration is not None and duration <= 0 and self.latest is None:
             hint = "write duration and a number above 0, or delete duration: then it takes no time"
             yield error("PML141", f"{name} has a duration of 0", self.span, hint)

@@ -11,7 +11,7 @@ from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
 from pursue_gen.tools.replay.record import MissionRecord
 from pursue_gen.vocabulary.agents import place
 from pursue_runtime.drives.report import ARRIVED, Drive
-from pursue_runtime.locations import action_of
+from pursue_runtime.locations import action_of, breaks_off
 from pursue_runtime.state import WAITING, SystemState
 
 _SAME = 0.005
@@ -234,6 +234,8 @@ class _Stays:
             stay.flaws.add("the recording lacks its end")
         elif isinstance(what, Way) and here != what.b:
             stay.flaws.add("it turned round")
+        elif breaks_off(stay.location, state.event):
+            stay.flaws.add("it was broken off")
         if stay.flaws or took <= 0:
             why = ", ".join(sorted(stay.flaws)) or "it took no time"
             self.unused.append(Unused(what, took, why, self._file))

@@ -241,6 +241,7 @@ _FIELDS: Mapping[str, Mapping[str, Callable[[Values, str], Parts]]] = {
         "together": _tick("TOGETHER"),
         "location": _text("LOCATION", fields.name_of),
         "duration": _text("DURATION", fields.window_of),
+        "may_stop": _tick("MAY_STOP"),
         "at_most": _times,
         "only_if": _text("ONLY_IF", fields.text_of),
     },

@@ -208,6 +208,10 @@ def _agents(document: Draft) -> List[Dict[str, Any]]:
     return found
 
 
+_TICKS = ("collaborative", "together", "may_stop")
+"""What is so of an event, or not."""
+
+
 def _events(document: Draft) -> List[Dict[str, Any]]:
     found = []
     for number, one in _whole(document, "EVENT"):
@@ -217,14 +221,14 @@ def _events(document: Draft) -> List[Dict[str, Any]]:
         event = {"name": bare(one.name), "label": words_behind(one, "LABEL")[1:-1]}
         texts = {key: words_behind(one, key.upper()) for key in ("location", "duration", "only_if")}
         at_most = words_behind(one, "AT_MOST").partition(" ")[0]
-        ticks = {key: key.upper() in parts for key in ("collaborative", "together")}
+        ticks = {key: key.upper() in parts for key in _TICKS}
         found.append({**event, **texts, "at_most": at_most, **ticks, **_placed(document, number)})
     for each in document.scenario.events:
         if each.span.member:
             event = {"name": each.name, "label": each.label or "", "at_most": str(each.at_most or "")}
             event.update(location=each.location.name if each.location else "", only_if=_condition(each.only_if))
             event["duration"] = "" if each.duration is None else window_text(each.duration, each.latest)
-            ticks = {key: getattr(each, key) for key in ("collaborative", "together")}
+            ticks = {key: getattr(each, key) for key in _TICKS}
             found.append({**event, **ticks, **_made(document, each.span)})
     return found
 

@@ -195,9 +195,11 @@ def _bracketed(body: RuleBody) -> str:
 
 
 def _state(scenario: Scenario, state: State) -> List[str]:
-    lines = [f"**{state.name}**: a state, {'true' if state.initially else 'false'} at the start", ""]
+    lines = [f"**{state.name}**: a state, {state.first_words} at the start", ""]
     lines.append("- made true by " + (", ".join(ref.name for ref in state.true_if) or "nothing"))
     lines.append("- made false by " + (", ".join(ref.name for ref in state.false_if) or "nothing"))
+    lines += [f"- shown by {', '.join(ref.name for ref in state.shown_by)}"] if state.shown_by else []
+    lines += [f"- seen by robots at {state.seen_at.shown}"] if state.seen_at is not None else []
     return lines + _said(scenario, "state", state.name)
 
 

@@ -120,7 +120,7 @@ def _offered(session: Session, offer: Offer) -> Tuple[str, str]:
 
 def _intention(session: Session, world: StrategyPlay) -> str:
     play, event = session.play, world.strategy_event(session.play)
-    while event is not None and session.setup.owner(event.move) not in session.setup.agents:
+    while event is not None and session.setup.owner(event.move) not in session.setup.movers:
         play = session.setup.taken(play, event.move, event.at, event.by)  # a person sees no difference
         event = None if play.over else world.strategy_event(play)
     if event is None:
@@ -217,7 +217,7 @@ def _advanced(session: Session, play: PlayState, until: Optional[Fraction] = Non
     """The play when something has happened that a person would notice, or at the time `until`."""
     while True:
         before, play = play, session.game.advance(play, until)
-        silent = len(play.deeds) > len(before.deeds) and play.deeds[-1].agent not in session.setup.agents
+        silent = len(play.deeds) > len(before.deeds) and play.deeds[-1].agent not in session.setup.movers
         if play.over or not silent:
             return play
 
@@ -239,7 +239,7 @@ def _described(session: Session, first: int) -> List[str]:
     """What has happened, from that step on."""
     lines = []
     for deed in session.play.deeds[first:]:
-        if deed.agent in session.setup.agents:
+        if deed.agent in session.setup.movers:
             said = session.words.sentence(deed.agent, session.setup.game.origins[deed.edges[0]])
             lines.append(f"{time_text(deed.at):>9}  {said}")
     return lines

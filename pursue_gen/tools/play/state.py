@@ -49,6 +49,11 @@ class Setup:
         return tuple(agent.name for agent in self.scenario.agents)
 
     @property
+    def movers(self) -> Tuple[str, ...]:
+        """The automata whose moves people see: agents, and states of which it is found out what they are."""
+        return (*self.agents, *self.scenario.facts)
+
+    @property
     def safety(self) -> bool:
         """True where there is nothing to reach, and so no end but by losing."""
         return not self.objective.reaches

@@ -13,6 +13,7 @@ from fractions import Fraction
 from typing import List, Optional, Tuple
 
 from pursue_gen.explanation.policy import Window
+from pursue_gen.language.symbols import Role
 from pursue_gen.synthesis.game import JointMove
 from pursue_gen.tools.play.advice import Advisor
 from pursue_gen.tools.play.state import CHANCE, GRAIN, OTHERS, ROBOTS, PlannedMove, PlayState, Setup
@@ -56,7 +57,7 @@ class StrategyPlay:
         """What the person can do now or later, in the order of the agents; ends come last."""
         if play.over:
             return ()
-        agents = self.setup.agents
+        agents = self.setup.movers
         found: List[Offer] = []
         for move, _ in self.setup.open_moves(play, False):
             owner = self.setup.owner(move)
@@ -116,7 +117,7 @@ class StrategyPlay:
                 moment = plans[key]
             elif self.setup.is_end(move):
                 moment, by = self._drawn(play, move), CHANCE
-            elif key[0] not in self.setup.agents:
+            elif key[0] not in self.setup.movers:
                 delay = open_.earliest(GRAIN)
                 moment, by = None if delay is None else play.now + delay, CHANCE
             if moment is not None and open_.holds(moment - play.now):
@@ -135,11 +136,17 @@ class StrategyPlay:
         high = min(play.now + game.time(bound) - here.clocks[clock - 1] for clock, bound in bounds)
         lows = [play.now - game.time(bound) - here.clocks[j - 1] for i, j, bound in move.bounds if i == 0]
         low = max([*lows, Fraction(0)])
-        name = self.setup.owner(move)
+        name, edge = self.setup.owner(move), game.origins[move.edges[0]]
         number = sum(deed.agent == name for deed in play.deeds)
+        if edge.leaves is Role.FINDING and any(dict(edge.assign).values()) is not self._is_true(name):
+            return None  # it is found to be the other
         moment = _short(low + (high - low) * self._share(name, number), low, high)
         moment = max(moment, min(low + GRAIN, high))
         return min(max(moment, play.now), high)
+
+    def _is_true(self, state: str) -> bool:
+        """What a state turns out to be, if the person does not say."""
+        return random.Random(f"{self.seed}/{state}").random() < 0.5
 
     def _share(self, name: str, number: int) -> Fraction:
         """Where in a window: each end of it with probability 1/4."""

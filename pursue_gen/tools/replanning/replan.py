@@ -195,7 +195,7 @@ def _reason_lost(network: Network, objective: Objective, scenario: Scenario) -> 
 def _cannot_be_met(game: Network, request: Request) -> str:
     """One sentence: the objective that cannot be guaranteed from here, and the agents on which it depends."""
     clocks = start_clocks(game, request)
-    agents = [agent.name for agent in request.scenario.agents]
+    agents = [*(agent.name for agent in request.scenario.agents), *request.scenario.facts]
     over = [each.name for each in game.automata if passed_bounds(each, request.locations[each.name], clocks)]
     for name in over:
         if name not in agents:

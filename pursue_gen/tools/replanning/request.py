@@ -116,7 +116,7 @@ def _lines(data: object) -> Tuple[str, ...]:
 def _agents(data: object, name: str, scenario: Scenario) -> FrozenSet[str]:
     if not isinstance(data, (list, tuple)) or not all(isinstance(agent, str) for agent in data):
         raise wrong(f"{name} is {_shown(data)}", "a list of names of agents, [] for none")
-    agents = [agent.name for agent in scenario.agents]
+    agents = [*(agent.name for agent in scenario.agents), *scenario.facts]
     for agent in sorted(set(data) - set(agents)):
         raise wrong(f"{agent} is {name}", f"agents: {', '.join(agents)}")
     return frozenset(data)

@@ -30,7 +30,7 @@ def network_from(network: Network, request: Request, told_apart: bool = False) -
     PursueError (exit status 2) for a place that the network does not have.
     """
     locations, values, clocks = _place(network, request)
-    agents = {agent.name for agent in request.scenario.agents}
+    agents = {*(agent.name for agent in request.scenario.agents), *request.scenario.facts}
     automata = []
     for automaton in network.automata:
         automaton = without_broken(automaton, values)
@@ -44,7 +44,7 @@ def network_from(network: Network, request: Request, told_apart: bool = False) -
             moved = _idle(moved, here, clocks)
         automata.append(_without_ways(moved, request) if automaton.name in agents else moved)
     positions = (agent_position(name) for name in request.excused if _shares(network, name))
-    absent = {(position, values[position]) for position in positions}
+    absent = {(position, values[position]) for position in positions if position in values}
     automata = [_without_company(automaton, absent) for automaton in automata]
     there = replace(network, automata=tuple(automata), variables=tuple(values.items()))
     reaction = request.rules.reaction

@@ -65,7 +65,7 @@ class CommandCheck:
     def _begins(step: ReplayedStep, orders: Orders) -> bool:
         """True for a step that is for the strategy to begin, whatever was recorded of it."""
         agent, edge = step.move[0]
-        return step.is_command or (agent in orders.owners and not is_end(edge.source, edge.target))
+        return step.is_command or (agent in orders.owners and not edge.is_end)
 
     def _wanted(self, orders: Orders, step: ReplayedStep) -> bool:
         """True where the strategy has this command at the moment, or had it not longer ago than the reaction, since

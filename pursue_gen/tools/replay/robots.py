@@ -16,6 +16,7 @@ from pursue_gen.tools.replay.orders import Orders
 from pursue_gen.tools.replay.receipts import receipts_in, without_receipt
 from pursue_gen.tools.replay.record import MissionRecord, RobotOrder
 from pursue_gen.workspace.map_spots import SPARE_REACH
+from pursue_runtime.locations import breaks_off
 from pursue_runtime.state import SystemState
 
 LATE = 2.0
@@ -163,6 +164,8 @@ def _activities(steps: Sequence[Done], robots: Sequence[str], record: MissionRec
             if robot in open_:
                 place = open_.pop(robot)
                 begun[place] = (begun[place][0], record.known_from(state), robot, begun[place][3])
+            if mover == robot and breaks_off(here, state.event):
+                begun.append((state, state.stamp, robot, ""))
             if role_of(there) is Role.WAY:
                 open_[robot] = len(begun)
                 begun.append((state, float("inf"), robot, there))

@@ -12,6 +12,7 @@
   };
   const state = (n) => { const [places, values, wait, ours, others, goal, done] = book.states[n]; return { places, values, wait, ours, others, goal, done }; };
   const step = ([who, text, target, when]) => ({ who: book.automata[who].shown, number: who, text: book.texts[text], target, when });
+  const said = (value) => value === 2 ? "not known" : value ? "true" : "false"; // what a state is
   const place = (k, p) => book.automata[k].places[p][0];
   // In stages a situation speaks of some only; the last place of the others stands for all.
   const free = (k, p) => book.parts.length > 0 && p === book.automata[k].places.length - 1;
@@ -23,11 +24,11 @@
   const rest = (s) => [
     ...book.automata.map((a, k) => [a, k]).filter(([a, k]) => !agents.includes(k) && a.kind !== "states" && !free(k, s.places[k]))
       .map(([a, k]) => `${a.shown}: ${place(k, s.places[k])}`),
-    ...book.variables.map((name, k) => `${name}: ${s.values[k] ? "true" : "false"}`).filter((_, k) => s.values[k] >= 0)].join("; ");
+    ...book.variables.map((name, k) => `${name}: ${said(s.values[k])}`).filter((_, k) => s.values[k] >= 0)].join("; ");
   const changed = (s, t) => {
     const parts = [...s.places.keys()].filter((k) => s.places[k] !== t.places[k])
       .map((k) => `${book.automata[k].shown}${agents.includes(k) ? "" : ":"} ${place(k, t.places[k])}`);
-    book.variables.forEach((name, k) => { if (s.values[k] !== t.values[k]) parts.push(`${name} is ${t.values[k] ? "true" : "false"}`); });
+    book.variables.forEach((name, k) => { if (s.values[k] !== t.values[k]) parts.push(`${name} is ${said(t.values[k])}`); });
     return parts.join("; ") || "nothing has changed";
   };
   const times = (zones) => {
@@ -102,6 +103,7 @@
       const variable = findName(book.variables, word);
       if (variable >= 0) { value = variable; query.values.set(variable, 1); continue; }
       if (value !== null && (small === "false" || small === "not")) { query.values.set(value, 0); continue; }
+      if (value !== null && small === "unknown") { query.values.set(value, 2); continue; }
       if (who !== null) {
         const all = book.automata[who].places.map((p) => p[1]);
         const name = all.flatMap((p) => p.slice(1)).find((one) => one === word) ||
@@ -136,7 +138,7 @@
   });
   const repeated = (query) => {
     const parts = [...query.places].map(([k, good]) => `${book.automata[k].name} is ${[...good].map((p) => place(k, p)).join(" or ") || "nowhere"}`);
-    query.values.forEach((v, k) => parts.push(`${book.variables[k]} is ${v ? "true" : "false"}`));
+    query.values.forEach((v, k) => parts.push(`${book.variables[k]} is ${said(v)}`));
     return parts.join(" and ") || "anything";
   };
 
@@ -198,8 +200,9 @@
     at("choose").append(make("label", {}, a.shown, select));
     return select;
   });
-  const values = book.variables.map((name) => {
-    const select = make("select", {}, ...[["", "any"], ["1", "true"], ["0", "false"]].map(([value, text]) => make("option", { value }, text)));
+  const values = book.variables.map((name, k) => {
+    const unknown = book.states.some((each) => each[1][k] === 2) ? [["2", said(2)]] : [];
+    const select = make("select", {}, ...[["", "any"], ["1", "true"], ["0", "false"], ...unknown].map(([value, text]) => make("option", { value }, text)));
     at("choose").append(make("label", {}, name, select));
     return select;
   });

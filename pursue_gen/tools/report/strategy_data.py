@@ -37,7 +37,8 @@ class Transition:
 
 @dataclass(frozen=True)
 class Situation:
-    """A discrete state: `places` are locations' numbers, `values` those of the scenario's states (0, 1 or UNKNOWN).
+    """A discrete state: `places` are locations' numbers, `values` those of the scenario's states: 0, 1, 2 where
+    it is not known yet, or UNKNOWN.
 
     `wait`: zones in which no command is due; `others`: the uncontrollable moves. `goal`: the goal is reached; `done`:
     so is what the part of a stage is played for.

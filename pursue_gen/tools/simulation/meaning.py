@@ -2,25 +2,41 @@
 
 from __future__ import annotations
 
-from typing import Mapping, Set
+from itertools import product
+from typing import Callable, Iterable, Mapping, Set
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Atom, Condition, Holds, Not, OnWay
+from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Atom, Condition, Holds, Not, OnWay, names_in
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, role_of
 
 
-def holds(condition: Condition, scenario: Scenario, locations: Mapping[str, str], values: Mapping[str, int]) -> bool:
-    """True if a condition holds where agents are at these locations of their automata and variables have these values.
+def holds(
+    condition: Condition,
+    scenario: Scenario,
+    locations: Mapping[str, str],
+    values: Mapping[str, int],
+    whatever: Callable[[Iterable[object]], bool] = all,
+) -> bool:
+    """True if a condition holds where agents are at these locations of their automata and variables have these values,
+    whatever the states are that are not known; with `any` if it may hold.
 
     Raises KeyError for an agent or a state that is not there.
     """
+    named = (names.state_value(ref.name) for kind, ref in names_in(condition) if kind == "state")
+    unknown = tuple(dict.fromkeys(name for name in named if values[name] == names.UNKNOWN_VALUE))
+    some = ({**values, **dict(zip(unknown, known))} for known in product((0, 1), repeat=len(unknown)))
+    return whatever(_holds(condition, scenario, locations, each) for each in some)
+
+
+def _holds(condition: Condition, scenario: Scenario, locations: Mapping[str, str], values: Mapping[str, int]) -> bool:
+    """True if it does where all states are known."""
     if isinstance(condition, Not):
-        return not holds(condition.part, scenario, locations, values)
+        return not _holds(condition.part, scenario, locations, values)
     if isinstance(condition, AllOf):
-        return all(holds(part, scenario, locations, values) for part in condition.parts)
+        return all(_holds(part, scenario, locations, values) for part in condition.parts)
     if isinstance(condition, AnyOf):
-        return any(holds(part, scenario, locations, values) for part in condition.parts)
+        return any(_holds(part, scenario, locations, values) for part in condition.parts)
     if isinstance(condition, AtMostOf):
         found = {name for part in condition.parts for name in _found(part, scenario, locations, values)}
         return len(found) <= condition.most

@@ -172,16 +172,16 @@ class Promises:
         return ended is not None and 2 * at - latest - ended < breaks.pause
 
     def _is_lost(self, breaks: Breaks, state: SystemState) -> bool:
-        """True if its condition holds, or its two agents are together."""
+        """True if its condition holds, or may hold, or its two agents are together."""
         if breaks.condition is not None:
-            return holds(breaks.condition, self._scenario, state.locations, state.values)
+            return holds(breaks.condition, self._scenario, state.locations, state.values, any)
         spots = {self._spot(state.locations.get(agent, "")) for agent in breaks.pair}
         return len(spots) == 1 and (breaks.place is None or spots == {frozenset((breaks.place,))})
 
     def _check_conditions(self, state: SystemState) -> None:
         """A mission is lost if and only if a condition of an objective says so, in the next state at the latest."""
         conditions = self._conditions.values()
-        broken = any(holds(one, self._scenario, state.locations, state.values) for one in conditions)
+        broken = any(holds(one, self._scenario, state.locations, state.values, any) for one in conditions)
         lost = any(state.locations.get(name) == names.LOSE for name in self._conditions)
         if lost and not broken:
             self.problems.append(f"state {state.seq} counts as lost, but no condition of an objective is broken there")

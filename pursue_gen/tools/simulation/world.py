@@ -6,7 +6,7 @@ The run time's simulator reports the ends, one simulator for each agent; here is
 from __future__ import annotations
 
 import random
-from typing import Callable, Dict, Optional
+from typing import Callable, Dict, Optional, Sequence
 
 from pursue_gen.tools.simulation.connections import drawn_share
 from pursue_gen.tools.simulation.event_queue import EventQueue, Timer
@@ -17,7 +17,7 @@ from pursue_runtime.event_words import FAILED, ORDERED, RobotReport, Word, forma
 from pursue_runtime.locations import action_of, is_action, is_movement, is_under_way
 from pursue_runtime.orders import Order, parse_orders
 from pursue_runtime.resend import resend_timeout
-from pursue_runtime.simulator.simulator import EndWindow, Simulator, end_window, report_of
+from pursue_runtime.simulator.simulator import EndWindow, Simulator, end_window, picked, report_of
 from pursue_runtime.state import SystemState
 
 INSIDE = 1e-3
@@ -40,6 +40,10 @@ class FaultyDurations:
         width = max(0.0, window.high - window.low - inside - self._reserve)
         usual = window.low + inside + part * width
         return self._fault_plan.duration(window.low, window.high, usual)
+
+    def pick(self, words: Sequence[str], agent: str, number: int) -> str:
+        """With which of these words it ends."""
+        return picked(words, f"{self._seed}/{agent}/{number}")
 
 
 class SimulatedAgent:

@@ -104,6 +104,17 @@ reach_objective: do lift
     assert [(sample.what, sample.seconds) for sample in found.measured] == [(Work("lift"), 4.5)]
 
 
+def test_what_is_broken_off_is_no_measure_of_how_long_it_takes() -> None:
+    at = "doing_fetch_in_shelf"
+
+    def state(seq: int, stamp: float, event: str, where: str) -> SystemState:
+        return SystemState(seq, stamp, {"bot": where}, {}, {"Cbot": 0.0}, event, "bot")
+
+    states = (state(1, 10.0, "", "shelf"), state(2, 12.0, "fetch", at), state(3, 14.0, "fetchSTOP", "shelf"))
+    found = of_record(MissionRecord(states), floor(), "mission.bag")
+    assert found.measured == () and [each.why for each in found.unused] == ["it was broken off"]
+
+
 def test_actions_without_a_mission_are_measured_like_drives(tmp_path: Path) -> None:
     done = Drive("bot", "shelf", "shelf", 100.0, 103.5, action="fetch")
     other = Drive("bot", "shelf", "shelf", 200.0, 201.0, action="dance")

@@ -261,7 +261,8 @@ FIELDS = st.fixed_dictionaries(
     optional={
         "label": st.sampled_from(["", "the // hall", "Ä 1"]), "distance": st.sampled_from(["1", "2.5"]),
         "one_way": st.booleans(), "only_if": st.sampled_from(["", "nurse at room", "not (a at b or porter on_way)"]),
-        "collaborative": st.booleans(), "together": st.booleans(), "location": st.sampled_from(["", "room", "hall"]),
+        "collaborative": st.booleans(), "together": st.booleans(), "may_stop": st.booleans(),
+        "location": st.sampled_from(["", "room", "hall"]),
         "duration": st.sampled_from(["", "3", "2 to 4.5"]), "at_most": st.sampled_from(["", "2"]),
         "kind": st.sampled_from(["robot", "person", "free"]), "mobile": st.sampled_from(["", "1", "0.5"]),
         "can_do": st.lists(NAME, max_size=3), "reacts_to": st.lists(NAME, max_size=2),

@@ -46,7 +46,7 @@ class Watched(SimulatedMission):
         super().publish(state)
         if self.seq == 0 and state.seq == 1:
             self.course.now, self.seq = 0.0, 1
-        if state.seq <= self.seq or state.agent not in self.course.agents:
+        if state.seq <= self.seq or state.agent not in {**self.course.agents, **self.course.states}:
             self.seq = max(self.seq, state.seq)
             return
         self.seq, agent = state.seq, state.agent

@@ -114,6 +114,7 @@ function event(thing) {
     ...named("event", thing),
     field("field-location", "happens", thing.location, set(thing, "location"), { options: [["", "anywhere"], ...places()] }),
     field("field-duration", "duration (3, 3 to 5, or 30 s to 1 min; empty: none)", thing.duration, set(thing, "duration"), { spellcheck: "false" }),
+    tick("field-may_stop", "may be broken off before it ends", thing.may_stop, set(thing, "may_stop")),
     field("field-at_most", "at most so many times", thing.at_most, set(thing, "at_most"), { inputmode: "numeric" }),
     tick("field-collaborative", "needs a partner who reacts", thing.collaborative, set(thing, "collaborative")),
     tick("field-together", "keeps both busy until it ends", thing.together, set(thing, "together")),
