@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from random import Random
 from string import Formatter
 from typing import Dict, Sequence, Tuple
@@ -20,6 +21,8 @@ def random_wishes(seed: int, size: Size) -> str:
     told = {**_drawn(draw, cast, text), **{f"t{time}": draw.randint(time // 2, time * 2) for time in _TIMES}}
     forms = [form for form in _FORMS if all(name in told for _, name, _, _ in Formatter().parse(form) if name)]
     kinds = draw.sample(forms, draw.randint(1, MOST))
+    if draw.randint(0, 4) == 0:  # what takes time may be broken off
+        text = re.sub(r"(duration \d+)$", r"\1 may_stop", text, flags=re.MULTILINE)
     return text + "".join(f"{form.format(**told)}\n" for form in kinds)
 
 
@@ -80,6 +83,8 @@ _FORMS: Tuple[str, ...] = (
     "travel {robot} from {room} to {place} takes {t4}",
     "rest 0.5",
     'state "open": initially false, true_if {done} false_if {called}\nstateDependency: {also} only_if open is_false',
+    'state "dry": initially unknown, shown_by {done}\nobjective: avoid {robot} doing {also} and dry is_true',
+    'state "wet": initially unknown seen_at {room}, true_if {done}\nstateDependency: {also} only_if wet is_false',
     'rule "turns" for each robot: {done} before {also}',
     "assume: {caller} does {called} at_most 1 times",
     "assume: {caller} does {called} after {t10}",
