@@ -1,7 +1,8 @@
 """What the statements of a scenario permit, said without its network: for comparison with what the network permits.
 
-Kept here are where agents are, what they are busy with, states, the rest of each rule's round, counts, and levels of
-batteries. Rules are expressions of which each symbol takes away the first part (a derivative), not automata.
+Kept here are where agents are, what they are busy with, states, the rest of each rule's round, counts, what agents
+carry, and levels of batteries. Rules are expressions of which each symbol takes away the first part (a derivative), not
+automata.
 """
 
 from __future__ import annotations
@@ -90,6 +91,7 @@ class Course:
     begun: Dict[str, int] = field(default_factory=dict)
     done: Dict[Tuple[str, str], List[Tuple[float, float]]] = field(default_factory=dict)
     """(agent, event) → beginnings and ends"""
+    carried: Dict[str, List[str]] = field(default_factory=dict)
     awaited: Dict[int, float] = field(default_factory=dict)
     """The numbers of assumptions that somebody comes, and when that was called for."""
 
@@ -192,6 +194,8 @@ class Course:
         for dependency in self.scenario.dependencies:
             if dependency.event.name == name and self.states[dependency.state.name] is not dependency.value:
                 return False
+        if self._minds_its_load(agent) and self._load_after(agent, event) is None:
+            return False
         times = len(self.done.get((agent, name), ()))
         limits = [each for each in self.scenario.assumptions if isinstance(each, AtMost)]
         if any((each.agent.name, each.event.name) == (agent, name) and times >= each.times for each in limits):
@@ -235,6 +239,26 @@ class Course:
     def _is_docked(self, agent: str) -> bool:
         dock = self.batteries[agent].dock
         return dock is not None and self.stays[agent].place == dock.name
+
+    def _minds_its_load(self, agent: str) -> bool:
+        return self.agents[agent].controllable or self.agents[agent].carries is not None
+
+    def _load_after(self, agent: str, event: Event) -> Optional[List[str]]:
+        """What it carries when it has done the event; None: that is impossible."""
+        load = list(self.carried.get(agent, ()))
+        if event.gives is not None:
+            if event.gives.name not in load:
+                return None
+            load.remove(event.gives.name)
+        if event.takes is not None:
+            load.append(event.takes.name)
+        return load if len(load) <= (self.agents[agent].carries or 1) else None
+
+    def _has_moved(self, agent: str, event: Event) -> None:
+        if self._minds_its_load(agent):
+            load = self._load_after(agent, event)
+            assert load is not None, (agent, event.name)
+            self.carried[agent] = load
 
     def _goes_on(self, event: str) -> bool:
         several = sum(any(ref.name == event for ref in agent.can_do) for agent in self.scenario.agents) > 1
@@ -326,6 +350,7 @@ class Course:
         self.done.setdefault((agent, name), []).append((self.now, self.now))
         self._set_states(name)
         if event.duration is None:
+            self._has_moved(agent, event)
             self._has_happened(name)
             stay.rested = stay.rested if stay.to else self.now
             return
@@ -354,6 +379,7 @@ class Course:
         if agent in self.levels and self._is_docked(agent):
             battery = self.batteries[agent]
             self.levels[agent] = min(battery.capacity, self.levels[agent] + floor(battery.recharges * low))
+        self._has_moved(agent, event)
         self._has_happened(event.name)
         beginning, _ = self.done[agent, event.name][-1]
         self.done[agent, event.name][-1] = (beginning, self.now)

@@ -58,6 +58,7 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     places = ["a", "b"] if small or draw(st.booleans()) else ["a", "b", "c"]
     names = ["bot1", "guest"] if small else ["bot1", "bot2", "nurse", "guest"]
     condition = conditions(places, names)
+    takes, gives = draw(st.sampled_from((("", ""), ("", ""), (" takes box", " gives box"))))
 
     def maybe(text: str, chance: int = 4) -> str:
         return text if draw(st.integers(0, chance)) == 0 else ""
@@ -81,10 +82,11 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
         f"connect {x} and {y} distance {draw(st.integers(1, 3))}{maybe(' one_way', 7)}{whom()}{only_if()}"
         for x, y in zip(places, places[1:])
     ]
+    lines += ['thing "box"'] if takes else []
     limit = f" at_most {draw(st.integers(1, 3))} times"
     lines += [
-        f'event "load" location {place()} duration {window()}{maybe(limit)}{only_if()}',
-        f'event "drop"{maybe(f" location {place()}", 1)}{maybe(limit)}{only_if()}',
+        f'event "load" location {place()} duration {window()}{takes}{maybe(limit)}{only_if()}',
+        f'event "drop"{maybe(f" location {place()}", 1)}{gives}{maybe(limit)}{only_if()}',
         f'event "ride" collaborative{maybe(" together", 0 if draw(st.booleans()) else 9)} location {place()}'
         f" duration {window()}{only_if()}",
         f'event "wave" collaborative{only_if()}',
@@ -100,7 +102,7 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     lines.append(f'state "open": initially {first}, true_if drop false_if call')
     needing = draw(st.sampled_from(("load", "sing", "ride", "")))
     lines += [f"stateDependency: {needing} only_if open is_true"] if needing else []
-    lines += _agents(draw, names, place)
+    lines += _agents(draw, names, place, bool(takes))
     lines += _travels(draw, names[:-1], places)
     lines += _assumptions(draw, place)
     lines += _objectives(draw, small, condition, place)
@@ -115,15 +117,18 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     return text, scenario
 
 
-def _agents(draw: st.DrawFn, names: Sequence[str], place: object) -> List[str]:
+def _agents(draw: st.DrawFn, names: Sequence[str], place: object, carry: bool) -> List[str]:
     lines = []
     for name in names[:-1]:
         own = [event for event in EVENTS if name == "bot1" or draw(st.booleans())]
+        own = [event for event in EVENTS if event in own or (carry and event == "load" and "drop" in own)]
+        carries = draw(st.sampled_from(("", " carries 2", " carries 3"))) if carry else ""
         kind = "human controllable" if name == "nurse" else "controllable"
         can_do = f" can_do {', '.join(own)}" if own else ""
         reacts = [event for event in ("ride", "wave") if event not in own]
         reacts_to = f" reacts_to {', '.join(reacts)}" if reacts else ""
-        lines.append(f'agent "{name}" {kind} mobile {draw(st.integers(1, 2))} location {place()}{can_do}{reacts_to}')  # type: ignore[operator]
+        mobile = f"mobile {draw(st.integers(1, 2))}{carries}"
+        lines.append(f'agent "{name}" {kind} {mobile} location {place()}{can_do}{reacts_to}')  # type: ignore[operator]
     moves = " mobile 2" if draw(st.booleans()) else ""
     lines.append(f'agent "guest"{moves} location {place()} can_do call reacts_to ride, wave')  # type: ignore[operator]
     return lines

@@ -17,11 +17,13 @@ from pursue_gen.explanation.number_changes import (
     charge_changes,
     count_changes,
     event_changes,
+    load_changes,
     pause_changes,
     room_changes,
     times_changes,
     travel_changes,
 )
+from pursue_gen.language.loads import carriers
 from pursue_gen.language.numbers import Number, decimal_text, exact, whole_above, whole_below
 from pursue_gen.language.objectives.holds import Holds
 from pursue_gen.language.scenario import (
@@ -66,6 +68,8 @@ def _repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
         yield from travel_changes(scenario, travel)
     for battery in scenario.batteries:
         yield from battery_changes(scenario, battery)
+    for carrier in carriers(scenario):
+        yield from load_changes(scenario, carrier)
     yield from _of_orders(scenario)
     yield from assumption_changes(scenario, 2 * _all_time(scenario))
     for agent in scenario.agents:

@@ -13,6 +13,7 @@ from pursue_gen.language.batteries import check_batteries
 from pursue_gen.language.behaviour import check_events, check_rules, components
 from pursue_gen.language.condition_checks import check_conditions
 from pursue_gen.language.labels import check_labels
+from pursue_gen.language.loads import check_loads
 from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.numbers import MOST_DIGITS, exact, is_fine
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
@@ -81,6 +82,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
             findings += check_poses(scenario)
             findings += check_assumptions(scenario)
             findings += check_batteries(scenario)
+            findings += check_loads(scenario)
         if not any(f.severity is Severity.ERROR for f in findings):
             findings += _islands(scenario)
     findings = list(dict.fromkeys(findings))  # a statement may be several objectives

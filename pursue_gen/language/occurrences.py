@@ -30,7 +30,7 @@ SUBJECTS = ("agent", "state")
 GROUP, VARIABLE = "group", "variable"
 """The kinds of names that stand for members: of the whole text, and of one statement that is for each of a group."""
 
-MEMBERS = ("POI", "agent", "event", "state")
+MEMBERS = ("POI", "agent", "event", "state", "thing")
 """The kinds of things that may be in a group."""
 
 _OPENS = {(token, word.upper()) for token, kind in STATEMENTS.items() for word in kind.conditions_behind()}

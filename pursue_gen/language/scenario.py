@@ -19,6 +19,7 @@ from pursue_gen.language.objectives.patrol import patrols_in
 from pursue_gen.language.poses import Pose, Spot
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.statements.base import Labelled
 from pursue_gen.language.statements.battery import Battery
 from pursue_gen.language.statements.connect import Connection
 from pursue_gen.language.statements.dependency import Dependency
@@ -28,13 +29,14 @@ from pursue_gen.language.statements.poi import Poi
 from pursue_gen.language.statements.rest import Rest
 from pursue_gen.language.statements.rule import Both, Choice, Rule, RuleBody, Sequence
 from pursue_gen.language.statements.state import State
+from pursue_gen.language.statements.thing import Thing
 from pursue_gen.language.statements.travel import Travel
 from pursue_gen.language.statements.unit import Unit
 
 __all__ = [
     "Agent", "AllOf", "AnyOf", "At", "AtMostOf", "Battery", "Both", "Choice", "Condition", "Connection", "Dependency",
     "Doing", "Event", "Holds", "MissionEnd", "Not", "OnWay", "Poi", "Pose", "Ref", "Rest", "Rule", "RuleBody",
-    "Scenario", "Sequence", "Spot", "State", "Travel", "Unit", "Who", "Window",
+    "Scenario", "Sequence", "Spot", "State", "Thing", "Travel", "Unit", "Who", "Window",
 ]
 __all__ += kinds_of_assumptions.__all__
 __all__ += kinds_of_objectives.__all__
@@ -70,6 +72,7 @@ class Scenario:
     units: Tuple[Unit, ...] = ()
     rests: Tuple[Rest, ...] = ()
     ends: Tuple[MissionEnd, ...] = ()
+    things: Tuple[Thing, ...] = ()
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
         """Show it in a notebook."""
@@ -117,8 +120,8 @@ class Scenario:
 
     @cached_property
     def labels(self) -> Dict[str, str]:
-        """Name → what people read instead, of all places, events and agents with a label."""
-        parts: Tuple[Union[Poi, Event, Agent], ...] = (*self.pois, *self.events, *self.agents)
+        """Name → what people read instead, of all places, events, agents and things with a label."""
+        parts: Tuple[Labelled, ...] = (*self.pois, *self.events, *self.agents, *self.things)
         return {part.name: part.label for part in reversed(parts) if part.label}
 
     def shown(self, name: str) -> str:

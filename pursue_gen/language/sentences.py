@@ -53,15 +53,16 @@ def condition_of_promise(scenario: Scenario) -> str:
 
 
 def speed_words(agent: Agent, scenario: Scenario) -> str:
-    """How fast an agent is, in words, and what its battery holds."""
-    batteries = [battery.in_words for battery in scenario.powered if battery.agent.name == agent.name]
+    """How fast an agent is, in words, what its battery holds, and how many things it carries, where that is said."""
+    also = [battery.in_words for battery in scenario.powered if battery.agent.name == agent.name]
+    also += [] if agent.carries is None else [f"carries {agent.carries}"]
     if agent.mobile is None:
-        return ", ".join(["stays there", *batteries])
+        return ", ".join(["stays there", *also])
     pace = f"{words_for(agent.mobile, scenario.unit)} per unit of distance"
     words = [pace if agent.speed is None else f"{agent.speed} m/s"]
     own = [travel for travel in scenario.travels if travel.agent.name == agent.name]
     words += [f"{travel.a.shown} to {travel.b.shown} in {window_words(travel.window, scenario.unit)}" for travel in own]
-    return ", ".join(words + batteries)
+    return ", ".join(words + also)
 
 
 def window_words(window: Window, unit: Optional[Number]) -> str:

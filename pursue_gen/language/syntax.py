@@ -366,7 +366,7 @@ def _chunks(tokens: List[Token]) -> List[List[Token]]:
             begins = following == "NUMBER" or (opens_line and ended)
         elif token.type == "MISSION":  # a name may be called so
             begins = following == "ENDS" or (opens_line and ended)
-        elif token.type == "GROUP":  # a name may be called so
+        elif token.type in ("GROUP", "THING"):  # a name may be called so
             begins = goes_on or (opens_line and ended)
         elif token.type in ("OBJECTIVE", "REACH_OBJECTIVE") and _opened(found):
             begins = False

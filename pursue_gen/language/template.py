@@ -74,7 +74,7 @@ def event_or_condition_text(what: Any) -> str:
 
 
 FILLINGS: Mapping[str, Filling] = {
-    **{thing: Filling("ref", TreeReader.ref, name_text, thing) for thing in ("agent", "event", "state", "POI")},
+    **{kind: Filling("ref", TreeReader.ref, name_text, kind) for kind in ("agent", "event", "state", "thing", "POI")},
     '"agent"': Filling("(ref | NAME)", TreeReader.agent_ref, lambda ref: f'"{ref.name}"', "agent"),
     "agents": Filling("refs", TreeReader.refs, names_text, "agent"),
     "POIs": Filling("refs", TreeReader.refs, names_text, "POI"),

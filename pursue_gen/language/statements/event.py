@@ -25,6 +25,7 @@ class Event(Labelled):
     it can happen in all; None: as often as one likes.
     `together`: whoever takes part in a collaborative event is busy until it ends; else only the one who does it.
     `only_if`: what has to hold when it begins; None: nothing. `label`: what people read; None: the name.
+    `takes`, `gives`: the thing that whoever does it carries from its end on, and the one that is given away then.
     """
 
     name: str
@@ -37,6 +38,8 @@ class Event(Labelled):
     at_most: Optional[int] = None
     only_if: Optional[Condition] = None
     label: Optional[str] = None
+    takes: Optional[Ref] = None
+    gives: Optional[Ref] = None
 
     listed_in: ClassVar[str] = "events"
     symbol: ClassVar[str] = "Event"
@@ -50,16 +53,19 @@ class Event(Labelled):
             "How long it takes, in the unit of time that you chose: 3 is up to 4. Without it, it takes no time.",
         ),
         Word("to", "Where the agent arrives; or, behind a number, the latest time.", True),
+        Word("takes", "Of an event, a thing that is carried from its end on; of a way, how long it takes.", True),
+        Word("gives", "A thing that is carried until its end, and no longer.", True),
         Word("at_most", "So many and no more: how often it happens in all, or of how many something holds.", True),
         Word("times", "In the whole mission.", True),
     )
     template: ClassVar[Template] = Template(
         'event {name="work"} [label {label:name}] [collaborative] [together] [location {location:POI=a}]'
-        " [duration {duration,latest:window=6}] [at_most {at_most:count=2} times]"
-        " [only_if {only_if:condition=open is_true}]"
+        " [duration {duration,latest:window=6}] [takes {takes:thing}] [gives {gives:thing}]"
+        " [at_most {at_most:count=2} times] [only_if {only_if:condition=open is_true}]"
     )
     note: ClassVar[str] = (
-        'all but the name is optional; or: duration 6 to 9; behind the name: label "do the work"'
+        'all but the name is optional; or: duration 6 to 9; behind the name: label "do the work"; behind the duration: '
+        "takes box, or gives box"
     )
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("something that can happen at a place", 'event "{=work}" location {POI} duration {=1}'),
@@ -69,6 +75,8 @@ class Event(Labelled):
             "something that can happen only while something holds",
             'event "{=work}" location {POI} only_if {agent} at {POI}',
         ),
+        Form("something that loads a thing", 'event "{=load}" location {POI} duration {=3} takes {thing}'),
+        Form("something that unloads a thing", 'event "{=unload}" location {POI} duration {=3} gives {thing}'),
         Form("something that two do at once", 'event "{=handOver}" collaborative'),
         Form(
             "something that two do together for a while",
@@ -92,8 +100,17 @@ class Event(Labelled):
         """Between which times it ends; None for an event that is instantaneous."""
         return None if self.duration is None else window_of(self.duration, self.latest)
 
+    @property
+    def load_words(self) -> str:
+        """What it takes and gives, in words; "": nothing."""
+        moves = (("takes", self.takes), ("gives", self.gives))
+        return ", ".join(f"{word} {ref.shown}" for word, ref in moves if ref is not None)
+
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         own = (kind, name) == ("event", self.name)
+        for word, ref in (("takes", self.takes), ("gives", self.gives)):
+            if kind == "thing" and ref is not None and ref.name == name:
+                yield f"{self.name} {word} it"
         if self.only_if is not None and (own or (kind == "state" and self.speaks_of(kind, name))):
             yield f"{'' if own else f'{self.name} '}only while {shown(condition_words(self.only_if))}"
 
