@@ -170,6 +170,7 @@ def _batteries(draw: st.DrawFn, place: object) -> List[str]:
 def _objectives(draw: st.DrawFn, small: bool, condition: st.SearchStrategy[str], place: object) -> List[str]:
     where = place()  # type: ignore[operator]
     lasting = f"battery bot1 lasts {draw(st.integers(6, 40))}, charges in {draw(st.integers(1, 12))} at {where}"
+    other = "guest" if small else "nurse"
     kinds = {
         "avoid": "objective: avoid call",
         "respond": f"objective: if call then drop within {draw(st.integers(5, 30))}",
@@ -179,6 +180,8 @@ def _objectives(draw: st.DrawFn, small: bool, condition: st.SearchStrategy[str],
         "always": f"objective: always {draw(condition)}",
         "place": f"objective: place {draw(st.sampled_from((where, 'a, b')))} holds {draw(st.sampled_from(ROOM))}",
         "escort": f"objective: escort guest at {where} within {draw(st.integers(4, 30))} by bot1",
+        "either": f"objective: patrol {where} every {draw(st.integers(8, 40))} by bot1 or {other}",
+        "company": f"objective: escort guest at {where} within {draw(st.integers(4, 30))} by bot1 or {other}",
         "pause": f"objective: at_least {draw(st.integers(2, 20))} between {draw(st.sampled_from(PAUSES))}",
         "way": f"objective: way a to b holds {draw(st.sampled_from(ROOM))}",
         "with": f"objective: bot1 never_with guest{draw(st.sampled_from(('', f' at {where}')))}",

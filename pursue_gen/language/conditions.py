@@ -32,10 +32,16 @@ WORDS = (
 
 @dataclass(frozen=True)
 class Who:
-    """The agent that is named; None: any agent, or with `robots` any robot."""
+    """The agent that is named, or one of `others`, where there are any; None: any agent, or with `robots` any robot."""
 
     agent: Optional[Ref]
     robots: bool = False
+    others: Tuple[Ref, ...] = ()
+
+    @property
+    def named(self) -> Tuple[Ref, ...]:
+        """The agents that are named."""
+        return () if self.agent is None else (self.agent, *self.others)
 
 
 @dataclass(frozen=True)
@@ -161,6 +167,16 @@ def by_robot(who: Who, robot: Ref) -> Who:
     return Who(robot) if who.agent is None and who.robots else who
 
 
+def one_at(who: Who, place: Ref) -> Condition:
+    """That one of them is at a place."""
+    return AnyOf(stands_at(who, place)) if who.others else At(who, place)
+
+
+def stands_at(who: Who, place: Ref) -> Tuple[At, ...]:
+    """That each of them is at a place: of those that are named each alone."""
+    return tuple(At(Who(agent), place) for agent in who.named) or (At(who, place),)
+
+
 def condition_text(condition: Condition) -> str:
     """A condition as it is written in a scenario."""
     if isinstance(condition, Not):
@@ -252,4 +268,4 @@ def who_text(who: Who, shown: bool = False) -> str:
     """Of whom a condition speaks; with `shown` what people read for an agent."""
     if who.agent is None:
         return f"any {'robot' if who.robots else 'agent'}"
-    return who.agent.shown if shown else who.agent.name
+    return " or ".join(agent.shown if shown else agent.name for agent in who.named)

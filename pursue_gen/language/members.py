@@ -49,7 +49,10 @@ class Words:
         index = 0
         while index < len(tokens):
             kind = tokens[index].type
-            if _quantifies(tokens, index):
+            if kind == "ANY" and tokens[index - 1].type == "BY" and _quantifies(tokens, index):
+                names, index = self._names_at(tokens, index + 2, members)
+                found += _listed(names, "or", "OR")  # one of them
+            elif _quantifies(tokens, index):
                 index = self._quantified(tokens, index, members, found)
             elif kind in ("AT", "DOING") and _quantifies(tokens, index + 1):
                 index = self._at_any(tokens, index, members, found)
@@ -239,7 +242,7 @@ def _owned(name: Token, owner: Token) -> Token:
     return between(name.type if name.type == "NAME" else "WORD", text, name, owner)
 
 
-def _listed(names: Tokens, group: str) -> Tokens:
-    """The names with commas between them, which say for which group they stand."""
-    commas = (between("COMMA", group, name, name) for name in names)
+def _listed(names: Tokens, group: str, kind: str = "COMMA") -> Tokens:
+    """The names with commas between them, which say for which group they stand; or with other words."""
+    commas = (between(kind, group, name, name) for name in names)
     return tuple(token for pair in zip(commas, names) for token in pair)[1:]

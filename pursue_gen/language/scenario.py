@@ -161,8 +161,8 @@ class Scenario:
 
     def on_patrol(self, patrol: Patrol) -> Tuple[Agent, ...]:
         """The agents of whom one has to be at the place."""
-        who = patrol.who.agent
-        return tuple(agent for agent in self.agents if (agent.is_robot if who is None else agent.name == who.name))
+        named = {ref.name for ref in patrol.who.named}
+        return tuple(agent for agent in self.agents if (agent.name in named if named else agent.is_robot))
 
     def doers(self, event: str) -> Tuple[Agent, ...]:
         """The agents that can do an event."""

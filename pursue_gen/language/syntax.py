@@ -255,7 +255,7 @@ class _Reader:
                 parser.feed_token(token)
             except UnexpectedToken:
                 if token.type == "COMMA" and token != ",":
-                    return no_list(token, any(one.type in _ATOMS for one in chunk), self.file)
+                    return no_list(token, any(one.type in _ATOMS or one.type == "BY" for one in chunk), self.file)
                 return explain(chunk, index, self._expected(parser), span_of(token, self.file))
         try:
             tree = parser.feed_eof(chunk[-1])

@@ -190,7 +190,7 @@ class Template:
         for hole in self.holes:
             for value in (getattr(part, name) for name in hole.fields if hole.filling.of):
                 some = value if isinstance(value, tuple) else (value,)
-                refs = (one.agent if isinstance(one, Who) else one for one in some)
+                refs = (ref for one in some for ref in (one.named if isinstance(one, Who) else (one,)))
                 yield from ((hole.filling.of, ref) for ref in refs if isinstance(ref, Ref))
 
     def conditions(self, part: Any) -> Tuple[Condition, ...]:
