@@ -92,6 +92,7 @@ class Course:
     done: Dict[Tuple[str, str], List[Tuple[float, float]]] = field(default_factory=dict)
     """(agent, event) → beginnings and ends"""
     carried: Dict[str, List[str]] = field(default_factory=dict)
+    mounted: Dict[str, str] = field(default_factory=dict)
     awaited: Dict[int, float] = field(default_factory=dict)
     """The numbers of assumptions that somebody comes, and when that was called for."""
 
@@ -246,6 +247,8 @@ class Course:
     def _load_after(self, agent: str, event: Event) -> Optional[List[str]]:
         """What it carries when it has done the event; None: that is impossible."""
         load = list(self.carried.get(agent, ()))
+        if event.needs is not None and event.needs.name not in (*load, self.mounted.get(agent)):
+            return None
         if event.gives is not None:
             if event.gives.name not in load:
                 return None
@@ -259,6 +262,8 @@ class Course:
             load = self._load_after(agent, event)
             assert load is not None, (agent, event.name)
             self.carried[agent] = load
+            if event.mounts is not None:
+                self.mounted[agent] = event.mounts.name
 
     def _goes_on(self, event: str) -> bool:
         several = sum(any(ref.name == event for ref in agent.can_do) for agent in self.scenario.agents) > 1

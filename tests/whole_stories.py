@@ -59,6 +59,7 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     names = ["bot1", "guest"] if small else ["bot1", "bot2", "nurse", "guest"]
     condition = conditions(places, names)
     takes, gives = draw(st.sampled_from((("", ""), ("", ""), (" takes box", " gives box"))))
+    mounts, needs = draw(st.sampled_from((("", ""), ("", ""), (" mounts brush", " needs brush"))))
 
     def maybe(text: str, chance: int = 4) -> str:
         return text if draw(st.integers(0, chance)) == 0 else ""
@@ -82,15 +83,15 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
         f"connect {x} and {y} distance {draw(st.integers(1, 3))}{maybe(' one_way', 7)}{whom()}{only_if()}"
         for x, y in zip(places, places[1:])
     ]
-    lines += ['thing "box"'] if takes else []
+    lines += ['thing "box"'] * bool(takes) + ['thing "brush"', 'thing "saw"'] * bool(mounts)
     limit = f" at_most {draw(st.integers(1, 3))} times"
     lines += [
         f'event "load" location {place()} duration {window()}{takes}{maybe(limit)}{only_if()}',
         f'event "drop"{maybe(f" location {place()}", 1)}{gives}{maybe(limit)}{only_if()}',
         f'event "ride" collaborative{maybe(" together", 0 if draw(st.booleans()) else 9)} location {place()}'
-        f" duration {window()}{only_if()}",
-        f'event "wave" collaborative{only_if()}',
-        f'event "sing" duration {window()}{only_if()}',
+        f" duration {window()}{mounts and ' mounts saw'}{only_if()}",
+        f'event "wave" collaborative{mounts}{only_if()}',
+        f'event "sing" duration {window()}{needs}{only_if()}',
         f'event "call"{maybe(limit, 2)}{only_if()}',
     ]
     shuffled = draw(st.permutations([*EVENTS, "call"]))
@@ -102,7 +103,7 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     lines.append(f'state "open": initially {first}, true_if drop false_if call')
     needing = draw(st.sampled_from(("load", "sing", "ride", "")))
     lines += [f"stateDependency: {needing} only_if open is_true"] if needing else []
-    lines += _agents(draw, names, place, bool(takes))
+    lines += _agents(draw, names, place, bool(takes), bool(mounts))
     lines += _travels(draw, names[:-1], places)
     lines += _assumptions(draw, place)
     lines += _objectives(draw, small, condition, place)
@@ -117,11 +118,12 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     return text, scenario
 
 
-def _agents(draw: st.DrawFn, names: Sequence[str], place: object, carry: bool) -> List[str]:
+def _agents(draw: st.DrawFn, names: Sequence[str], place: object, carry: bool, mount: bool) -> List[str]:
     lines = []
     for name in names[:-1]:
         own = [event for event in EVENTS if name == "bot1" or draw(st.booleans())]
-        own = [event for event in EVENTS if event in own or (carry and event == "load" and "drop" in own)]
+        also = ["load"] * (carry and "drop" in own) + ["wave"] * (mount and "sing" in own)
+        own = [event for event in EVENTS if event in own or event in also]
         carries = draw(st.sampled_from(("", " carries 2", " carries 3"))) if carry else ""
         kind = "human controllable" if name == "nurse" else "controllable"
         can_do = f" can_do {', '.join(own)}" if own else ""

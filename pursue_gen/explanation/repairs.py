@@ -37,6 +37,7 @@ from pursue_gen.language.scenario import (
     Scenario,
     StatedObjective,
 )
+from pursue_gen.language.template import name_text
 from pursue_gen.language.times import instead, like
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
 from pursue_gen.tga.counts import counted
@@ -232,6 +233,9 @@ def _of_orders(scenario: Scenario) -> Iterator[Repair]:
         freer = replace(scenario, dependencies=tuple(d for d in scenario.dependencies if d != need))
         text = f"{need.event.name} only_if {need.state.name} is_{'true' if need.value else 'false'}"
         yield _switch("dependency", need.event.name, f"without stateDependency {text}", text, freer, need.span, 1)
+    for each in (event for event in scenario.events if event.needs is not None):
+        text, freer = f"needs {name_text(each.needs)}", scenario.with_instead(each, replace(each, needs=None))
+        yield _switch("condition", each.name, f"{each.shown} without {text}", text, freer, each.span, 1)
     spans = [span for _, span in scenario.conditions()]
     for (what, text, left_out), span in zip(without_conditions(scenario), spans):
         yield _switch("condition", what, f"{what} without only_if {text}", text, left_out(scenario), span, 1)

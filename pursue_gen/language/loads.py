@@ -1,7 +1,7 @@
-"""What agents carry: events take things and give them, and nobody gives what it has not taken.
+"""What agents carry, and which tool they have mounted: events take things and give them, mount tools, and need both.
 
-Whoever is controllable carries one thing at a time where nothing else is said; of others nothing is known unless it is
-said, and they may take and give at any time.
+Nobody gives what it has not taken. Whoever is controllable carries one thing at a time where nothing else is said; of
+others nothing is known unless it is said, and they may take and give at any time.
 """
 
 from __future__ import annotations
@@ -9,27 +9,29 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import product
 from math import comb
-from typing import Container, Iterator, Optional, Tuple
+from typing import Container, Iterable, Iterator, Optional, Set, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, error, listed, warning
-from pursue_gen.language.scenario import Agent, Event, Scenario
+from pursue_gen.language.scenario import Agent, Event, Ref, Scenario
 
 MOST_LOADS = 60
 """The most loads that an agent can have: each multiplies the states of the game, as the levels of a battery do."""
 
 Load = Tuple[int, ...]
-"""How many of each thing an agent carries, in the order of its things."""
+"""How many of each thing an agent carries, then of each tool whether it is mounted, in the order of its things and
+tools."""
 
 
 @dataclass(frozen=True)
 class Carrier:
-    """An agent whose load is known. `events`: those of its events that take or give something; `things`: those that
-    it can take, in the order of their declaration.
+    """An agent whose load is known. `events`: those of its events that name a thing; `things`, `tools`: those that it
+    can take, and mount, in the order of their declaration.
     """
 
     agent: Agent
     events: Tuple[Event, ...]
     things: Tuple[str, ...]
+    tools: Tuple[str, ...] = ()
 
     @property
     def room(self) -> int:
@@ -39,53 +41,63 @@ class Carrier:
     @property
     def count(self) -> int:
         """How many loads it can have."""
-        return comb(self.room + len(self.things), self.room)
+        return comb(self.room + len(self.things), self.room) * (len(self.tools) + 1)
 
     @property
     def loads(self) -> Tuple[Load, ...]:
-        """All that it can carry, in order of how many things that is; nothing at first."""
-        found = (load for load in product(range(self.room + 1), repeat=len(self.things)) if sum(load) <= self.room)
-        return tuple(sorted(found, key=lambda load: (sum(load), tuple(-count for count in load))))
+        """All that it can carry and have mounted, in order of how many things that is; nothing at first."""
+        carried = (load for load in product(range(self.room + 1), repeat=len(self.things)) if sum(load) <= self.room)
+        ordered = sorted(carried, key=lambda load: (sum(load), tuple(-count for count in load)))
+        mounted = [tuple(int(k == one) for k in range(len(self.tools))) for one in range(-1, len(self.tools))]
+        return tuple((*load, *tool) for tool in mounted for load in ordered)
 
     def after(self, event: Event, load: Load) -> Optional[Load]:
-        """What it carries when the event has ended that it begins with a load; None: it cannot begin it."""
-        then = list(load)
-        for ref, more in ((event.gives, -1), (event.takes, 1)):
-            if ref is not None and ref.name in self.things:
-                then[self.things.index(ref.name)] += more
-            elif ref is not None:
-                return None  # it never has that
-        return tuple(then) if min(then, default=0) >= 0 and sum(then) <= self.room else None
+        """What it carries and has mounted when the event has ended that it begins with a load; None: it cannot."""
+        names, then, first = (*self.things, *self.tools), list(load), len(self.things)
+        if any(ref is not None and not dict(zip(names, load)).get(ref.name) for ref in (event.needs, event.gives)):
+            return None
+        if event.gives is not None:
+            then[names.index(event.gives.name)] -= 1
+        if event.takes is not None:
+            then[names.index(event.takes.name)] += 1
+        if event.mounts is not None:
+            then[first:] = [int(tool == event.mounts.name) for tool in self.tools]
+        return tuple(then) if sum(then[:first]) <= self.room else None
 
 
 def carriers(scenario: Scenario) -> Iterator[Carrier]:
     """The agents whose loads are known."""
-    moving = [event for event in scenario.events if event.takes is not None or event.gives is not None]
-    for agent in scenario.agents if moving else ():
+    naming = [event for event in scenario.events if event.load_words]
+    for agent in scenario.agents if naming else ():
         able = {ref.name for ref in agent.can_do}
-        events = tuple(event for event in moving if event.name in able)
+        events = tuple(event for event in naming if event.name in able)
         if events and (agent.controllable or agent.carries is not None):
-            taken = {event.takes.name for event in events if event.takes is not None}
-            yield Carrier(agent, events, tuple(thing.name for thing in scenario.things if thing.name in taken))
+            taken, mounted = (_named(event.takes for event in events), _named(event.mounts for event in events))
+            things = tuple(thing.name for thing in scenario.things if thing.name in taken)
+            yield Carrier(agent, events, things, tuple(one.name for one in scenario.things if one.name in mounted))
+
+
+def _named(refs: Iterable[Optional[Ref]]) -> Set[str]:
+    return {ref.name for ref in refs if ref is not None}
 
 
 def load_words(scenario: Scenario, carrier: Carrier, load: Load) -> str:
-    """A load in words, as in `2 of box, 1 of letter`."""
-    counts = [f"{count} of {scenario.shown(thing)}" for thing, count in zip(carrier.things, load) if count]
-    return listed(counts) if counts else "nothing"
+    """A load in words, as in `2 of box, 1 of letter and brush mounted`."""
+    carried = [f"{count} of {scenario.shown(thing)}" for thing, count in zip(carrier.things, load) if count]
+    mounted = zip(carrier.tools, load[len(carrier.things) :])
+    found = [*carried, *(f"{scenario.shown(tool)} mounted" for tool, is_mounted in mounted if is_mounted)]
+    return listed(found) if found else "nothing"
 
 
 def check_loads(scenario: Scenario) -> Iterator[Diagnostic]:
     """Findings about things whose names are declared, and about who carries them."""
-    taken = {event.takes.name for event in scenario.events if event.takes is not None}
+    taken, mounted = (_named(getattr(e, word) for e in scenario.events) for word in ("takes", "mounts"))
     for thing in scenario.things:
-        if thing.name not in taken:
+        if thing.name not in taken | mounted:
             hint = f"let an event take it: takes {thing.name} behind its duration, or delete this line"
-            yield warning("PML344", f"nothing takes {thing.name}", thing.span, hint)
+            yield warning("PML344", f"nothing takes or mounts {thing.name}", thing.span, hint)
     for event in scenario.events:
-        if event.takes is not None and event.gives is not None and event.takes.name == event.gives.name:
-            message = f"{event.name} takes {event.takes.name} and gives it: nothing would change"
-            yield error("PML342", message, event.span, "write two events, one that takes it and one that gives it")
+        yield from _event(event, taken)
     known = {carrier.agent.name: carrier for carrier in carriers(scenario)}
     for agent in scenario.agents:
         problem = _number(agent) or _without(agent, known)
@@ -93,6 +105,16 @@ def check_loads(scenario: Scenario) -> Iterator[Diagnostic]:
             yield problem
         elif agent.name in known:
             yield from _carrier(known[agent.name])
+
+
+def _event(event: Event, taken: Container[str]) -> Iterator[Diagnostic]:
+    """Things that one event both takes and gives, or of which one is carried and mounted."""
+    if event.takes is not None and event.gives is not None and event.takes.name == event.gives.name:
+        message = f"{event.name} takes {event.takes.name} and gives it: nothing would change"
+        yield error("PML342", message, event.span, "write two events, one that takes it and one that gives it")
+    if event.mounts is not None and event.mounts.name in taken:
+        message = f"{event.name} mounts {event.mounts.name}, which another event takes: it is carried, or it is a tool"
+        yield error("PML342", message, event.mounts.span, "declare two things, one to be carried and one as a tool")
 
 
 def _number(agent: Agent) -> Optional[Diagnostic]:
@@ -116,10 +138,11 @@ def _carrier(carrier: Carrier) -> Iterator[Diagnostic]:
     name, refs = carrier.agent.name, {ref.name: ref for ref in carrier.agent.can_do}
     given = {event.gives.name for event in carrier.events if event.gives is not None}
     for event in carrier.events:
-        if event.gives is not None and event.gives.name not in carrier.things:
-            thing = event.gives.name
-            message = f"{name} can never do {event.name}: it gives {thing}, and {name} does nothing that takes {thing}"
-            hint = f"add an event that takes {thing} behind its can_do, or take {event.name} away from it"
+        had = (("gives", event.gives, carrier.things), ("needs", event.needs, carrier.things + carrier.tools))
+        for word, thing in ((word, ref.name) for word, ref, there in had if ref is not None and ref.name not in there):
+            how = "takes" if word == "gives" else "takes or mounts"
+            message = f"{name} can never do {event.name}: it {word} {thing}, and {name} does nothing that {how} {thing}"
+            hint = f"add an event that {how} {thing} behind its can_do, or take {event.name} away from it"
             yield error("PML341", message, refs[event.name].span, hint)
     for event in carrier.events:
         if event.takes is not None and event.takes.name not in given:

@@ -201,3 +201,60 @@ agent "things" controllable mobile 1 carries 2 location thing can_do carries, dr
 reach_objective: do drop
 """
     assert found(text) == [] and format_text(text, "x.pur").count("takes gives\n") == 1
+
+
+RACK = """\
+poi "rack"
+poi "hall"
+connect rack and hall distance 4
+thing "box"
+thing "brush" label "the broom"
+thing "mop"
+event "takeBrush" location rack duration 3 mounts brush
+event "takeMop" location rack mounts mop
+event "sweep" location hall duration 5 needs brush
+event "load" location rack takes box needs mop
+event "scan" location hall needs box
+event "unload" location hall gives box
+agent "bot" controllable mobile 1 location rack can_do takeBrush, takeMop, sweep, load, scan, unload
+reach_objective: do sweep
+"""
+
+
+def test_one_tool_at_a_time_is_mounted_beside_what_is_carried() -> None:
+    assert found(RACK) == []
+    story = scenario(RACK)
+    (bot,) = carriers(story)
+    assert (bot.things, bot.tools, bot.count) == (("box",), ("brush", "mop"), 6)
+    assert bot.loads == ((0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0), (0, 0, 1), (1, 0, 1))
+    after = {event.name: [bot.after(event, load) for load in bot.loads] for event in bot.events}
+    assert after["takeBrush"] == [(0, 1, 0), (1, 1, 0)] * 3 and after["takeMop"] == [(0, 0, 1), (1, 0, 1)] * 3
+    assert after["sweep"] == [None, None, (0, 1, 0), (1, 1, 0), None, None]
+    assert after["load"] == [None] * 4 + [(1, 0, 1), None]
+    assert after["scan"] == [None, (1, 0, 0), None, (1, 1, 0), None, (1, 0, 1)]
+    assert load_words(story, bot, (1, 1, 0)) == "1 of box and the broom mounted"
+    assert story.events[3].load_words == "takes box, needs mop" and "takes box needs mop" in scenario_text(story)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code"),
+    [
+        ("can_do takeBrush, ", "can_do ", "PML341"),
+        ("gives box", "gives mop", "PML341"),
+        ("location rack mounts mop", "location rack mounts mop takes mop", "PML010"),
+        ("location rack mounts mop", "location rack takes brush", "PML342"),
+        (" needs mop", "", ""),
+        ("mounts mop", "", "PML341"),
+        ("needs brush", "needs broom", "PML110"),
+    ],
+)
+def test_what_is_wrong_with_tools_is_said(old: str, new: str, code: str) -> None:
+    assert code in ["", *(one for one, _ in found(RACK.replace(old, new, 1)))]
+
+
+def test_the_page_of_draw_changes_tools() -> None:
+    drawn = view(RACK)
+    assert [(one["mounts"], one["needs"]) for one in drawn["events"]][:3] == [("brush", ""), ("mop", ""), ("", "brush")]
+    sweep = drawn["events"][2]["statement"]
+    assert "duration 5 needs mop\n" in change(RACK, {"do": "set", "statement": sweep, "fields": {"needs": "mop"}}).text
+    assert "duration 5\n" in change(RACK, {"do": "set", "statement": sweep, "fields": {"needs": ""}}).text

@@ -193,8 +193,8 @@ def test_no_nonsense_follows_from_a_syntax_error() -> None:
 
 def test_an_expected_list_reads_like_a_sentence() -> None:
     (finding,) = syntax_errors('event "e" e')
-    expected = "expected `label`, `collaborative`, `location`, `duration`, `takes`, `gives`, `at_most`, `only_if` or"
-    assert f"{expected} the end" in finding.message
+    parts = "`label`, `collaborative`, `location`, `duration`, `takes`, `gives`, `mounts`, `needs`, `at_most`"
+    assert f"expected {parts}, `only_if` or the end" in finding.message
 
 
 BEFORE = '''poi "a"

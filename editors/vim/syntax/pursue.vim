@@ -12,10 +12,10 @@ syntax keyword pursueConstant false is_false is_true true
 syntax keyword pursueKeyword after agents all always and answered any apart at at_least at_most avoid before between by
 syntax keyword pursueKeyword can_do capacity carries charges collaborative controllable distance do does doing duration
 syntax keyword pursueKeyword each ends escort every except false_if from gives holds hour human if in inflation
-syntax keyword pursueKeyword initially is label lasts leaves location minute mobile never never_with no none not of
-syntax keyword pursueKeyword on_way one_way only_if or order patrol per place radius reaches reacts_to recharges robot
-syntax keyword pursueKeyword robots second speed stays takes then times to together tolerance true_if twice two uses
-syntax keyword pursueKeyword waits way when within
+syntax keyword pursueKeyword initially is label lasts leaves location minute mobile mounts needs never never_with no
+syntax keyword pursueKeyword none not of on_way one_way only_if or order patrol per place radius reaches reacts_to
+syntax keyword pursueKeyword recharges robot robots second speed stays takes then times to together tolerance true_if
+syntax keyword pursueKeyword twice two uses waits way when within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*\%([ \t]\+\%(s\|min\|h\)\>\%([ \t]\+\d[0-9.]*[ \t]\+\%(s\|min\|h\)\>\)*\)\?"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

@@ -1,4 +1,4 @@
-"""`thing "box"`: something that agents carry, from an event that takes it to one that gives it."""
+"""`thing "box"`: something that agents carry, from an event that takes it to one that gives it, or a tool."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from pursue_gen.language.word import Form, Word
 
 @dataclass(frozen=True)
 class Thing(Labelled):
-    """Something that is carried: which one of its kind is not told apart. `label`: what people read; None: the name."""
+    """Something that is carried, or a tool: which one of its kind is not told apart. `label`: what people read; None:
+    the name.
+    """
 
     name: str
     span: Span = NOWHERE
@@ -22,7 +24,7 @@ class Thing(Labelled):
     listed_in: ClassVar[str] = "things"
     symbol: ClassVar[str] = "Object"
     own_words: ClassVar[Tuple[Word, ...]] = (
-        Word("thing", "Something that agents carry, from an event that takes it to one that gives it.", True),
+        Word("thing", "What agents carry, from an event that takes it to one that gives it; or a tool.", True),
     )
     template: ClassVar[Template] = Template('thing {name="box"} [label {label:name}]')
     forms: ClassVar[Tuple[Form, ...]] = (Form("something that robots carry", 'thing "{=box}"'),)

@@ -243,6 +243,8 @@ _FIELDS: Mapping[str, Mapping[str, Callable[[Values, str], Parts]]] = {
         "duration": _text("DURATION", fields.window_of),
         "takes": _text("TAKES", fields.name_of),
         "gives": _text("GIVES", fields.name_of),
+        "mounts": _text("MOUNTS", fields.name_of),
+        "needs": _text("NEEDS", fields.name_of),
         "at_most": _times,
         "only_if": _text("ONLY_IF", fields.text_of),
     },

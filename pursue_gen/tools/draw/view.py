@@ -31,6 +31,7 @@ from pursue_gen.workspace.robot_size import NOTHING_TOLD, Told, sizes_of
 from pursue_gen.workspace.spots import SPOT_DISTANCE
 
 _MOST_FINDINGS = 200
+_MOVES = ("takes", "gives", "mounts", "needs")
 
 
 def view(
@@ -216,7 +217,7 @@ def _events(document: Draft) -> List[Dict[str, Any]]:
             continue
         parts = parts_of(one)
         event = {"name": bare(one.name), "label": words_behind(one, "LABEL")[1:-1]}
-        texts = {key: words_behind(one, key.upper()) for key in ("location", "duration", "takes", "gives", "only_if")}
+        texts = {key: words_behind(one, key.upper()) for key in ("location", "duration", *_MOVES, "only_if")}
         at_most = words_behind(one, "AT_MOST").partition(" ")[0]
         ticks = {key: key.upper() in parts for key in ("collaborative", "together")}
         found.append({**event, **texts, "at_most": at_most, **ticks, **_placed(document, number)})
@@ -225,7 +226,7 @@ def _events(document: Draft) -> List[Dict[str, Any]]:
             event = {"name": each.name, "label": each.label or "", "at_most": str(each.at_most or "")}
             event.update(location=each.location.name if each.location else "", only_if=_condition(each.only_if))
             event["duration"] = "" if each.duration is None else window_text(each.duration, each.latest)
-            event.update({key: getattr(getattr(each, key), "name", "") for key in ("takes", "gives")})
+            event.update({key: getattr(getattr(each, key), "name", "") for key in _MOVES})
             ticks = {key: getattr(each, key) for key in ("collaborative", "together")}
             found.append({**event, **ticks, **_made(document, each.span)})
     return found

@@ -30,7 +30,8 @@ connect b and a distance 2.5
 thing "box" label "parcel"
 event "work" collaborative together location a duration 6 to 9 at_most 2 times only_if not (bot on_way)
 event "first" label "do it" duration 3
-event "second" takes box gives box
+thing "brush"
+event "second" takes box gives box mounts brush needs brush
 rule "order" for each robot: (first before second) before (work or second)
 rule "turns" for each agent: first and second
 rule "plain": first before second

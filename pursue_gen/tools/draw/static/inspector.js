@@ -117,7 +117,7 @@ function event(thing) {
     ...named("event", thing),
     field("field-location", "happens", thing.location, set(thing, "location"), { options: [["", "anywhere"], ...places()] }),
     field("field-duration", "duration (3, 3 to 5, or 30 s to 1 min; empty: none)", thing.duration, set(thing, "duration"), { spellcheck: "false" }),
-    ...["takes", "gives"].filter(() => things.length).map((word) => field(`field-${word}`, word, thing[word], set(thing, word), { options: [["", "nothing"], ...things.map((one) => [one, one])] })),
+    ...["takes", "gives", "mounts", "needs"].filter(() => things.length).map((word) => field(`field-${word}`, word, thing[word], set(thing, word), { options: [["", "nothing"], ...things.map((one) => [one, one])] })),
     field("field-at_most", "at most so many times", thing.at_most, set(thing, "at_most"), { inputmode: "numeric" }),
     tick("field-collaborative", "needs a partner who reacts", thing.collaborative, set(thing, "collaborative")),
     tick("field-together", "keeps both busy until it ends", thing.together, set(thing, "together")),
