@@ -101,6 +101,11 @@ class Course:
         self.agents = {agent.name: agent for agent in self.scenario.agents}
         self.stays = {agent.name: Stay(agent.location.name, 0.0) for agent in self.scenario.agents}
         self.states = {state.name: state.initially for state in self.scenario.states}
+        tools = {event.mounts.name for event in self.scenario.events if event.mounts is not None}
+        for agent in self.scenario.agents:
+            self.carried[agent.name] = [ref.name for ref in agent.has if ref.name not in tools]
+            for ref in (ref for ref in agent.has if ref.name in tools):
+                self.mounted[agent.name] = ref.name
         self.batteries = {battery.agent.name: battery for battery in self.scenario.batteries}
         self.levels = {name: battery.capacity for name, battery in self.batteries.items()}
 

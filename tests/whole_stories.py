@@ -125,6 +125,9 @@ def _agents(draw: st.DrawFn, names: Sequence[str], place: object, carry: bool, m
         also = ["load"] * (carry and "drop" in own) + ["wave"] * (mount and "sing" in own)
         own = [event for event in EVENTS if event in own or event in also]
         carries = draw(st.sampled_from(("", " carries 2", " carries 3"))) if carry else ""
+        carries += draw(st.sampled_from(("", " has box"))) if carry and "load" in own else ""
+        brush = ", brush" if " has" in carries else " has brush"
+        carries += draw(st.sampled_from(("", brush))) if mount and "wave" in own else ""
         kind = "human controllable" if name == "nurse" else "controllable"
         can_do = f" can_do {', '.join(own)}" if own else ""
         reacts = [event for event in ("ride", "wave") if event not in own]

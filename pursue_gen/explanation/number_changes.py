@@ -182,7 +182,7 @@ def count_changes(scenario: Scenario, event: Event, most: int) -> Iterator[Repai
 def load_changes(scenario: Scenario, carrier: Carrier) -> Iterator[Repair]:
     """An agent that carries more at one time; one that is not controllable: less."""
     agent, room = carrier.agent, carrier.room
-    values = range(room + 1, 2 * room + 2) if agent.controllable else range(room - 1, 0, -1)
+    values = range(room + 1, 2 * room + 2) if agent.controllable else range(room - 1, max(carrier.held - 1, 0), -1)
     possible = [k for k in values if replace(carrier, agent=replace(agent, carries=k)).count <= MOST_LOADS]
     if possible:
         yield Repair(

@@ -34,9 +34,19 @@ class Carrier:
     tools: Tuple[str, ...] = ()
 
     @property
+    def first(self) -> Load:
+        """What it carries and has mounted at the start."""
+        return tuple(sum(ref.name == name for ref in self.agent.has) for name in (*self.things, *self.tools))
+
+    @property
     def room(self) -> int:
-        """How many things it carries at one time at most."""
-        return 1 if self.agent.carries is None else self.agent.carries
+        """How many things it carries at one time at most: no less than at the start."""
+        return max(self.held, 1 if self.agent.carries is None else self.agent.carries)
+
+    @property
+    def held(self) -> int:
+        """How many things it carries at the start."""
+        return sum(ref.name in self.things for ref in self.agent.has)
 
     @property
     def count(self) -> int:
@@ -45,7 +55,7 @@ class Carrier:
 
     @property
     def loads(self) -> Tuple[Load, ...]:
-        """All that it can carry and have mounted, in order of how many things that is; nothing at first."""
+        """All that it can carry and have mounted, in order of how many things that is; nothing first."""
         carried = (load for load in product(range(self.room + 1), repeat=len(self.things)) if sum(load) <= self.room)
         ordered = sorted(carried, key=lambda load: (sum(load), tuple(-count for count in load)))
         mounted = [tuple(int(k == one) for k in range(len(self.tools))) for one in range(-1, len(self.tools))]
@@ -72,9 +82,10 @@ def carriers(scenario: Scenario) -> Iterator[Carrier]:
         able = {ref.name for ref in agent.can_do}
         events = tuple(event for event in naming if event.name in able)
         if events and (agent.controllable or agent.carries is not None):
-            taken, mounted = (_named(event.takes for event in events), _named(event.mounts for event in events))
-            things = tuple(thing.name for thing in scenario.things if thing.name in taken)
-            yield Carrier(agent, events, things, tuple(one.name for one in scenario.things if one.name in mounted))
+            tools = _named(event.mounts for event in events)
+            carried = _named((*agent.has, *(event.takes for event in events))) - tools
+            known = [thing.name for thing in scenario.things]
+            yield Carrier(agent, events, *(tuple(name for name in known if name in some) for some in (carried, tools)))
 
 
 def _named(refs: Iterable[Optional[Ref]]) -> Set[str]:
@@ -92,15 +103,16 @@ def load_words(scenario: Scenario, carrier: Carrier, load: Load) -> str:
 def check_loads(scenario: Scenario) -> Iterator[Diagnostic]:
     """Findings about things whose names are declared, and about who carries them."""
     taken, mounted = (_named(getattr(e, word) for e in scenario.events) for word in ("takes", "mounts"))
+    there = _named(ref for agent in scenario.agents for ref in agent.has)
     for thing in scenario.things:
-        if thing.name not in taken | mounted:
+        if thing.name not in taken | mounted | there:
             hint = f"let an event take it: takes {thing.name} behind its duration, or delete this line"
             yield warning("PML344", f"nothing takes or mounts {thing.name}", thing.span, hint)
     for event in scenario.events:
         yield from _event(event, taken)
     known = {carrier.agent.name: carrier for carrier in carriers(scenario)}
     for agent in scenario.agents:
-        problem = _number(agent) or _without(agent, known)
+        problem = _number(agent, known.get(agent.name)) or _without(agent, known)
         if problem is not None:
             yield problem
         elif agent.name in known:
@@ -117,8 +129,17 @@ def _event(event: Event, taken: Container[str]) -> Iterator[Diagnostic]:
         yield error("PML342", message, event.mounts.span, "declare two things, one to be carried and one as a tool")
 
 
-def _number(agent: Agent) -> Optional[Diagnostic]:
+def _number(agent: Agent, carrier: Optional[Carrier]) -> Optional[Diagnostic]:
+    """A number that nobody can carry, or more at the start than there is room for."""
     if agent.carries is None or 1 <= agent.carries < MOST_LOADS:
+        tools = [] if carrier is None else [ref for ref in agent.has if ref.name in carrier.tools]
+        room = 1 if agent.carries is None else agent.carries
+        if len(tools) > 1:
+            message = f"{agent.name} has {tools[0].name} and {tools[1].name} mounted at the start: expected one tool"
+            return error("PML340", message, tools[1].span, "delete one of them: another one is mounted by an event")
+        if carrier is not None and carrier.held > room:
+            message = f"{agent.name} has {carrier.held} things at the start and room for {room}"
+            return error("PML340", message, agent.span, f"write carries {carrier.held}, or delete some behind has")
         return None
     message = f"{agent.name} carries {agent.carries} things: expected 1 to {MOST_LOADS - 1}"
     hint = "write a number in these limits, or delete carries" + (": then it carries one" if agent.is_robot else "")
@@ -127,10 +148,12 @@ def _number(agent: Agent) -> Optional[Diagnostic]:
 
 def _without(agent: Agent, known: Container[str]) -> Optional[Diagnostic]:
     """A number of things of who takes and gives none."""
-    if agent.carries is None or agent.name in known:
+    word = "has" if agent.carries is None else "carries"
+    if (agent.carries is None and not agent.has) or agent.name in known:
         return None
-    message = f"{agent.name} carries {agent.carries}, but does nothing that takes a thing"
-    hint = 'let it: event "load" … takes box, and can_do load; or delete carries'
+    what = ", ".join(ref.name for ref in agent.has) if agent.carries is None else agent.carries
+    message = f"{agent.name} {word} {what}, but does nothing that takes a thing"
+    hint = f'let it: event "load" … takes box, and can_do load; or delete {word}'
     return warning("PML344", message, agent.span, hint)
 
 

@@ -78,6 +78,7 @@ FILLINGS: Mapping[str, Filling] = {
     '"agent"': Filling("(ref | NAME)", TreeReader.agent_ref, lambda ref: f'"{ref.name}"', "agent"),
     "agents": Filling("refs", TreeReader.refs, names_text, "agent"),
     "POIs": Filling("refs", TreeReader.refs, names_text, "POI"),
+    "things": Filling("refs", TreeReader.refs, names_text, "thing"),
     "events": Filling("refs", TreeReader.refs, names_text, "event"),
     "event or condition": Filling(
         "(ref | condition)", TreeReader.event_or_condition, event_or_condition_text, "event", is_condition=True

@@ -15,8 +15,8 @@ from pursue_gen.tga.network import Automaton, Clause, Edge, Test
 
 
 def load_variables(scenario: Scenario) -> Tuple[Tuple[str, int], ...]:
-    """The variables of the loads: nobody carries anything at the start."""
-    return tuple((names.load(carrier.agent.name), 0) for carrier in carriers(scenario))
+    """The variables of the loads, with what is carried at the start."""
+    return tuple((names.load(one.agent.name), one.loads.index(one.first)) for one in carriers(scenario))
 
 
 def laden(automaton: Automaton, scenario: Scenario) -> Automaton:

@@ -16,6 +16,7 @@ from pursue_gen.language.parser import parse, read
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.sentences import speed_words
 from pursue_gen.language.writer import scenario_text
+from pursue_gen.tga import translate
 from pursue_gen.tools.draw.operations import change
 from pursue_gen.tools.draw.view import view
 from pursue_gen.tools.lsp.completion import complete
@@ -258,3 +259,39 @@ def test_the_page_of_draw_changes_tools() -> None:
     sweep = drawn["events"][2]["statement"]
     assert "duration 5 needs mop\n" in change(RACK, {"do": "set", "statement": sweep, "fields": {"needs": "mop"}}).text
     assert "duration 5\n" in change(RACK, {"do": "set", "statement": sweep, "fields": {"needs": ""}}).text
+
+
+def test_what_is_there_at_the_start() -> None:
+    text = RACK.replace("mobile 1 location", "mobile 1 carries 3 has box, brush, box location")
+    assert found(text) == []
+    story = scenario(text)
+    (bot,) = carriers(story)
+    assert (bot.first, bot.held, bot.room) == ((2, 1, 0), 2, 3)
+    assert dict(translate(story).variables)["Hbot"] == bot.loads.index((2, 1, 0)) > 0
+    assert speed_words(story.agents[0], story).endswith("carries 3, has box, the broom and box")
+    assert "carries 3 has box, brush, box location rack" in scenario_text(story)
+    assert view(text)["agents"][0]["has"] == "box, brush, box"
+    fields = {"has": "mop", "carries": ""}
+    assert "mobile 1 has mop location" in change(text, {"do": "set", "statement": 12, "fields": fields}).text
+
+
+@pytest.mark.parametrize(
+    ("has", "code"),
+    [
+        ("has box, box", "PML340"),
+        ("carries 2 has box, box, box", "PML340"),
+        ("has mop, brush", "PML340"),
+        ("has sponge", "PML110"),
+        ("has", "PML010"),
+    ],
+)
+def test_what_cannot_be_there_at_the_start(has: str, code: str) -> None:
+    assert code in [one for one, _ in found(RACK.replace("mobile 1 location", f"mobile 1 {has} location"))]
+
+
+def test_who_has_something_may_give_it_without_ever_taking_it() -> None:
+    text = shop(thief=" carries 1 has box", does="unload")
+    assert found(text) == []
+    assert [one.first for one in carriers(scenario(text))] == [(0, 0), (0,), (1,)]
+    text = shop(thief=" has box", does="ring") + 'event "ring"\n'
+    assert ("PML344", "thief has box, but does nothing that takes a thing") in found(text)

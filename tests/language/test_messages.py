@@ -141,7 +141,7 @@ SLIPS = [
     ("assume: a at b", "PML010", 15, "expected `by` after `b`", "not (visitor at a and guest at a)"),
     ("assume a never at b", "PML010", 8, "expected `:`", "the form is"),
     ("assume: a lies at b", "PML010", 11, "`reaches`, `never` or `at` after `a`", "the form is"),
-    ('agent "b" mobile 3', "PML010", 19, "`tolerance`, `inflation` or `carries` after `3`", "location is required"),
+    ('agent "b" mobile 3', "PML010", 19, "`inflation`, `carries` or `has` after `3`", "location is required"),
     ('agent "b" mobile location a', "PML010", 18, "expected a number after `mobile`", "mobile 3"),
     ('agent "b" location a controllable', "PML010", 22, "found `controllable`", "human controllable mobile 3 location"),
     ('agent "b" location a can_do x y', "PML010", 31, "expected `,`", "put a comma between two names"),

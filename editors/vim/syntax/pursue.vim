@@ -11,7 +11,7 @@ syntax keyword pursueStatement reach_objective rest rule state stateDependency t
 syntax keyword pursueConstant false is_false is_true true
 syntax keyword pursueKeyword after agents all always and answered any apart at at_least at_most avoid before between by
 syntax keyword pursueKeyword can_do capacity carries charges collaborative controllable distance do does doing duration
-syntax keyword pursueKeyword each ends escort every except false_if from gives holds hour human if in inflation
+syntax keyword pursueKeyword each ends escort every except false_if from gives has holds hour human if in inflation
 syntax keyword pursueKeyword initially is label lasts leaves location minute mobile mounts needs never never_with no
 syntax keyword pursueKeyword none not of on_way one_way only_if or order patrol per place radius reaches reacts_to
 syntax keyword pursueKeyword recharges robot robots second speed stays takes then times to together tolerance true_if

@@ -254,6 +254,7 @@ _FIELDS: Mapping[str, Mapping[str, Callable[[Values, str], Parts]]] = {
         "mobile": _pace("MOBILE", "SPEED"),
         "speed": _pace("SPEED", "MOBILE"),
         "carries": _text("CARRIES", fields.number_of),
+        "has": _text("HAS", fields.text_of),
         "location": _needed("LOCATION", fields.name_of),
         "can_do": _list("CAN_DO"),
         "reacts_to": _list("REACTS_TO"),

@@ -193,7 +193,7 @@ def _agents(document: Draft) -> List[Dict[str, Any]]:
         kind = "free" if "CONTROLLABLE" not in parts else "person" if "HUMAN" in parts else "robot"
         agent = {"name": name, "label": words_behind(one, "LABEL")[1:-1], "kind": kind}
         agent.update(mobile=words_behind(one, "MOBILE"), speed=words_behind(one, "SPEED"))
-        agent.update(carries=words_behind(one, "CARRIES"), location=words_behind(one, "LOCATION"))
+        agent.update({key: words_behind(one, key.upper()) for key in ("carries", "has", "location")})
         agent["mark"] = mark(looks[name], 0, 0, 6.0)
         lists = {key: names_behind(one, key.upper()) for key in ("can_do", "reacts_to")}
         if name in known:  # groups are lists of their members
@@ -203,7 +203,7 @@ def _agents(document: Draft) -> List[Dict[str, Any]]:
         kind = "free" if not each.controllable else "person" if each.human else "robot"
         agent = {"name": each.name, "label": each.label or "", "kind": kind, "location": each.location.name}
         agent.update(mobile="" if each.speed else str(each.mobile or ""), speed=str(each.speed or ""))
-        agent.update(carries=str(each.carries or ""))
+        agent.update(carries=str(each.carries or ""), has=names_text(each.has))
         agent.update(mark=mark(looks[each.name], 0, 0, 6.0))
         lists = {key: [ref.name for ref in getattr(each, key)] for key in ("can_do", "reacts_to")}
         found.append({**agent, **lists, **_made(document, each.span)})

@@ -234,6 +234,7 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
         ways = [((a, b), lasts(window, scenario.unit)) for (a, b), window in movements if (a, b) in known]
         lines += _listed([f"- {a} to {b}: {time}" for (a, b), time in ways])
     lines += [] if agent.carries is None else [f"- carries {agent.carries} at one time at most"]
+    lines += _if_any("has at the start", [ref.name for ref in agent.has])
     lines += [f"- {words} on a map" for words in [agent.size_words] if words]
     lines += _if_any("can do", [ref.name for ref in agent.can_do])
     lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])

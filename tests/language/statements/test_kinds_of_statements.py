@@ -38,8 +38,8 @@ rule "plain": first before second
 state "open": initially false, true_if first, second false_if work
 state "shut": initially true, false_if first
 stateDependency: second only_if open is_false
-agent "bot" label "Porter 1" controllable mobile 3 radius 0.2 tolerance 0.1 carries 2 location a can_do work, first
-agent "ally" human controllable location b reacts_to work
+agent "bot" label "Porter 1" controllable mobile 3 radius 0.2 tolerance 0.1 location a can_do work, first
+agent "ally" human controllable carries 2 has box, box location b reacts_to work
 agent "courier" speed 0.5 location b
 agent "guest" mobile 0.5 location b can_do second
 travel "bot" from a to b takes 5 to 8

@@ -26,7 +26,7 @@ def labels(text: str, kind: str = "") -> List[str]:
 
 WHOLE = SMALL + "{}"
 MOVES = ["takes", "gives", "mounts", "needs"]
-SIZE = ["speed", "radius", "tolerance", "inflation", "carries"]
+SIZE = ["speed", "radius", "tolerance", "inflation", "carries", "has"]
 
 
 @pytest.mark.parametrize(

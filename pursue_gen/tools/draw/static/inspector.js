@@ -104,7 +104,7 @@ function agent(thing) {
     field("field-location", "starts at", thing.location, set(thing, "location"), { options: places() }),
     field("field-mobile", "time units per unit of distance (empty: stays)", thing.mobile, set(thing, "mobile"), { inputmode: "decimal" }),
     field("field-speed", "or its speed in metres per second", thing.speed, set(thing, "speed"), { inputmode: "decimal" }),
-    ...(things.length ? [field("field-carries", "carries so many things at a time (empty: one)", thing.carries, set(thing, "carries"), { inputmode: "numeric" })] : []),
+    ...(things.length ? [field("field-carries", "carries so many things at a time (empty: one)", thing.carries, set(thing, "carries"), { inputmode: "numeric" }), field("field-has", "has at the start (box, box)", thing.has, set(thing, "has"), { spellcheck: "false" })] : []),
     ...list(thing, "can_do", "can do", state.view.events),
     ...list(thing, "reacts_to", "reacts to", state.view.events.filter((one) => one.collaborative || thing.reacts_to.includes(one.name))),
   ];
