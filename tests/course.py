@@ -13,6 +13,7 @@ from math import ceil, floor
 from typing import Dict, List, Optional, Set, Tuple, Union
 
 from pursue_gen.language.conditions import Condition
+from pursue_gen.language.loads import carriers
 from pursue_gen.language.scenario import (
     Agent,
     Assumption,
@@ -117,6 +118,9 @@ class Course:
 
     def holds(self, condition: Optional[Condition]) -> bool:
         values = {f"S{name}": int(value) for name, value in self.states.items()}
+        for one in carriers(self.scenario):
+            has = [*self.carried[one.agent.name], self.mounted.get(one.agent.name, "")]
+            values[f"H{one.agent.name}"] = one.loads.index(tuple(has.count(name) for name in one.names))
         return condition is None or holds(condition, self.scenario, self.locations, values)
 
     def may_set_off(self, agent: str, a: str, b: str) -> bool:

@@ -34,9 +34,14 @@ class Carrier:
     tools: Tuple[str, ...] = ()
 
     @property
+    def names(self) -> Tuple[str, ...]:
+        """Its things and tools, as loads list them."""
+        return (*self.things, *self.tools)
+
+    @property
     def first(self) -> Load:
         """What it carries and has mounted at the start."""
-        return tuple(sum(ref.name == name for ref in self.agent.has) for name in (*self.things, *self.tools))
+        return tuple(sum(ref.name == name for ref in self.agent.has) for name in self.names)
 
     @property
     def room(self) -> int:
@@ -63,7 +68,7 @@ class Carrier:
 
     def after(self, event: Event, load: Load) -> Optional[Load]:
         """What it carries and has mounted when the event has ended that it begins with a load; None: it cannot."""
-        names, then, first = (*self.things, *self.tools), list(load), len(self.things)
+        names, then, first = self.names, list(load), len(self.things)
         if any(ref is not None and not dict(zip(names, load)).get(ref.name) for ref in (event.needs, event.gives)):
             return None
         if event.gives is not None:
@@ -161,7 +166,7 @@ def _carrier(carrier: Carrier) -> Iterator[Diagnostic]:
     name, refs = carrier.agent.name, {ref.name: ref for ref in carrier.agent.can_do}
     given = {event.gives.name for event in carrier.events if event.gives is not None}
     for event in carrier.events:
-        had = (("gives", event.gives, carrier.things), ("needs", event.needs, carrier.things + carrier.tools))
+        had = (("gives", event.gives, carrier.things), ("needs", event.needs, carrier.names))
         for word, thing in ((word, ref.name) for word, ref, there in had if ref is not None and ref.name not in there):
             how = "takes" if word == "gives" else "takes or mounts"
             message = f"{name} can never do {event.name}: it {word} {thing}, and {name} does nothing that {how} {thing}"

@@ -54,7 +54,7 @@ class Words:
                 found += _listed(names, "or", "OR")  # one of them
             elif _quantifies(tokens, index):
                 index = self._quantified(tokens, index, members, found)
-            elif kind in ("AT", "DOING") and _quantifies(tokens, index + 1):
+            elif kind in ("AT", "DOING", "HAS") and _quantifies(tokens, index + 1):
                 index = self._at_any(tokens, index, members, found)
             elif kind == "NO" and [token.type for token in tokens[index + 1 : index + 2]] == ["OF"]:
                 message = "expected `robot` or `agent` after `no`, found `of`"
@@ -156,7 +156,7 @@ class Words:
             return self._on_one_way(tokens, index, members)
         if verb and verb[0].type in ("ON_WAY", "IS_TRUE", "IS_FALSE"):
             return [verb], index + 1
-        if not verb or verb[0].type not in ("AT", "DOING") or index + 1 == len(tokens):
+        if not verb or verb[0].type not in ("AT", "DOING", "HAS") or index + 1 == len(tokens):
             return [], index
         if not _quantifies(tokens, index + 1):
             names, end = self._names_at(tokens, index + 1, members)

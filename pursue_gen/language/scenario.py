@@ -11,7 +11,7 @@ from pursue_gen.language import assumptions as kinds_of_assumptions
 from pursue_gen.language import objectives as kinds_of_objectives
 from pursue_gen.language.assumptions import *
 from pursue_gen.language.assumptions.base import Assumption
-from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Condition, Doing, Holds, Not, OnWay, Who
+from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Condition, Doing, Has, Holds, Not, OnWay, Who
 from pursue_gen.language.numbers import Number, Window, exact
 from pursue_gen.language.objectives import *
 from pursue_gen.language.objectives import Endurance, GivenUp, Patrol, Reach, Safety, StatedObjective, WhyGivenUp
@@ -35,7 +35,7 @@ from pursue_gen.language.statements.unit import Unit
 
 __all__ = [
     "Agent", "AllOf", "AnyOf", "At", "AtMostOf", "Battery", "Both", "Choice", "Condition", "Connection", "Dependency",
-    "Doing", "Event", "Holds", "MissionEnd", "Not", "OnWay", "Poi", "Pose", "Ref", "Rest", "Rule", "RuleBody",
+    "Doing", "Event", "Has", "Holds", "MissionEnd", "Not", "OnWay", "Poi", "Pose", "Ref", "Rest", "Rule", "RuleBody",
     "Scenario", "Sequence", "Spot", "State", "Thing", "Travel", "Unit", "Who", "Window",
 ]
 __all__ += kinds_of_assumptions.__all__

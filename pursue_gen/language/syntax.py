@@ -40,7 +40,7 @@ _WIDEST = 500
 """Events in one rule, parts of one condition."""
 _SPLIT = "split the rule into several rules"
 _SHORTEN = "say it with fewer of them; a state that events set can stand for much"
-_ATOMS = frozenset(("AT", "ON_WAY", "BETWEEN", "DOING", "IS_TRUE", "IS_FALSE"))
+_ATOMS = frozenset(("AT", "ON_WAY", "BETWEEN", "DOING", "HAS", "IS_TRUE", "IS_FALSE"))
 MOST_FINDINGS = 1000
 """The most errors that are reported; with more of them the file is no scenario."""
 

@@ -11,7 +11,7 @@ from typing import Dict, Iterable, Iterator, List, Optional, Tuple, Union
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Clauses, Domains, clauses_of, holds_at_start
-from pursue_gen.language.conditions import At, Condition, Holds, OnWay, atoms
+from pursue_gen.language.conditions import At, Condition, Doing, Holds, OnWay, atoms
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import Escort, Ref, Respond, Scenario
@@ -84,7 +84,7 @@ def _moves(what: Union[Ref, Condition], scenario: Scenario, domains: Domains) ->
             (state,) = (state for state in scenario.states if state.name == atom.state.name)
             for ref in (*state.true_if, *state.false_if):
                 found[names.event(ref.name)] = happening(ref.name, scenario, domains)
-        else:
+        elif isinstance(atom, Doing):
             for channel in (names.event(atom.event.name), names.done(atom.event.name)):
                 found[channel] = happening(channel, scenario, domains)
     return found

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.language.checks import check_reading
+from pursue_gen.language.conditions import condition_text, condition_words
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.loads import MOST_LOADS, carriers, load_words
@@ -17,6 +18,7 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.sentences import speed_words
 from pursue_gen.language.writer import scenario_text
 from pursue_gen.tga import translate
+from pursue_gen.tga.network import Test
 from pursue_gen.tools.draw.operations import change
 from pursue_gen.tools.draw.view import view
 from pursue_gen.tools.lsp.completion import complete
@@ -295,3 +297,71 @@ def test_who_has_something_may_give_it_without_ever_taking_it() -> None:
     assert [one.first for one in carriers(scenario(text))] == [(0, 0), (0,), (1,)]
     text = shop(thief=" has box", does="ring") + 'event "ring"\n'
     assert ("PML344", "thief has box, but does nothing that takes a thing") in found(text)
+
+
+CARE = RACK.replace("distance 4", "distance 4{way}").replace("reach", "{more}reach")
+
+
+def care(way: str = "", more: str = "") -> str:
+    return CARE.format(way=way, more=more)
+
+
+@pytest.mark.parametrize(
+    ("condition", "words"),
+    [
+        ("bot has box", "bot has box"),
+        ("not bot has brush", "bot does not have the broom"),
+        ("no robot has box", "no robot has box"),
+        ("any robot has mop", "any robot has mop"),
+        ("bot has box or bot has mop", "bot has box or bot has mop"),
+    ],
+)
+def test_what_somebody_has_is_a_condition(condition: str, words: str) -> None:
+    text = care(f" only_if {condition}", f"objective: avoid ({condition}) and bot on_way\n")
+    assert found(text) == []
+    story = scenario(text)
+    way, (avoid,) = story.connections[0].only_if, story.safety
+    assert way is not None and condition_words(way) == words and condition_text(way) == condition
+    assert f"only_if {condition}" in scenario_text(story) and condition.split(" or ")[0] in avoid.text
+    assert "Hbot" in {test.variable for test in loads_tested(story)}
+
+
+def loads_tested(story: Scenario) -> List[Test]:
+    edges = [edge for edge in translate(story).automaton("bot").edges if edge.sets_off]
+    return [test for edge in edges for clause in edge.guard.integers for test in clause]
+
+
+def test_a_way_is_closed_to_whoever_carries_something() -> None:
+    loads = {test.value for test in loads_tested(scenario(care(" only_if not bot has box")))}
+    assert loads == {0, 2, 4}  # nothing, the brush, the mop
+    assert loads_tested(scenario(care(" only_if bot has box or not bot has box"))) == []
+
+
+@pytest.mark.parametrize(
+    ("more", "code"),
+    [
+        ("objective: avoid bot has sponge\n", "PML110"),
+        ("objective: avoid guest has box\n", "PML231"),
+        ("objective: if bot has box then bot at hall within 9\n", "PML262"),
+        ("objective: if sweep then bot has box within 9\n", "PML262"),
+        ("assume: not guest has box\n", "PML263"),
+        ("objective: avoid bot has\n", "PML010"),
+    ],
+)
+def test_where_it_cannot_be_a_condition(more: str, code: str) -> None:
+    guest = 'agent "guest" mobile 1 location hall\n'
+    assert code in [one for one, _ in found(care(more=guest + more))]
+
+
+def test_one_of_a_group_has_one_of_a_group() -> None:
+    text = care(more='group "tools": brush, mop\ngroup "bots": bot\nobjective: avoid any of bots has any of tools\n')
+    (avoid,) = scenario(text).safety
+    assert found(text) == [] and avoid.text == "avoid bot has brush or bot has mop"
+
+
+def test_editors_know_it() -> None:
+    text = care(more="objective: avoid bot has ").partition("reach")[0]
+    assert [item.label for item in complete(Draft.of(text, "x.pur"), len(text))][:3] == ["box", "brush", "mop"]
+    draft = Draft.of(care(more="objective: avoid bot has box\n"), "x.pur")
+    at = draft.text.index("has box") + 5
+    assert draft.occurrence_at(at) is not None and "is carried" in getattr(hover(draft, at), "markdown", "")

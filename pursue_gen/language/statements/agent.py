@@ -67,7 +67,6 @@ class Agent(Labelled):
         Word("tolerance", "Metres by which the robot stops beside its goal, at most (xy_goal_tolerance).", True),
         Word("inflation", "Metres around obstacles that the robot's planners avoid (inflation_radius).", True),
         Word("carries", "So many things at one time, and no more. Without it, a robot carries one.", True),
-        Word("has", "What it carries, or has mounted, at the start.", True),
         Word("can_do", "The events that it does.", may_break=True),
         Word("reacts_to", "The collaborative events in which it is the partner.", may_break=True),
     )

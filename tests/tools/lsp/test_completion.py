@@ -178,7 +178,7 @@ def test_a_place_may_be_called_together() -> None:
     [
         ("|", ["bot", "man", "tired"], ["at_most", "not", "any", "no"]),
         ("b|", ["bot", "man", "tired"], ["at_most", "not", "any", "no"]),
-        ("bot |", [], ["is_true", "is_false", "at", "on_way", "between", "doing"]),
+        ("bot |", [], ["is_true", "is_false", "at", "on_way", "between", "doing", "has"]),
         ("bot on_way |", [], ["and", "or", "from"]),
         ("bot on_way from |", ["a", "b"], []),
         ("bot on_way from a to |", ["a", "b"], []),
@@ -196,8 +196,8 @@ def test_a_place_may_be_called_together() -> None:
         ("bot at a and (|", ["bot", "man", "tired"], ["at_most", "not", "any", "no"]),
         ("bot at a and bot at |", ["a", "b"], []),
         ("no robot at |", ["a", "b"], []),
-        ("any |", [], ["is_true", "is_false", "at", "on_way", "between", "doing", "robot"]),
-        ("tired |", [], ["is_true", "is_false", "at", "on_way", "between", "doing"]),
+        ("any |", [], ["is_true", "is_false", "at", "on_way", "between", "doing", "has", "robot"]),
+        ("tired |", [], ["is_true", "is_false", "at", "on_way", "between", "doing", "has"]),
     ],
 )
 def test_what_comes_next_in_a_condition(condition: str, names: List[str], words: List[str]) -> None:
