@@ -78,11 +78,13 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
         findings += [finding for finding in check_events(scenario) if finding.code not in doubtful]
         if "PML110" not in codes:
             findings += check_rules(scenario)
-            findings += check_conditions(scenario)
+            of_loads = list(check_loads(scenario))
+            if not {f.code for f in of_loads} & {"PML340", "PML342", "PML345"}:  # conditions stand on loads
+                findings += check_conditions(scenario)
+                findings += check_assumptions(scenario)
             findings += check_poses(scenario)
-            findings += check_assumptions(scenario)
             findings += check_batteries(scenario)
-            findings += check_loads(scenario)
+            findings += of_loads
         if not any(f.severity is Severity.ERROR for f in findings):
             findings += _islands(scenario)
     findings = list(dict.fromkeys(findings))  # a statement may be several objectives

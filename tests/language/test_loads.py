@@ -365,3 +365,13 @@ def test_editors_know_it() -> None:
     draft = Draft.of(care(more="objective: avoid bot has box\n"), "x.pur")
     at = draft.text.index("has box") + 5
     assert draft.occurrence_at(at) is not None and "is carried" in getattr(hover(draft, at), "markdown", "")
+
+
+@pytest.mark.parametrize(
+    "has", ["carries 1000000", "carries 99", "has mop, brush", "carries 0", "carries 2 has box, box, box"]
+)
+def test_conditions_on_loads_that_cannot_be_meant_are_not_looked_at(has: str) -> None:
+    text = care(" only_if not bot has box", "assume: not guest at hall\nobjective: always not bot has mop\n")
+    text = text.replace("mobile 1 location", f"mobile 1 {has} location") + 'agent "guest" mobile 1 location rack\n'
+    assert {code for code, _ in found(text)} & {"PML340", "PML345"}
+    assert "PML231" not in [code for code, _ in found(text)]
