@@ -1,7 +1,7 @@
 """What the statements of a scenario permit, said without its network: for comparison with what the network permits.
 
 Kept here are where agents are, what they are busy with, states (None: nobody knows), the rest of each rule's round,
-counts, and levels of batteries.
+counts, what agents carry, and levels of batteries.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from math import ceil, floor
 from typing import Dict, List, Optional, Set, Tuple, Union
 
 from pursue_gen.language.conditions import Condition
+from pursue_gen.language.loads import carriers
 from pursue_gen.language.scenario import (
     Agent,
     Assumption,
@@ -88,6 +89,8 @@ class Course:
     begun: Dict[str, int] = field(default_factory=dict)
     done: Dict[Tuple[str, str], List[Tuple[float, float]]] = field(default_factory=dict)
     """(agent, event) → beginnings and ends"""
+    carried: Dict[str, List[str]] = field(default_factory=dict)
+    mounted: Dict[str, str] = field(default_factory=dict)
     awaited: Dict[int, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -95,6 +98,11 @@ class Course:
         self.agents = {agent.name: agent for agent in self.scenario.agents}
         self.stays = {agent.name: Stay(agent.location.name, 0.0) for agent in self.scenario.agents}
         self.states = {state.name: state.initially for state in self.scenario.states}
+        tools = {event.mounts.name for event in self.scenario.events if event.mounts is not None}
+        for agent in self.scenario.agents:
+            self.carried[agent.name] = [ref.name for ref in agent.has if ref.name not in tools]
+            for ref in (ref for ref in agent.has if ref.name in tools):
+                self.mounted[agent.name] = ref.name
         for name, stay in self.stays.items():
             self._sees(name, stay.place)
         self.batteries = {battery.agent.name: battery for battery in self.scenario.batteries}
@@ -108,6 +116,9 @@ class Course:
     def holds(self, condition: Optional[Condition], agent: str) -> bool:
         """Whether it holds for what the agent is to do: who is controlled has to know that, of others it may be so."""
         values = {f"S{name}": 2 if value is None else int(value) for name, value in self.states.items()}
+        for one in carriers(self.scenario):
+            has = [*self.carried[one.agent.name], self.mounted.get(one.agent.name, "")]
+            values[f"H{one.agent.name}"] = one.loads.index(tuple(has.count(name) for name in one.names))
         whatever = all if self.agents[agent].controllable else any
         return condition is None or holds(condition, self.scenario, self.locations, values, whatever)
 
@@ -207,6 +218,8 @@ class Course:
             may_be = value is None and not self.agents[agent].controllable
             if dependency.event.name == name and value is not dependency.value and not may_be:
                 return False
+        if self._minds_its_load(agent) and self._load_after(agent, event) is None:
+            return False
         times = len(self.done.get((agent, name), ()))
         limits = [each for each in self.scenario.assumptions if isinstance(each, AtMost)]
         if any((each.agent.name, each.event.name) == (agent, name) and times >= each.times for each in limits):
@@ -251,6 +264,30 @@ class Course:
     def _is_docked(self, agent: str) -> bool:
         dock = self.batteries[agent].dock
         return dock is not None and self.stays[agent].place == dock.name
+
+    def _minds_its_load(self, agent: str) -> bool:
+        return self.agents[agent].controllable or self.agents[agent].carries is not None
+
+    def _load_after(self, agent: str, event: Event) -> Optional[List[str]]:
+        """What it carries when it has done the event; None: that is impossible."""
+        load = list(self.carried.get(agent, ()))
+        if event.needs is not None and event.needs.name not in (*load, self.mounted.get(agent)):
+            return None
+        if event.gives is not None:
+            if event.gives.name not in load:
+                return None
+            load.remove(event.gives.name)
+        if event.takes is not None:
+            load.append(event.takes.name)
+        return load if len(load) <= (self.agents[agent].carries or 1) else None
+
+    def _has_moved(self, agent: str, event: Event) -> None:
+        if self._minds_its_load(agent):
+            load = self._load_after(agent, event)
+            assert load is not None, (agent, event.name)
+            self.carried[agent] = load
+            if event.mounts is not None:
+                self.mounted[agent] = event.mounts.name
 
     def _goes_on(self, event: str) -> bool:
         several = sum(any(ref.name == event for ref in agent.can_do) for agent in self.scenario.agents) > 1
@@ -358,6 +395,7 @@ class Course:
         self.done.setdefault((agent, name), []).append((self.now, self.now))
         self._set_states(name)
         if event.duration is None:
+            self._has_moved(agent, event)
             self._has_happened(name)
             stay.rested = stay.rested if stay.to else self.now
             return
@@ -386,6 +424,7 @@ class Course:
         if agent in self.levels and self._is_docked(agent):
             battery = self.batteries[agent]
             self.levels[agent] = min(battery.capacity, self.levels[agent] + floor(battery.recharges * low))
+        self._has_moved(agent, event)
         self._has_happened(event.name)
         beginning, _ = self.done[agent, event.name][-1]
         self.done[agent, event.name][-1] = (beginning, self.now)

@@ -16,6 +16,7 @@ from pursue_gen.language.conditions import (
     AtMostOf,
     Condition,
     Doing,
+    Has,
     Holds,
     Not,
     OnWay,
@@ -36,8 +37,10 @@ PAUSES = ("load", "load and load", "sing and drop", "wave and load", "drop and w
 """Between which events there is to be a pause."""
 
 
-def conditions(places: Sequence[str], agents: Sequence[str]) -> st.SearchStrategy[str]:
-    """Conditions on these places and agents, on doing `load`, and on the state `open`."""
+def conditions(
+    places: Sequence[str], agents: Sequence[str], things: Sequence[str] = ()
+) -> st.SearchStrategy[str]:
+    """Conditions on these places, agents and things, on doing `load`, and on the state `open`."""
     who = st.sampled_from([Who(None), Who(None, robots=True), *(Who(ref(name)) for name in agents)])
     atoms: st.SearchStrategy[Condition] = (
         st.builds(At, who, st.sampled_from([ref(place) for place in places]))
@@ -47,6 +50,8 @@ def conditions(places: Sequence[str], agents: Sequence[str]) -> st.SearchStrateg
         | st.builds(Doing, st.just(Who(None)), st.just(ref("load")))
         | st.builds(Holds, st.just(ref("open")), st.booleans())
     )
+    if things:
+        atoms |= st.builds(Has, who, st.sampled_from([ref(thing) for thing in things]))
     literals = atoms | atoms.map(Not)
     pairs = st.lists(literals, min_size=2, max_size=2).map(tuple)
     return (literals | pairs.map(AllOf) | pairs.map(AnyOf)).map(condition_text)
@@ -58,6 +63,10 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     places = ["a", "b"] if small or draw(st.booleans()) else ["a", "b", "c"]
     names = ["bot1", "guest"] if small else ["bot1", "bot2", "nurse", "guest"]
     condition = conditions(places, names)
+    takes, gives = draw(st.sampled_from((("", ""), ("", ""), (" takes box", " gives box"))))
+    mounts, needs = draw(st.sampled_from((("", ""), ("", ""), (" mounts brush", " needs brush"))))
+    things = ["box"] * bool(takes) + ["brush", "saw"] * bool(mounts)
+    guard = conditions(places, names, things)
 
     def maybe(text: str, chance: int = 4) -> str:
         return text if draw(st.integers(0, chance)) == 0 else ""
@@ -70,7 +79,7 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
         return f"{low}" + maybe(f" to {low + draw(st.integers(1, 3))}")
 
     def only_if() -> str:
-        return maybe(f" only_if {draw(condition)}")
+        return maybe(f" only_if {draw(guard)}")
 
     def whom() -> str:
         some = ", ".join(draw(st.lists(st.sampled_from(names), min_size=1, max_size=2, unique=True)))
@@ -81,14 +90,15 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
         f"connect {x} and {y} distance {draw(st.integers(1, 3))}{maybe(' one_way', 7)}{whom()}{only_if()}"
         for x, y in zip(places, places[1:])
     ]
+    lines += [f'thing "{thing}"' for thing in things]
     limit = f" at_most {draw(st.integers(1, 3))} times"
     lines += [
-        f'event "load" location {place()} duration {window()}{maybe(" may_stop", 1)}{maybe(limit)}{only_if()}',
-        f'event "drop"{maybe(f" location {place()}", 1)}{maybe(limit)}{only_if()}',
+        f'event "load" location {place()} duration {window()}{maybe(" may_stop", 1)}{takes}{maybe(limit)}{only_if()}',
+        f'event "drop"{maybe(f" location {place()}", 1)}{gives}{maybe(limit)}{only_if()}',
         f'event "ride" collaborative{maybe(" together", 0 if draw(st.booleans()) else 9)} location {place()}'
-        f" duration {window()}{only_if()}",
-        f'event "wave" collaborative{only_if()}',
-        f'event "sing" duration {window()}{maybe(" may_stop", 1)}{only_if()}',
+        f" duration {window()}{mounts and ' mounts saw'}{only_if()}",
+        f'event "wave" collaborative{mounts}{only_if()}',
+        f'event "sing" duration {window()}{maybe(" may_stop", 1)}{needs}{only_if()}',
         f'event "call"{maybe(limit, 2)}{only_if()}',
     ]
     shuffled = draw(st.permutations([*EVENTS, "call"]))
@@ -101,10 +111,10 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     lines.append(f'state "open": initially {first}, true_if drop false_if call{shows}')
     needing = draw(st.sampled_from(("load", "sing", "ride", "")))
     lines += [f"stateDependency: {needing} only_if open is_true"] if needing else []
-    lines += _agents(draw, names, place)
+    lines += _agents(draw, names, place, bool(takes), bool(mounts))
     lines += _travels(draw, names[:-1], places)
     lines += _assumptions(draw, place)
-    lines += _objectives(draw, small, condition, place)
+    lines += _objectives(draw, small, condition, guard, place)
     lines += _batteries(draw, place)
     text = "\n".join([*lines, ""])
     try:
@@ -116,15 +126,22 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     return text, scenario
 
 
-def _agents(draw: st.DrawFn, names: Sequence[str], place: object) -> List[str]:
+def _agents(draw: st.DrawFn, names: Sequence[str], place: object, carry: bool, mount: bool) -> List[str]:
     lines = []
     for name in names[:-1]:
         own = [event for event in EVENTS if name == "bot1" or draw(st.booleans())]
+        also = ["load"] * (carry and "drop" in own) + ["wave"] * (mount and "sing" in own)
+        own = [event for event in EVENTS if event in own or event in also]
+        carries = draw(st.sampled_from(("", " carries 2", " carries 3"))) if carry else ""
+        carries += draw(st.sampled_from(("", " has box"))) if carry and "load" in own else ""
+        brush = ", brush" if " has" in carries else " has brush"
+        carries += draw(st.sampled_from(("", brush))) if mount and "wave" in own else ""
         kind = "human controllable" if name == "nurse" else "controllable"
         can_do = f" can_do {', '.join(own)}" if own else ""
         reacts = [event for event in ("ride", "wave") if event not in own]
         reacts_to = f" reacts_to {', '.join(reacts)}" if reacts else ""
-        lines.append(f'agent "{name}" {kind} mobile {draw(st.integers(1, 2))} location {place()}{can_do}{reacts_to}')  # type: ignore[operator]
+        mobile = f"mobile {draw(st.integers(1, 2))}{carries}"
+        lines.append(f'agent "{name}" {kind} {mobile} location {place()}{can_do}{reacts_to}')  # type: ignore[operator]
     moves = " mobile 2" if draw(st.booleans()) else ""
     lines.append(f'agent "guest"{moves} location {place()} can_do call reacts_to ride, wave')  # type: ignore[operator]
     return lines
@@ -163,18 +180,23 @@ def _batteries(draw: st.DrawFn, place: object) -> List[str]:
     return [f"battery bot1 capacity {capacity} uses {draw(st.integers(1, 2))} per unit{recharges}"]
 
 
-def _objectives(draw: st.DrawFn, small: bool, condition: st.SearchStrategy[str], place: object) -> List[str]:
+def _objectives(
+    draw: st.DrawFn, small: bool, condition: st.SearchStrategy[str], guard: st.SearchStrategy[str], place: object
+) -> List[str]:
     where = place()  # type: ignore[operator]
     lasting = f"battery bot1 lasts {draw(st.integers(6, 40))}, charges in {draw(st.integers(1, 12))} at {where}"
+    other = "guest" if small else "nurse"
     kinds = {
         "avoid": "objective: avoid call",
         "respond": f"objective: if call then drop within {draw(st.integers(5, 30))}",
         "comes": f"objective: if {draw(condition)} then sing within {draw(st.integers(5, 30))}",
         "follows": f"objective: if call then {draw(condition)} within {draw(st.integers(5, 30))}",
-        "condition": f"objective: avoid {draw(condition)}",
-        "always": f"objective: always {draw(condition)}",
+        "condition": f"objective: avoid {draw(guard)}",
+        "always": f"objective: always {draw(guard)}",
         "place": f"objective: place {draw(st.sampled_from((where, 'a, b')))} holds {draw(st.sampled_from(ROOM))}",
         "escort": f"objective: escort guest at {where} within {draw(st.integers(4, 30))} by bot1",
+        "either": f"objective: patrol {where} every {draw(st.integers(8, 40))} by bot1 or {other}",
+        "company": f"objective: escort guest at {where} within {draw(st.integers(4, 30))} by bot1 or {other}",
         "pause": f"objective: at_least {draw(st.integers(2, 20))} between {draw(st.sampled_from(PAUSES))}",
         "way": f"objective: way a to b holds {draw(st.sampled_from(ROOM))}",
         "with": f"objective: bot1 never_with guest{draw(st.sampled_from(('', f' at {where}')))}",

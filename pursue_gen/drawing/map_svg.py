@@ -228,9 +228,11 @@ def _anywhere(scenario: Scenario) -> str:
 
 
 def _lasts(event: Event, unit: Optional[Number]) -> str:
-    """How long an event takes, in brackets; nothing where it takes no time. Then how often it can happen."""
+    """How long an event takes, in brackets; nothing where it takes no time. Then what it moves, and how often it can
+    happen."""
     times = "" if event.at_most is None else f" at most {event.at_most}"
-    return ("" if event.window is None else f" ({window_words(event.window, unit)})") + times
+    moves = f" {event.load_words}" if event.load_words else ""
+    return ("" if event.window is None else f" ({window_words(event.window, unit)})") + moves + times
 
 
 def _conditions(scenario: Scenario) -> Iterator[str]:

@@ -38,6 +38,9 @@ def without_each(scenario: Scenario, objectives: bool = True) -> Iterator[Tuple[
     found += [Part(f"rule {rule.name}", _smaller("rules", rule, "name")) for rule in scenario.rules]
     limited = (event for event in scenario.events if event.at_most)
     found += [Part(f"at_most of {event.name}", _smaller("events", event, "name", "at_most")) for event in limited]
+    for event in scenario.events:
+        words = (word for word in ("gives", "needs") if getattr(event, word) is not None)
+        found += [Part(f"{word} of {event.name}", _smaller("events", event, "name", word)) for word in words]
     for one in scenario.batteries:
         found.append(Part(f"the battery of {one.agent.name}", _smaller("batteries", one, "agent.name")))
     for need in scenario.dependencies:

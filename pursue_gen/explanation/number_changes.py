@@ -1,4 +1,4 @@
-"""How numbers that an author wrote could change: windows (`3 to 5`), an agent's travel times, `at_most 2 times`."""
+"""How numbers that an author wrote could change: windows (`3 to 5`), travel times, `at_most 2 times`, `carries 2`."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any, Callable, Iterator, Optional, Sequence, Union
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.clauses import Domains
+from pursue_gen.language.loads import MOST_LOADS, Carrier
 from pursue_gen.language.numbers import Number, Window, whole_above, whole_below
 from pursue_gen.language.objectives.holds import Holds
 from pursue_gen.language.scenario import Battery, Endurance, Event, Pause, Reach, Scenario, Travel
@@ -175,4 +176,17 @@ def count_changes(scenario: Scenario, event: Event, most: int) -> Iterator[Repai
             "times", event.name, f"{event.shown} {'more' if ours else 'less'} often", most, values,
             lambda k: scenario.with_instead(event, replace(event, at_most=k)),
             lambda k: f"{event.shown} at_most {k} times instead of {most}", event.span,
+        )  # fmt: skip
+
+
+def load_changes(scenario: Scenario, carrier: Carrier) -> Iterator[Repair]:
+    """An agent that carries more at one time; one that is not controllable: less."""
+    agent, room = carrier.agent, carrier.room
+    values = range(room + 1, 2 * room + 2) if agent.controllable else range(room - 1, max(carrier.held - 1, 0), -1)
+    possible = [k for k in values if replace(carrier, agent=replace(agent, carries=k)).count <= MOST_LOADS]
+    if possible:
+        yield Repair(
+            "room", agent.name, f"{agent.shown} carrying {'more' if agent.controllable else 'less'}", room, possible,
+            lambda k: scenario.with_instead(agent, replace(agent, carries=k)),
+            lambda k: f"{agent.shown} carries {k} instead of {room}", agent.span,
         )  # fmt: skip

@@ -81,12 +81,14 @@ def _without_events(scenario: Scenario) -> Scenario:
 
 def _pastimes(scenario: Scenario) -> Set[str]:
     """The events, rules aside, that only robots do, each alone, who take part in nothing else and have no battery; and
-    that change no state, and are named in no condition and by no objective."""
+    that change no state, take and give nothing, and are named in no
+    condition and by no objective."""
     charged = {battery.agent.name for battery in scenario.powered}
     busy = [a for a in scenario.agents if not a.controllable or a.reacts_to or a.name in charged]
     used = events_used(replace(scenario, rules=(), dependencies=(), agents=()))
     used = used.union(ref.name for agent in busy for ref in (*agent.can_do, *agent.reacts_to))
-    return {event.name for event in scenario.events if not event.collaborative} - used
+    alone = (event for event in scenario.events if not event.collaborative and not event.load_words)
+    return {event.name for event in alone} - used
 
 
 def _named(rule: Rule) -> FrozenSet[str]:

@@ -17,11 +17,13 @@ from pursue_gen.explanation.number_changes import (
     charge_changes,
     count_changes,
     event_changes,
+    load_changes,
     pause_changes,
     room_changes,
     times_changes,
     travel_changes,
 )
+from pursue_gen.language.loads import carriers
 from pursue_gen.language.numbers import Number, decimal_text, exact, whole_above, whole_below
 from pursue_gen.language.objectives.holds import Holds
 from pursue_gen.language.scenario import (
@@ -37,6 +39,7 @@ from pursue_gen.language.scenario import (
     Scenario,
     StatedObjective,
 )
+from pursue_gen.language.template import name_text
 from pursue_gen.language.times import instead, like
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
 from pursue_gen.tga.counts import counted
@@ -68,6 +71,8 @@ def _repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
         yield from travel_changes(scenario, travel)
     for battery in scenario.batteries:
         yield from battery_changes(scenario, battery)
+    for carrier in carriers(scenario):
+        yield from load_changes(scenario, carrier)
     yield from _of_orders(scenario)
     yield from _of_knowledge(scenario)
     yield from _of_breaking_off(scenario)
@@ -245,6 +250,9 @@ def _of_orders(scenario: Scenario) -> Iterator[Repair]:
         freer = replace(scenario, dependencies=tuple(d for d in scenario.dependencies if d != need))
         text = f"{need.event.name} only_if {need.state.name} is_{'true' if need.value else 'false'}"
         yield _switch("dependency", need.event.name, f"without stateDependency {text}", text, freer, need.span, 1)
+    for each in (event for event in scenario.events if event.needs is not None):
+        text, freer = f"needs {name_text(each.needs)}", scenario.with_instead(each, replace(each, needs=None))
+        yield _switch("condition", each.name, f"{each.shown} without {text}", text, freer, each.span, 1)
     spans = [span for _, span in scenario.conditions()]
     for (what, text, left_out), span in zip(without_conditions(scenario), spans):
         yield _switch("condition", what, f"{what} without only_if {text}", text, left_out(scenario), span, 1)

@@ -13,6 +13,7 @@ from pursue_gen.language.batteries import check_batteries
 from pursue_gen.language.behaviour import check_events, check_rules, components
 from pursue_gen.language.condition_checks import check_conditions
 from pursue_gen.language.labels import check_labels
+from pursue_gen.language.loads import check_loads
 from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.numbers import MOST_DIGITS, exact, is_fine
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
@@ -78,11 +79,14 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
         findings += [finding for finding in check_events(scenario) if finding.code not in doubtful]
         if "PML110" not in codes:
             findings += check_rules(scenario)
-            findings += check_conditions(scenario)
+            of_loads = list(check_loads(scenario))
+            if not {f.code for f in of_loads} & {"PML340", "PML342", "PML345"}:  # conditions stand on loads
+                findings += check_conditions(scenario)
+                findings += check_assumptions(scenario)
             findings += check_poses(scenario)
-            findings += check_assumptions(scenario)
             findings += check_unknown(scenario)
             findings += check_batteries(scenario)
+            findings += of_loads
         if not any(f.severity is Severity.ERROR for f in findings):
             findings += _islands(scenario)
     findings = list(dict.fromkeys(findings))  # a statement may be several objectives

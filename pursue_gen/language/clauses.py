@@ -1,14 +1,15 @@
 """Conditions in conjunctive normal form, over what each agent may be at and each state may be.
 
-A variable is an agent, whose values are its positions, or a state. A clause holds if for one of its variables the value
-is among those that the clause lists. Positions of different agents are taken to be independent of each other.
+A variable is an agent, whose values are its positions, a state, or the load of an agent. A clause holds if for one of
+its variables the value is among those that the clause lists. Positions of different agents are taken to be independent
+of each other.
 """
 
 from __future__ import annotations
 
 from itertools import combinations, product
 from math import comb
-from typing import Callable, Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Callable, Dict, FrozenSet, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_gen.language.behaviour import places_of
 from pursue_gen.language.conditions import (
@@ -19,20 +20,24 @@ from pursue_gen.language.conditions import (
     Atom,
     Condition,
     Doing,
+    Has,
     Holds,
     Not,
     OnWay,
     Who,
     names_in,
 )
+from pursue_gen.language.loads import Carrier, carriers
 from pursue_gen.language.scenario import Agent, Event, Scenario
+from pursue_gen.language.symbols import Role
 
 MOST_CLAUSES = 200
 """A condition with more of them is refused: guards would be as long, and nobody could read them."""
 
 
 class Value(NamedTuple):
-    """What a variable may be: ("at", POI, ""), ("doing", POI, event), ("way", from, to), ("is", "true", "")."""
+    """What a variable may be: ("at", POI, ""), ("doing", POI, event), ("way", from, to), ("is", "true", ""),
+    ("load", its number, "")."""
 
     kind: str
     where: str
@@ -84,6 +89,8 @@ class Domains:
         self._events = {event.name: event for event in scenario.events}
         self._scenario, self._places = scenario, places_of(scenario)
         self._found: Dict[str, Values] = {}
+        self.loads: Dict[str, Carrier] = {Role.LOAD(one.agent.name): one for one in carriers(scenario)}
+        """The variables of loads, and whose they are."""
 
     def of(self, variable: str) -> Values:
         """All values of an agent or a state; the empty set for a name that is neither."""
@@ -107,11 +114,22 @@ class Domains:
             values = self.of(atom.state.name) & {TRUE if atom.value else FALSE}
             return {atom.state.name: values} if values else {}
         found = {}
+        if isinstance(atom, Has):
+            return dict(self._with(atom))
         for name in self.among(atom.who):
             values = frozenset(value for value in self.of(name) if _is(value, atom))
             if values:
                 found[name] = values
         return found
+
+    def _with(self, atom: Has) -> Iterator[Tuple[str, Values]]:
+        """The variables of loads, and the loads of which the thing is a part."""
+        for variable in map(Role.LOAD, self.among(atom.who)):
+            carrier, thing = self.loads.get(variable), atom.thing.name
+            if carrier is not None and thing in carrier.names:
+                at = carrier.names.index(thing)
+                numbers = (number for number, load in enumerate(carrier.loads) if load[at])
+                yield variable, frozenset(Value("load", str(number)) for number in numbers)
 
     def counted(self, condition: AtMostOf) -> Dict[str, Values]:
         """Who is counted, with the values with which it is. No empty sets."""
@@ -124,6 +142,8 @@ class Domains:
     def _values(self, variable: str) -> Iterable[Value]:
         if variable in self._states:
             return (TRUE, FALSE)
+        if variable in self.loads:
+            return (Value("load", str(number)) for number in range(len(self.loads[variable].loads)))
         agent = self._agents.get(variable)
         if agent is None:
             return ()
@@ -230,6 +250,8 @@ def holds_at_start(
     may hold."""
     first = {agent.name: Value("at", agent.location.name) for agent in scenario.agents}
     first.update({state.name: TRUE if state.initially else FALSE for state in scenario.states})
+    loads = domains.loads.items()
+    first.update({variable: Value("load", str(one.loads.index(one.first))) for variable, one in loads})
     unknown = [name for _, ref in names_in(condition) for name in domains.unknown if name == ref.name]
     names = tuple(dict.fromkeys(unknown))
     some = product((TRUE, FALSE), repeat=len(names))

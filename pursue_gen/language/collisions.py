@@ -7,6 +7,7 @@ from typing import Dict, Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language import network_names as names
+from pursue_gen.language.loads import carriers
 from pursue_gen.language.scenario import Endurance, Scenario
 from pursue_gen.language.symbols import Role, Symbol
 
@@ -54,6 +55,7 @@ def _in_network(scenario: Scenario) -> Iterator[_Stated]:
         yield agent.span, [names.agent(agent.name), names.agent_position(agent.name), names.agent_clock(agent.name)]
         yield agent.span, [names.busy_with(agent.name)] if any(scenario.conditions()) else []
     yield from ((battery.span, [names.level(battery.agent.name)]) for battery in scenario.batteries)
+    yield from ((carrier.agent.span, [names.load(carrier.agent.name)]) for carrier in carriers(scenario))
 
 
 def _numbered(scenario: Scenario) -> Iterator[_Stated]:

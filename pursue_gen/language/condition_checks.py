@@ -13,6 +13,7 @@ from pursue_gen.language.conditions import (
     Atom,
     Condition,
     Doing,
+    Has,
     Holds,
     Not,
     atoms,
@@ -49,6 +50,10 @@ def _heard(scenario: Scenario, safety: Safety, domains: Domains) -> Iterator[Dia
     """Conditions of which no automaton could see when they come to hold, and those that are too large together."""
     events = {event.name: event for event in scenario.events}
     for atom in (atom for condition in safety.conditions for atom in atoms(condition)):
+        if isinstance(atom, Has):
+            message = f"it cannot be seen who begins to have {atom.thing.shown}: only events can be seen"
+            hint = f"name the event that takes {atom.thing.name}, as in if load then …"
+            yield error("PML262", message, atom.thing.span, hint)
         if not isinstance(atom, Doing):
             continue
         event, name = events[atom.event.name], atom.event.name
@@ -105,6 +110,10 @@ def _impossible(scenario: Scenario, domains: Domains, atom: Atom, span: Span) ->
         message = f"{nobody} {'is ever' if who is None else 'is never'} at {atom.place.name}"
         hint = "connect the place with where it starts, make it mobile, or name another place"
         yield error("PML230", message, atom.place.span, hint)
+    elif isinstance(atom, Has):
+        message = f"{nobody} {'ever has' if who is None else 'never has'} {atom.thing.name}"
+        hint = "let it do an event that takes or mounts it, or name another thing"
+        yield error("PML231", message, atom.thing.span, hint)
     elif isinstance(atom, Doing):
         event = next(event for event in scenario.events if event.name == atom.event.name)
         name = event.name

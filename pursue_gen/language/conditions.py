@@ -22,6 +22,7 @@ WORDS = (
         True,
     ),
     Word("doing", "The agent is busy with this event.", True),
+    Word("has", "What an agent carries, or has mounted: at the start, or in a condition at a moment.", True),
     Word("any", "At least one of them: any robot, any agent.", True),
     Word("no", "None of them: no robot, no agent.", True),
     Word("robot", "The agents that are controllable and not human.", True),
@@ -32,10 +33,16 @@ WORDS = (
 
 @dataclass(frozen=True)
 class Who:
-    """The agent that is named; None: any agent, or with `robots` any robot."""
+    """The agent that is named, or one of `others`, where there are any; None: any agent, or with `robots` any robot."""
 
     agent: Optional[Ref]
     robots: bool = False
+    others: Tuple[Ref, ...] = ()
+
+    @property
+    def named(self) -> Tuple[Ref, ...]:
+        """The agents that are named."""
+        return () if self.agent is None else (self.agent, *self.others)
 
 
 @dataclass(frozen=True)
@@ -105,7 +112,15 @@ class AnyOf:
     parts: Tuple[Condition, ...]
 
 
-Atom = Union[At, OnWay, Doing, Holds]
+@dataclass(frozen=True)
+class Has:
+    """`who has thing`: it carries it, or has mounted it."""
+
+    who: Who
+    thing: Ref
+
+
+Atom = Union[At, OnWay, Doing, Holds, Has]
 
 
 @dataclass(frozen=True)
@@ -116,7 +131,7 @@ class AtMostOf:
     parts: Tuple[Atom, ...]
 
 
-Condition = Union[At, OnWay, Doing, Holds, Not, AllOf, AnyOf, AtMostOf]
+Condition = Union[At, OnWay, Doing, Holds, Has, Not, AllOf, AnyOf, AtMostOf]
 EventOrCondition = Union[Ref, Condition]
 
 
@@ -143,6 +158,8 @@ def names_in(condition: Condition) -> Iterator[Tuple[str, Ref]]:
             yield "POI", atom.place
         elif isinstance(atom, Doing):
             yield "event", atom.event
+        elif isinstance(atom, Has):
+            yield "thing", atom.thing
         else:
             yield from (("POI", ref) for ref in atom.ends)
 
@@ -151,7 +168,7 @@ def held_by(condition: Condition, robot: Ref) -> Condition:
     """A condition that holds only while the first one does: where any robot would do, it is this one."""
     if isinstance(condition, (AllOf, AnyOf)):
         return replace(condition, parts=tuple(held_by(part, robot) for part in condition.parts))
-    if isinstance(condition, (At, OnWay, Doing)):
+    if isinstance(condition, (At, OnWay, Doing, Has)):
         return replace(condition, who=by_robot(condition.who, robot))
     return condition
 
@@ -161,11 +178,21 @@ def by_robot(who: Who, robot: Ref) -> Who:
     return Who(robot) if who.agent is None and who.robots else who
 
 
+def one_at(who: Who, place: Ref) -> Condition:
+    """That one of them is at a place."""
+    return AnyOf(stands_at(who, place)) if who.others else At(who, place)
+
+
+def stands_at(who: Who, place: Ref) -> Tuple[At, ...]:
+    """That each of them is at a place: of those that are named each alone."""
+    return tuple(At(Who(agent), place) for agent in who.named) or (At(who, place),)
+
+
 def condition_text(condition: Condition) -> str:
     """A condition as it is written in a scenario."""
     if isinstance(condition, Not):
         part = condition.part
-        if isinstance(part, (At, OnWay, Doing)) and part.who.agent is None:
+        if isinstance(part, (At, OnWay, Doing, Has)) and part.who.agent is None:
             return "no" + condition_text(part)[len("any") :]
         return f"not {_bracketed(part, condition_text)}"
     if isinstance(condition, (AllOf, AnyOf)):
@@ -186,6 +213,8 @@ def predicate_text(atom: Atom) -> str:
         return f"at {atom.place.name}"
     if isinstance(atom, Doing):
         return f"doing {atom.event.name}"
+    if isinstance(atom, Has):
+        return f"has {atom.thing.name}"
     return ("between {} and {}" if atom.either_way else "on_way from {} to {}" if atom.ends else "on_way").format(
         *(ref.name for ref in atom.ends)
     )
@@ -207,7 +236,9 @@ def condition_words(condition: Condition, holds: bool = True) -> str:
         return f"{condition.state.name} is {'true' if condition.value is holds else 'false'}"
     who, verb = who_text(condition.who, shown=True), "is" if holds else "is not"
     if condition.who.agent is None and not holds:
-        who, verb = "no" + who[len("any") :], "is"
+        who, verb, holds = "no" + who[len("any") :], "is", True
+    if isinstance(condition, Has):
+        return f"{who} {predicate_words(condition) if holds else f'does not have {condition.thing.shown}'}"
     return f"{who} {verb} {predicate_words(condition)}"
 
 
@@ -219,6 +250,8 @@ def predicate_words(atom: Atom, its: str = "its") -> str:
         return f"at {atom.place.shown}"
     if isinstance(atom, Doing):
         return f"doing {atom.event.shown}"
+    if isinstance(atom, Has):
+        return f"has {atom.thing.shown}"
     on_way = f"on {its} way"
     return ("between {} and {}" if atom.either_way else f"{on_way} from {{}} to {{}}" if atom.ends else on_way).format(
         *(ref.shown for ref in atom.ends)
@@ -252,4 +285,4 @@ def who_text(who: Who, shown: bool = False) -> str:
     """Of whom a condition speaks; with `shown` what people read for an agent."""
     if who.agent is None:
         return f"any {'robot' if who.robots else 'agent'}"
-    return who.agent.shown if shown else who.agent.name
+    return " or ".join(agent.shown if shown else agent.name for agent in who.named)

@@ -18,6 +18,7 @@ from pursue_gen.language.statements.poi import Poi
 from pursue_gen.language.statements.rest import Rest
 from pursue_gen.language.statements.rule import Rule
 from pursue_gen.language.statements.state import State
+from pursue_gen.language.statements.thing import Thing
 from pursue_gen.language.statements.travel import Travel
 from pursue_gen.language.statements.unit import Unit
 
@@ -28,6 +29,7 @@ STATEMENTS: Mapping[str, Type[StatementKind]] = {
         Rest,
         Poi,
         Connection,
+        Thing,
         Event,
         Group,
         ForEach,

@@ -49,9 +49,12 @@ class Words:
         index = 0
         while index < len(tokens):
             kind = tokens[index].type
-            if _quantifies(tokens, index):
+            if kind == "ANY" and tokens[index - 1].type == "BY" and _quantifies(tokens, index):
+                names, index = self._names_at(tokens, index + 2, members)
+                found += _listed(names, "or", "OR")  # one of them
+            elif _quantifies(tokens, index):
                 index = self._quantified(tokens, index, members, found)
-            elif kind in ("AT", "DOING") and _quantifies(tokens, index + 1):
+            elif kind in ("AT", "DOING", "HAS") and _quantifies(tokens, index + 1):
                 index = self._at_any(tokens, index, members, found)
             elif kind == "NO" and [token.type for token in tokens[index + 1 : index + 2]] == ["OF"]:
                 message = "expected `robot` or `agent` after `no`, found `of`"
@@ -153,7 +156,7 @@ class Words:
             return self._on_one_way(tokens, index, members)
         if verb and verb[0].type in ("ON_WAY", "IS_TRUE", "IS_FALSE"):
             return [verb], index + 1
-        if not verb or verb[0].type not in ("AT", "DOING") or index + 1 == len(tokens):
+        if not verb or verb[0].type not in ("AT", "DOING", "HAS") or index + 1 == len(tokens):
             return [], index
         if not _quantifies(tokens, index + 1):
             names, end = self._names_at(tokens, index + 1, members)
@@ -239,7 +242,7 @@ def _owned(name: Token, owner: Token) -> Token:
     return between(name.type if name.type == "NAME" else "WORD", text, name, owner)
 
 
-def _listed(names: Tokens, group: str) -> Tokens:
-    """The names with commas between them, which say for which group they stand."""
-    commas = (between("COMMA", group, name, name) for name in names)
+def _listed(names: Tokens, group: str, kind: str = "COMMA") -> Tokens:
+    """The names with commas between them, which say for which group they stand; or with other words."""
+    commas = (between(kind, group, name, name) for name in names)
     return tuple(token for pair in zip(commas, names) for token in pair)[1:]

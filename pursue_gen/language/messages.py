@@ -195,8 +195,9 @@ def _meant(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     if any(KEYWORDS.get(kind) == meant for kind in expected):
         return f"did you mean {meant}?"
     if token.type == "WORD":
+        opens_line = token.line != chunk[index - 1].line
         close = _near(str(token), tuple(KEYWORDS[kind] for kind in sorted(expected) if kind in KEYWORDS)
-                      + (_STARTERS if "$END" in expected else ()))  # fmt: skip
+                      + (_STARTERS if opens_line and "$END" in expected else ()))  # fmt: skip
         if close:
             return f"did you mean {close}?"
         if chunk[index - 1].type == "NUMBER":

@@ -28,8 +28,9 @@ at, going, doing = Role.AT, Role.WAY, Role.WORK
 agent, agent_position, agent_clock = Role.AGENT, Role.POSITION, Role.CLOCK
 """The automaton of an agent; where it is; how long since its last action or movement began or ended."""
 
-busy_with, level = Role.BUSY_WITH, Role.LEVEL
-"""The variables of an agent with which event it is busy, and where; and of the level of its battery."""
+busy_with, level, load = Role.BUSY_WITH, Role.LEVEL, Role.LOAD
+"""The variables of an agent with which event it is busy, and where; of the level of its battery; of what it
+carries."""
 
 movement, arrival = Role.SETTING_OFF, Role.ARRIVAL
 """The channels on which an agent sets off from one POI to another, and arrives there, where somebody listens to that;

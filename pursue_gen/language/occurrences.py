@@ -30,7 +30,7 @@ SUBJECTS = ("agent", "state")
 GROUP, VARIABLE = "group", "variable"
 """The kinds of names that stand for members: of the whole text, and of one statement that is for each of a group."""
 
-MEMBERS = ("POI", "agent", "event", "state")
+MEMBERS = ("POI", "agent", "event", "state", "thing")
 """The kinds of things that may be in a group."""
 
 _OPENS = {(token, word.upper()) for token, kind in STATEMENTS.items() for word in kind.conditions_behind()}
@@ -38,9 +38,10 @@ _OPENS = {(token, word.upper()) for token, kind in STATEMENTS.items() for word i
 
 _OPENING = frozenset(("ALWAYS", "AT_LEAST", "ESCORT", "PATROL", "PLACE", "WAY"))
 """Words that may be names and with which an objective may begin."""
-_OBJECT = {"AT": "POI", "FROM": "POI", "TO": "POI", "BETWEEN": "POI", "DOING": "event"}
+_OBJECT = {"AT": "POI", "FROM": "POI", "TO": "POI", "BETWEEN": "POI", "DOING": "event", "HAS": "thing"}
 _SUBJECT = {
-    "AT": "agent", "ON_WAY": "agent", "BETWEEN": "agent", "DOING": "agent", "IS_TRUE": "state", "IS_FALSE": "state",
+    "AT": "agent", "ON_WAY": "agent", "BETWEEN": "agent", "DOING": "agent", "HAS": "agent",
+    "IS_TRUE": "state", "IS_FALSE": "state",
 }  # fmt: skip
 
 

@@ -11,7 +11,7 @@ from pursue_gen.language import assumptions as kinds_of_assumptions
 from pursue_gen.language import objectives as kinds_of_objectives
 from pursue_gen.language.assumptions import *
 from pursue_gen.language.assumptions.base import Assumption
-from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Condition, Doing, Holds, Not, OnWay, Who
+from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Condition, Doing, Has, Holds, Not, OnWay, Who
 from pursue_gen.language.numbers import Number, Window, exact
 from pursue_gen.language.objectives import *
 from pursue_gen.language.objectives import Endurance, GivenUp, Patrol, Reach, Safety, StatedObjective, WhyGivenUp
@@ -19,6 +19,7 @@ from pursue_gen.language.objectives.patrol import patrols_in
 from pursue_gen.language.poses import Pose, Spot
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.statements.base import Labelled
 from pursue_gen.language.statements.battery import Battery
 from pursue_gen.language.statements.connect import Connection
 from pursue_gen.language.statements.dependency import Dependency
@@ -28,13 +29,14 @@ from pursue_gen.language.statements.poi import Poi
 from pursue_gen.language.statements.rest import Rest
 from pursue_gen.language.statements.rule import Both, Choice, Rule, RuleBody, Sequence
 from pursue_gen.language.statements.state import State
+from pursue_gen.language.statements.thing import Thing
 from pursue_gen.language.statements.travel import Travel
 from pursue_gen.language.statements.unit import Unit
 
 __all__ = [
     "Agent", "AllOf", "AnyOf", "At", "AtMostOf", "Battery", "Both", "Choice", "Condition", "Connection", "Dependency",
-    "Doing", "Event", "Holds", "MissionEnd", "Not", "OnWay", "Poi", "Pose", "Ref", "Rest", "Rule", "RuleBody",
-    "Scenario", "Sequence", "Spot", "State", "Travel", "Unit", "Who", "Window",
+    "Doing", "Event", "Has", "Holds", "MissionEnd", "Not", "OnWay", "Poi", "Pose", "Ref", "Rest", "Rule", "RuleBody",
+    "Scenario", "Sequence", "Spot", "State", "Thing", "Travel", "Unit", "Who", "Window",
 ]
 __all__ += kinds_of_assumptions.__all__
 __all__ += kinds_of_objectives.__all__
@@ -70,6 +72,7 @@ class Scenario:
     units: Tuple[Unit, ...] = ()
     rests: Tuple[Rest, ...] = ()
     ends: Tuple[MissionEnd, ...] = ()
+    things: Tuple[Thing, ...] = ()
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
         """Show it in a notebook."""
@@ -117,8 +120,8 @@ class Scenario:
 
     @cached_property
     def labels(self) -> Dict[str, str]:
-        """Name → what people read instead, of all places, events and agents with a label."""
-        parts: Tuple[Union[Poi, Event, Agent], ...] = (*self.pois, *self.events, *self.agents)
+        """Name → what people read instead, of all places, events, agents and things with a label."""
+        parts: Tuple[Labelled, ...] = (*self.pois, *self.events, *self.agents, *self.things)
         return {part.name: part.label for part in reversed(parts) if part.label}
 
     def shown(self, name: str) -> str:
@@ -163,8 +166,8 @@ class Scenario:
 
     def on_patrol(self, patrol: Patrol) -> Tuple[Agent, ...]:
         """The agents of whom one has to be at the place."""
-        who = patrol.who.agent
-        return tuple(agent for agent in self.agents if (agent.is_robot if who is None else agent.name == who.name))
+        named = {ref.name for ref in patrol.who.named}
+        return tuple(agent for agent in self.agents if (agent.name in named if named else agent.is_robot))
 
     def doers(self, event: str) -> Tuple[Agent, ...]:
         """The agents that can do an event."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Dict, List, Optional
 
+from pursue_gen.diagnostics import listed
 from pursue_gen.language.numbers import Number, Window
 from pursue_gen.language.scenario import Agent, Scenario, StatedObjective
 from pursue_gen.language.times import in_units, window_text, words_for
@@ -53,15 +54,17 @@ def condition_of_promise(scenario: Scenario) -> str:
 
 
 def speed_words(agent: Agent, scenario: Scenario) -> str:
-    """How fast an agent is, in words, and what its battery holds."""
-    batteries = [battery.in_words for battery in scenario.powered if battery.agent.name == agent.name]
+    """How fast an agent is, in words, what its battery holds, what it carries at most and at the start."""
+    also = [battery.in_words for battery in scenario.powered if battery.agent.name == agent.name]
+    also += [] if agent.carries is None else [f"carries {agent.carries}"]
+    also += [f"has {listed([ref.shown for ref in agent.has])}"] if agent.has else []
     if agent.mobile is None:
-        return ", ".join(["stays there", *batteries])
+        return ", ".join(["stays there", *also])
     pace = f"{words_for(agent.mobile, scenario.unit)} per unit of distance"
     words = [pace if agent.speed is None else f"{agent.speed} m/s"]
     own = [travel for travel in scenario.travels if travel.agent.name == agent.name]
     words += [f"{travel.a.shown} to {travel.b.shown} in {window_words(travel.window, scenario.unit)}" for travel in own]
-    return ", ".join(words + batteries)
+    return ", ".join(words + also)
 
 
 def window_words(window: Window, unit: Optional[Number]) -> str:

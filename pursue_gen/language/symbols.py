@@ -34,6 +34,7 @@ class Role(enum.Enum):
     CLOCK = locations.automaton_clock("{}"), "the clock of {}"
     BUSY_WITH = "W{}", "with what {} is busy"
     LEVEL = "L{}", "the level of {}'s battery"
+    LOAD = "H{}", "what {} carries"
     AT = "{}", "the POI {}"
     WAY = locations.movement("{}", "{}"), "the way from {} to {}"
     WORK = locations.action("{}", "{}"), "{} in {}"

@@ -40,7 +40,7 @@ _WIDEST = 500
 """Events in one rule, parts of one condition."""
 _SPLIT = "split the rule into several rules"
 _SHORTEN = "say it with fewer of them; a state that events set can stand for much"
-_ATOMS = frozenset(("AT", "ON_WAY", "BETWEEN", "DOING", "IS_TRUE", "IS_FALSE"))
+_ATOMS = frozenset(("AT", "ON_WAY", "BETWEEN", "DOING", "HAS", "IS_TRUE", "IS_FALSE"))
 MOST_FINDINGS = 1000
 """The most errors that are reported; with more of them the file is no scenario."""
 
@@ -255,7 +255,7 @@ class _Reader:
                 parser.feed_token(token)
             except UnexpectedToken:
                 if token.type == "COMMA" and token != ",":
-                    return no_list(token, any(one.type in _ATOMS for one in chunk), self.file)
+                    return no_list(token, any(one.type in _ATOMS or one.type == "BY" for one in chunk), self.file)
                 return explain(chunk, index, self._expected(parser), span_of(token, self.file))
         try:
             tree = parser.feed_eof(chunk[-1])
@@ -366,7 +366,7 @@ def _chunks(tokens: List[Token]) -> List[List[Token]]:
             begins = following == "NUMBER" or (opens_line and ended)
         elif token.type == "MISSION":  # a name may be called so
             begins = following == "ENDS" or (opens_line and ended)
-        elif token.type == "GROUP":  # a name may be called so
+        elif token.type in ("GROUP", "THING"):  # a name may be called so
             begins = goes_on or (opens_line and ended)
         elif token.type in ("OBJECTIVE", "REACH_OBJECTIVE") and _opened(found):
             begins = False

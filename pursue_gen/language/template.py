@@ -74,10 +74,11 @@ def event_or_condition_text(what: Any) -> str:
 
 
 FILLINGS: Mapping[str, Filling] = {
-    **{thing: Filling("ref", TreeReader.ref, name_text, thing) for thing in ("agent", "event", "state", "POI")},
+    **{kind: Filling("ref", TreeReader.ref, name_text, kind) for kind in ("agent", "event", "state", "thing", "POI")},
     '"agent"': Filling("(ref | NAME)", TreeReader.agent_ref, lambda ref: f'"{ref.name}"', "agent"),
     "agents": Filling("refs", TreeReader.refs, names_text, "agent"),
     "POIs": Filling("refs", TreeReader.refs, names_text, "POI"),
+    "things": Filling("refs", TreeReader.refs, names_text, "thing"),
     "events": Filling("refs", TreeReader.refs, names_text, "event"),
     "event or condition": Filling(
         "(ref | condition)", TreeReader.event_or_condition, event_or_condition_text, "event", is_condition=True
@@ -190,7 +191,7 @@ class Template:
         for hole in self.holes:
             for value in (getattr(part, name) for name in hole.fields if hole.filling.of):
                 some = value if isinstance(value, tuple) else (value,)
-                refs = (one.agent if isinstance(one, Who) else one for one in some)
+                refs = (ref for one in some for ref in (one.named if isinstance(one, Who) else (one,)))
                 yield from ((hole.filling.of, ref) for ref in refs if isinstance(ref, Ref))
 
     def conditions(self, part: Any) -> Tuple[Condition, ...]:

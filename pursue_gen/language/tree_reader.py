@@ -19,6 +19,7 @@ from pursue_gen.language.conditions import (
     Condition,
     Doing,
     EventOrCondition,
+    Has,
     Holds,
     Not,
     OnWay,
@@ -180,6 +181,8 @@ class TreeReader:
         refs = [self.ref(child) for child in tree.children if child is not None]
         if tree.data in ("at", "doing"):
             return (At if tree.data == "at" else Doing)(who, *refs)
+        if tree.data == "has":
+            return Has(who, *refs)
         origin, target = refs or (None, None)
         return OnWay(who, origin, target, tree.data == "between")
 

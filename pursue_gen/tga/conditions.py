@@ -123,6 +123,9 @@ class Conditions:
     def _tests_of(self, variable: str, values: FrozenSet[Value]) -> List[Test]:
         if variable in self._states:
             return [Test(names.state_value(variable), _NUMBERS[value]) for value in sorted(values)]
+        if variable in self.domains.loads:
+            load = names.load(self.domains.loads[variable].agent.name)
+            return [Test(load, int(value.where)) for value in sorted(values)]
         domain, position = self.domains.of(variable), names.agent_position(variable)
         tests: Dict[Test, None] = {}
         for value in sorted(values):

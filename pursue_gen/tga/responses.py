@@ -12,7 +12,7 @@ from typing import Dict, Iterable, Iterator, List, Optional, Tuple, Union
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Clauses, Domains, clauses_of, holds_at_start, possibly
-from pursue_gen.language.conditions import At, Condition, Holds, OnWay, atoms
+from pursue_gen.language.conditions import At, Condition, Doing, Holds, OnWay, atoms
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import Escort, Ref, Respond, Scenario
@@ -92,7 +92,7 @@ def _moves(what: Union[Ref, Condition], scenario: Scenario, domains: Domains) ->
                 found[names.event(ref.name)] = happening(ref.name, scenario, domains)
             for value in (True, False) if state.is_found_out else ():
                 found[names.found(state.name, value)] = found_out(state.name, value)
-        else:
+        elif isinstance(atom, Doing):
             name = atom.event.name
             stops = (names.broken_off(name),) if events[name].may_stop else ()
             for channel in (names.event(name), names.done(name), *stops):

@@ -17,6 +17,7 @@ from pursue_gen.tga.batteries import battery_variables, powered
 from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.counts import count_automaton, counted
 from pursue_gen.tga.endurance import charge_clocks
+from pursue_gen.tga.loads import laden, load_variables
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import reach_automaton, safety_automaton, unlocking
 from pursue_gen.tga.own_turns import bound, own_turns
@@ -42,7 +43,7 @@ def translate(scenario: Scenario) -> Network:
     happened = {event.name: names.has_happened(event) for event in scenario.events}
     states = states_automaton(scenario.states)
     automata = [*([states] if states else []), *finding_automata(scenario)]
-    agents = [powered(agent_automaton(agent, around), scenario) for agent in scenario.agents]
+    agents = [laden(powered(agent_automaton(agent, around), scenario), scenario) for agent in scenario.agents]
     automata += [apart(assumed(bound(agent, own), scenario, conditions), scenario) for agent in agents]
     automata += ways_awaited(scenario, codes)
     automata += [safety_automaton(each, around, k) for k, each in enumerate(scenario.safety)]
@@ -53,7 +54,7 @@ def translate(scenario: Scenario) -> Network:
     variables += assumption_variables(scenario) + turns(scenario)
     variables += tuple((turn.variable, 0) for turn in own)
     variables += pause_variables(scenario)
-    variables += battery_variables(scenario)
+    variables += battery_variables(scenario) + load_variables(scenario)
     network = Network(_clocks(scenario), variables, _channels(scenario), tuple(automata))
     _check_names(network)
     return network

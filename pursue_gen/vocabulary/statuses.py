@@ -9,6 +9,7 @@ from typing import Iterator, List, Tuple
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.batteries import levels
+from pursue_gen.language.loads import carriers, load_words
 from pursue_gen.language.scenario import Pause, Scenario
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.tga.counts import counted
@@ -26,7 +27,7 @@ def statuses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
 
 
 def courses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
-    """The same for counts, rules, turns of agents, states and batteries alone."""
+    """The same for counts, rules, turns of agents, states, batteries and loads alone."""
     found: List[Status] = []
     for event, most in counted(scenario):
         count = network.automaton(names.count(event.name))
@@ -49,6 +50,9 @@ def courses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
     for battery in scenario.batteries:
         texts = {str(level): f"{level} of {battery.capacity}" for level in levels(scenario, battery)}
         found.append(Status(names.level(battery.agent.name), f"battery of {battery.agent.shown}", texts))
+    for one in carriers(scenario):
+        texts = {str(number): load_words(scenario, one, load) for number, load in enumerate(one.loads)}
+        found.append(Status(names.load(one.agent.name), f"load of {one.agent.shown}", texts))
     return tuple(found)
 
 

@@ -21,7 +21,7 @@ SLIPS = [
     ('poi "a" label', "PML010", 14, "expected a name in quotes after `label`", "the form is"),
     ('poi "a" label b', "PML010", 15, "expected a name in quotes after `label`, found `b`", 'label "b"'),
     ('connect a and b distance 3 label "c"', "PML010", 28, "found `label`", "the form is"),
-    ("hello", "PML011", 1, "expected a statement", "a statement begins with unit, rest, poi, connect, event"),
+    ("hello", "PML011", 1, "expected a statement", "a statement begins with unit, rest, poi, connect, thing"),
     (")", "PML011", 1, "expected a statement", "a statement begins with"),
     ("connect a b distance 3", "PML010", 11, "expected `and` after `a`, found `b`", "connect a and b distance 3"),
     ("connect a and b", "PML010", 16, "expected `distance` after `b`, but the", "connect a and b distance 3"),
@@ -141,7 +141,7 @@ SLIPS = [
     ("assume: a at b", "PML010", 15, "expected `by` after `b`", "not (visitor at a and guest at a)"),
     ("assume a never at b", "PML010", 8, "expected `:`", "the form is"),
     ("assume: a lies at b", "PML010", 11, "`reaches`, `never` or `at` after `a`", "the form is"),
-    ('agent "b" mobile 3', "PML010", 19, "`radius`, `tolerance` or `inflation` after `3`", "location is required"),
+    ('agent "b" mobile 3', "PML010", 19, "`inflation`, `carries` or `has` after `3`", "location is required"),
     ('agent "b" mobile location a', "PML010", 18, "expected a number after `mobile`", "mobile 3"),
     ('agent "b" location a controllable', "PML010", 22, "found `controllable`", "human controllable mobile 3 location"),
     ('agent "b" location a can_do x y', "PML010", 31, "expected `,`", "put a comma between two names"),
@@ -193,8 +193,8 @@ def test_no_nonsense_follows_from_a_syntax_error() -> None:
 
 def test_an_expected_list_reads_like_a_sentence() -> None:
     (finding,) = syntax_errors('event "e" e')
-    expected = "expected `label`, `collaborative`, `location`, `duration`, `may_stop`, `at_most`, `only_if` or the end"
-    assert expected in finding.message
+    parts = "`label`, `collaborative`, `location`, `duration`, `may_stop`, `takes`, `gives`, `mounts`, `needs`"
+    assert f"expected {parts}, `at_most`, `only_if` or the end" in finding.message
 
 
 BEFORE = '''poi "a"

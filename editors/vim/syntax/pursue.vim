@@ -7,15 +7,15 @@ syntax case match
 syntax iskeyword @,48-57,_
 
 syntax keyword pursueStatement agent assume battery connect event for group mission objective optional poi
-syntax keyword pursueStatement reach_objective rest rule state stateDependency travel unit
+syntax keyword pursueStatement reach_objective rest rule state stateDependency thing travel unit
 syntax keyword pursueConstant false is_false is_true true
 syntax keyword pursueKeyword after agents all always and answered any apart at at_least at_most avoid before between by
-syntax keyword pursueKeyword can_do capacity charges collaborative controllable distance do does doing duration each
-syntax keyword pursueKeyword ends escort every except false_if from holds hour human if in inflation initially is label
-syntax keyword pursueKeyword lasts leaves location may_stop minute mobile never never_with no none not of on_way one_way
-syntax keyword pursueKeyword only_if or order patrol per place radius reaches reacts_to recharges robot robots second
-syntax keyword pursueKeyword seen_at shown_by speed stays takes then times to together tolerance true_if twice two
-syntax keyword pursueKeyword unknown uses waits way when within
+syntax keyword pursueKeyword can_do capacity carries charges collaborative controllable distance do does doing duration
+syntax keyword pursueKeyword each ends escort every except false_if from gives has holds hour human if in inflation
+syntax keyword pursueKeyword initially is label lasts leaves location may_stop minute mobile mounts needs never
+syntax keyword pursueKeyword never_with no none not of on_way one_way only_if or order patrol per place radius reaches
+syntax keyword pursueKeyword reacts_to recharges robot robots second seen_at shown_by speed stays takes then times to
+syntax keyword pursueKeyword together tolerance true_if twice two unknown uses waits way when within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*\%([ \t]\+\%(s\|min\|h\)\>\%([ \t]\+\d[0-9.]*[ \t]\+\%(s\|min\|h\)\>\)*\)\?"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

@@ -7,7 +7,7 @@ from typing import ClassVar, Iterator, List, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import Assumption, Setting
-from pursue_gen.language.conditions import Atom, Condition, Doing, Holds, atoms, condition_words
+from pursue_gen.language.conditions import Atom, Condition, Doing, Has, Holds, atoms, condition_words
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
 from pursue_gen.language.word import Form
@@ -56,6 +56,9 @@ class NeverHolds(Assumption):
             doers = [(agent.name, ref.name) for agent in controlled for ref in agent.can_do if ref.name in events]
             said = [f"{who} is controlled, and its {event} sets {state.name}: {_DECIDED}" for who, event in doers]
             return [error("PML263", message, state.span, _OBJECTIVE) for message in said]
+        if isinstance(atom, Has):
+            message = f"what somebody has cannot be assumed: {atom.thing.shown} is taken and given by events"
+            return [error("PML263", message, atom.thing.span, "assume how often the event happens, or an objective")]
         ref = atom.who.agent
         if ref is None:
             message = f"any {'robot' if atom.who.robots else 'agent'} means controlled ones as well: {_DECIDED}"

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 from typing import Any, Callable, ClassVar, Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
-from pursue_gen.language.conditions import AllOf, At, Condition, Not, Who, by_robot, who_text
+from pursue_gen.language.conditions import AllOf, At, Condition, Not, Who, by_robot, one_at, who_text
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective, Whole, Words
-from pursue_gen.language.objectives.patrol import PATROLLER
+from pursue_gen.language.objectives.patrol import PATROLLER, check_who
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.symbols import Role
 from pursue_gen.language.template import Template
@@ -23,7 +23,7 @@ class Escort(Safety):
     """`escort ward at place within deadline by who`: whenever the ward is at the place and `who` is not, that changes
     within so many time units.
 
-    `who`: an agent, or any robot: then one of them. A statement with several places is several of these.
+    `who`: an agent, several, or any robot: then one of them. A statement with several places is several of these.
     """
 
     ward: Ref
@@ -38,7 +38,7 @@ class Escort(Safety):
         "escort {ward:agent=visitor} at {place:POIs=a, b} within {deadline:time=5} by {who:patroller=bot1}",
         patroller=PATROLLER._replace(rules=""),
     )
-    note: ClassVar[str] = "or: by any robot"
+    note: ClassVar[str] = "or: by bot1 or bot2, by any robot"
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("escort", "Somebody who is not alone at these places for long.", True),
     )
@@ -66,7 +66,7 @@ class Escort(Safety):
     @property
     def alone(self) -> Condition:
         """That the ward is there alone."""
-        return AllOf((At(Who(self.ward), self.place), Not(At(self.who, self.place))))
+        return AllOf((At(Who(self.ward), self.place), Not(one_at(self.who, self.place))))
 
     @property
     def trigger(self) -> Condition:
@@ -99,7 +99,8 @@ class Escort(Safety):
         if self.deadline <= 0:
             message = "within 0 leaves no time to come: expected more than 0"
             yield error("PML143", message, self.span, "write the time units that it may take")
-        if self.who.agent is not None and self.who.agent.name == self.ward.name:
+        yield from check_who(self.who)
+        if any(ref.name == self.ward.name for ref in self.who.named):
             yield error("PML173", f"{self.ward.name} is always with itself", self.span, "name two different agents")
 
     @property

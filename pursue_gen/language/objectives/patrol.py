@@ -8,10 +8,10 @@ from typing import Any, Callable, ClassVar, Iterator, Optional, Sequence, Tuple
 from lark import Token
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
-from pursue_gen.language.conditions import At, Not, Who, by_robot, who_text
+from pursue_gen.language.conditions import Not, Who, by_robot, one_at, stands_at, who_text
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective, Whole, Words
-from pursue_gen.language.refs import Ref
+from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.symbols import Role
 from pursue_gen.language.template import Filling, Template
 from pursue_gen.language.times import like, written_time
@@ -20,12 +20,21 @@ from pursue_gen.language.word import Form, Numbers, Word
 
 
 def _read_who(reader: TreeReader, tree: Any) -> Who:
-    first = tree.children[0]
-    agent = None if isinstance(first, Token) else reader.ref(first)
-    return Who(agent, agent is None)
+    if isinstance(tree.children[0], Token):
+        return Who(None, robots=True)
+    first, *others = map(reader.ref, tree.children)
+    return Who(first, others=tuple(others))
 
 
-PATROLLER = Filling("patroller", _read_who, who_text, "agent", rules="patroller: ref | ANY ROBOT")
+def check_who(who: Who) -> Iterator[Diagnostic]:
+    """An agent that is named twice."""
+    for ref in twice(who.named):
+        yield error("PML267", f"{ref.name} stands twice behind by", ref.span, "delete one of the two")
+
+
+PATROLLER = Filling(
+    "patroller", _read_who, who_text, "agent", ("by", "or"), 'patroller: ref ("or" ref)* | ANY ROBOT'
+)
 """Who has to be there."""
 
 
@@ -33,7 +42,7 @@ PATROLLER = Filling("patroller", _read_who, who_text, "agent", rules="patroller:
 class Patrol(Safety):
     """`patrol place every T by who`: it is at the place again so many time units after it left, or after the start.
 
-    `who`: an agent, or any robot: then one of them. A statement with several places is several of these.
+    `who`: an agent, several, or any robot: then one of them. A statement with several places is several of these.
     `every`: in time units; None: the least that can be promised is to be found by solving (`solving.periods`). Then
     `least` says that nothing below it can be promised.
     `order`: the places of the statement, where each counts in its turn only (`in order`); () where all count always.
@@ -52,7 +61,7 @@ class Patrol(Safety):
         "patrol {place:POIs=a, b} [in order] [every {every:time=60}] by {who:patroller=bot1}",
         patroller=PATROLLER,
     )
-    note: ClassVar[str] = "or: by any robot; in order and every are optional"
+    note: ClassVar[str] = "or: by bot1 or bot2, by any robot; in order and every are optional"
     own_words: ClassVar[Tuple[Word, ...]] = (
         Word("patrol", "Places at which somebody has to be again and again.", True),
         Word("in", "In this order: a visit counts in its turn only."),
@@ -67,13 +76,14 @@ class Patrol(Safety):
             "least that can be promised is found.",
             True,
         ),
-        Word("by", "Who has to be there: an agent, or any robot.", True),
+        Word("by", "Who has to be there: an agent, one of several, or any robot.", True),
     )
     numbers: ClassVar[Numbers] = {
         "every": "Somebody is there again {} after the last one left, or after the start.".format,
     }
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("somebody who comes again and again", "patrol {POI} every {=60} by {agent}"),
+        Form("one of two who come again and again", "patrol {POI} every {=60} by {agent} or {agent}"),
         Form("somebody who comes as often as can be promised", "patrol {POI} by {agent}"),
         Form("somebody who makes rounds", "patrol {POI}, {POI} in order every {=60} by {agent}"),
     )
@@ -134,6 +144,7 @@ class Patrol(Safety):
         return f"not {self.words.due_by} for {written_time(self.every)}"
 
     def check(self) -> Iterator[Diagnostic]:
+        yield from check_who(self.who)
         again = next((name for k, name in enumerate(self.order) if name in self.order[:k]), "")
         if again:
             message = f"{again} stands twice in this patrol in order: expected each place once in a round"
@@ -164,8 +175,8 @@ class Patrol(Safety):
 
     @property
     def breaks(self) -> Breaks:
-        there = At(self.who, self.place)
-        return Breaks(begins=Not(there), ends=None if self.order else there, by_robots=True, stands=(there,))
+        there, stands = one_at(self.who, self.place), stands_at(self.who, self.place)
+        return Breaks(begins=Not(there), ends=None if self.order else there, by_robots=True, stands=stands)
 
     def kept_by(self, robot: Ref) -> Patrol:
         return replace(self, who=by_robot(self.who, robot))

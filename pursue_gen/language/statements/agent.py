@@ -27,7 +27,8 @@ class Agent(Labelled):
     """A robot (controllable), a human ally (controllable and human) or an uncontrollable agent.
 
     `mobile` is the time units per unit of distance (the inverse of its speed), None: it never moves. `speed`: the
-    metres per second from which it was computed; None: it was written itself. `label`: what people read; None: the
+    metres per second from which it was computed; None: it was written itself. `carries`: how many things at one time at
+    most; None: not said. `has`: what it carries, or has mounted, at the start. `label`: what people read; None: the
     name. `radius`, `tolerance`, `inflation`: of a robot, in metres, as `workspace.robot_size` has them; None: not said.
     """
 
@@ -44,6 +45,8 @@ class Agent(Labelled):
     tolerance: Optional[Number] = None
     inflation: Optional[Number] = None
     speed: Optional[Number] = None
+    carries: Optional[int] = None
+    has: Tuple[Ref, ...] = ()
 
     listed_in: ClassVar[str] = "agents"
     symbol: ClassVar[str] = "Class"
@@ -63,20 +66,26 @@ class Agent(Labelled):
         Word("radius", "Metres from the middle of the robot to its farthest part: what it needs to turn.", True),
         Word("tolerance", "Metres by which the robot stops beside its goal, at most (xy_goal_tolerance).", True),
         Word("inflation", "Metres around obstacles that the robot's planners avoid (inflation_radius).", True),
+        Word("carries", "So many things at one time, and no more. Without it, a robot carries one.", True),
         Word("can_do", "The events that it does.", may_break=True),
         Word("reacts_to", "The collaborative events in which it is the partner.", may_break=True),
     )
     template: ClassVar[Template] = Template(
         'agent {name="bot"} [label {label:name}] [human] [controllable] [mobile {mobile:number=3}]'
         " [speed {speed:number}] [radius {radius:number}] [tolerance {tolerance:number}] [inflation {inflation:number}]"
+        " [carries {carries:count}] [has {has:things}]"
         " location {location:POI=a} [can_do {can_do:events=e1, e2}] [reacts_to {reacts_to:events=e3}]"
     )
     note: ClassVar[str] = (
         'location is required; behind the name: label "Porter 1"; in place of mobile: speed 0.5; before location, of a '
-        "robot: radius 0.2 tolerance 0.1 inflation 0.5"
+        "robot: radius 0.2 tolerance 0.1 inflation 0.5; carries 2 has box"
     )
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("a robot", 'agent "{=bot}" controllable mobile {=1} location {POI} can_do {event}'),
+        Form(
+            "a robot that carries several things",
+            'agent "{=bot}" controllable mobile {=1} carries {=2} location {POI} can_do {event}, {event}',
+        ),
         Form("somebody who does as they like", 'agent "{=visitor}" mobile {=1} location {POI} can_do {event}'),
         Form("a person who helps", 'agent "{=helper}" human controllable mobile {=1} location {POI} can_do {event}'),
     )

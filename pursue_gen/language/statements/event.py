@@ -26,6 +26,8 @@ class Event(Labelled):
     `together`: whoever takes part in a collaborative event is busy until it ends; else only the one who does it.
     `only_if`: what has to hold when it begins; None: nothing. `label`: what people read; None: the name.
     `may_stop`: who does it may break it off; it has not happened then.
+    `takes`, `gives`: the thing that whoever does it carries from its end on, and the one that is given away then.
+    `mounts`: the tool that is mounted from its end on, in place of another one; `needs`: what is carried or mounted.
     """
 
     name: str
@@ -39,6 +41,10 @@ class Event(Labelled):
     only_if: Optional[Condition] = None
     label: Optional[str] = None
     may_stop: bool = False
+    takes: Optional[Ref] = None
+    gives: Optional[Ref] = None
+    mounts: Optional[Ref] = None
+    needs: Optional[Ref] = None
 
     listed_in: ClassVar[str] = "events"
     symbol: ClassVar[str] = "Event"
@@ -53,16 +59,22 @@ class Event(Labelled):
         ),
         Word("to", "Where the agent arrives; or, behind a number, the latest time.", True),
         Word("may_stop", "It may be broken off before it ends, and has not happened then.", True),
+        Word("takes", "Of an event, a thing that is carried from its end on; of a way, how long it takes.", True),
+        Word("gives", "A thing that is carried until its end, and no longer.", True),
+        Word("mounts", "A thing that is a tool, mounted from its end on in place of the one that was.", True),
+        Word("needs", "A thing that whoever does it carries, or has mounted.", True),
         Word("at_most", "So many and no more: how often it happens in all, or of how many something holds.", True),
         Word("times", "In the whole mission.", True),
     )
     template: ClassVar[Template] = Template(
         'event {name="work"} [label {label:name}] [collaborative] [together] [location {location:POI=a}]'
-        " [duration {duration,latest:window=6}] [may_stop] [at_most {at_most:count=2} times]"
+        " [duration {duration,latest:window=6}] [may_stop] [takes {takes:thing}] [gives {gives:thing}]"
+        " [mounts {mounts:thing}] [needs {needs:thing}] [at_most {at_most:count=2} times]"
         " [only_if {only_if:condition=open is_true}]"
     )
     note: ClassVar[str] = (
-        'all but the name is optional; or: duration 6 to 9; behind the name: label "do the work"'
+        'all but the name is optional; or: duration 6 to 9; behind the name: label "do the work"; behind the duration: '
+        "takes box, gives box, mounts brush, needs brush"
     )
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("something that can happen at a place", 'event "{=work}" location {POI} duration {=1}'),
@@ -73,6 +85,10 @@ class Event(Labelled):
             "something that can happen only while something holds",
             'event "{=work}" location {POI} only_if {agent} at {POI}',
         ),
+        Form("something that loads a thing", 'event "{=load}" location {POI} duration {=3} takes {thing}'),
+        Form("something that unloads a thing", 'event "{=unload}" location {POI} duration {=3} gives {thing}'),
+        Form("something that mounts a tool", 'event "{=change}" location {POI} duration {=3} mounts {thing}'),
+        Form("something for which a tool is needed", 'event "{=work}" location {POI} duration {=3} needs {thing}'),
         Form("something that two do at once", 'event "{=handOver}" collaborative'),
         Form(
             "something that two do together for a while",
@@ -96,10 +112,22 @@ class Event(Labelled):
         """Between which times it ends; None for an event that is instantaneous."""
         return None if self.duration is None else window_of(self.duration, self.latest)
 
+    @property
+    def load_words(self) -> str:
+        """What it takes, gives, mounts and needs, in words; "": nothing."""
+        return ", ".join(f"{word} {ref.shown}" for word, ref in self._moves)
+
+    @property
+    def _moves(self) -> Tuple[Tuple[str, Ref], ...]:
+        """The things that it names, behind their words."""
+        named = (("takes", self.takes), ("gives", self.gives), ("mounts", self.mounts), ("needs", self.needs))
+        return tuple((word, ref) for word, ref in named if ref is not None)
+
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         own = (kind, name) == ("event", self.name)
         if own and self.may_stop:
             yield "may be broken off, and has not happened then"
+        yield from (f"{self.name} {word} it" for word, ref in self._moves if (kind, name) == ("thing", ref.name))
         if self.only_if is not None and (own or (kind == "state" and self.speaks_of(kind, name))):
             yield f"{'' if own else f'{self.name} '}only while {shown(condition_words(self.only_if))}"
 

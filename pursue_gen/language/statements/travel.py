@@ -34,11 +34,6 @@ class Travel(StatementKind):
             True,
         ),
         Word("from", "Where the agent sets off."),
-        Word(
-            "takes",
-            "How long it takes: more than the first number, and at most the second one (or one unit more).",
-            True,
-        ),
     )
     template: ClassVar[Template] = Template(
         'travel {agent:"agent"=bot} from {a:POI=a} to {b:POI=b} takes {earliest,latest:window=5 to 8}'

@@ -31,6 +31,7 @@ from pursue_gen.workspace.robot_size import NOTHING_TOLD, Told, sizes_of
 from pursue_gen.workspace.spots import SPOT_DISTANCE
 
 _MOST_FINDINGS = 200
+_MOVES = ("takes", "gives", "mounts", "needs")
 
 
 def view(
@@ -192,7 +193,7 @@ def _agents(document: Draft) -> List[Dict[str, Any]]:
         kind = "free" if "CONTROLLABLE" not in parts else "person" if "HUMAN" in parts else "robot"
         agent = {"name": name, "label": words_behind(one, "LABEL")[1:-1], "kind": kind}
         agent.update(mobile=words_behind(one, "MOBILE"), speed=words_behind(one, "SPEED"))
-        agent.update(location=words_behind(one, "LOCATION"))
+        agent.update({key: words_behind(one, key.upper()) for key in ("carries", "has", "location")})
         agent["mark"] = mark(looks[name], 0, 0, 6.0)
         lists = {key: names_behind(one, key.upper()) for key in ("can_do", "reacts_to")}
         if name in known:  # groups are lists of their members
@@ -202,6 +203,7 @@ def _agents(document: Draft) -> List[Dict[str, Any]]:
         kind = "free" if not each.controllable else "person" if each.human else "robot"
         agent = {"name": each.name, "label": each.label or "", "kind": kind, "location": each.location.name}
         agent.update(mobile="" if each.speed else str(each.mobile or ""), speed=str(each.speed or ""))
+        agent.update(carries=str(each.carries or ""), has=names_text(each.has))
         agent.update(mark=mark(looks[each.name], 0, 0, 6.0))
         lists = {key: [ref.name for ref in getattr(each, key)] for key in ("can_do", "reacts_to")}
         found.append({**agent, **lists, **_made(document, each.span)})
@@ -219,7 +221,7 @@ def _events(document: Draft) -> List[Dict[str, Any]]:
             continue
         parts = parts_of(one)
         event = {"name": bare(one.name), "label": words_behind(one, "LABEL")[1:-1]}
-        texts = {key: words_behind(one, key.upper()) for key in ("location", "duration", "only_if")}
+        texts = {key: words_behind(one, key.upper()) for key in ("location", "duration", *_MOVES, "only_if")}
         at_most = words_behind(one, "AT_MOST").partition(" ")[0]
         ticks = {key: key.upper() in parts for key in _TICKS}
         found.append({**event, **texts, "at_most": at_most, **ticks, **_placed(document, number)})
@@ -228,6 +230,7 @@ def _events(document: Draft) -> List[Dict[str, Any]]:
             event = {"name": each.name, "label": each.label or "", "at_most": str(each.at_most or "")}
             event.update(location=each.location.name if each.location else "", only_if=_condition(each.only_if))
             event["duration"] = "" if each.duration is None else window_text(each.duration, each.latest)
+            event.update({key: getattr(getattr(each, key), "name", "") for key in _MOVES})
             ticks = {key: getattr(each, key) for key in _TICKS}
             found.append({**event, **ticks, **_made(document, each.span)})
     return found

@@ -227,9 +227,10 @@ def _words(place: _Place, expected: FrozenSet[str], grouped: bool) -> Iterator[C
         names_hide -= {"ALWAYS", "AT_LEAST", "ESCORT", "PATROL", "PLACE", "WAY"}
     if [token.type for token in place.behind[-2:]] == ["ASSUME", "COLON"]:
         names_hide.discard("AT_MOST")
-    if "BY" in (token.type for token in place.behind):
+    if place.behind[-1].type == "BY":
         names_hide.discard("ANY")
-    if grouped and condition_start(place.behind) is not None and place.behind[-1].type in ("ANY", "ALL", "NONE"):
+    among = condition_start(place.behind) is not None and place.behind[-1].type in ("ANY", "ALL", "NONE")
+    if grouped and (among or [token.type for token in place.behind[-2:]] == ["BY", "ANY"]):
         yield Completion("of", "of", "OF", "word", *span, about=MEANINGS["OF"])
     for token, word in KEYWORDS.items():
         if token == "TOGETHER" and "COLLABORATIVE" in expected:

@@ -68,7 +68,13 @@ _PROPOSERS: Dict[str, _Proposer] = {
     "PML252": meaning.delete_statement,
     "PML253": meaning.delete_statement,
     "PML254": meaning.delete_statement,
+    "PML267": meaning.delete_listed,
     "PML320": meaning.delete_listed,
+    "PML340": meaning.fewer_things,
+    "PML341": meaning.take_or_give,
+    "PML342": meaning.one_of_two_things,
+    "PML343": meaning.take_or_give,
+    "PML344": meaning.fewer_things,
     "PML420": numbers.say_unit,
     "PML422": meaning.delete_statement,
 }

@@ -270,3 +270,35 @@ def _new_name(document: Draft, name: str) -> str:
     """The name, or with a number behind it the first one that is not taken."""
     taken = {known for names in document.declared.values() for known in names}
     return next(new for new in (name, *(f"{name}{n}" for n in range(2, 10_000))) if new not in taken)
+
+
+def fewer_things(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
+    """An agent that carries what it does without a number; a thing that nothing takes deleted."""
+    carries = part.pair("CARRIES")
+    if carries is not None:
+        yield "Delete carries", (document.cut(*carries),)
+    elif part.kind == "THING":
+        yield from delete_statement(document, finding, part, at)
+
+
+def one_of_two_things(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
+    """An event that takes a thing, or gives it, where it does both."""
+    for word in map(part.first, ("GIVES", "TAKES")):
+        if word is not None and part.first("MOUNTS") is None:
+            thing = part.tokens[part.tokens.index(word) + 1]
+            yield f"Delete {word} {thing}", (document.cut(word, thing),)
+
+
+def take_or_give(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
+    """Lets an agent do what takes, or mounts, the things of an event, or gives them; or not do the event."""
+    token = next((token for token in part.tokens if token.start_pos == at), None)
+    event = next((one for one in document.scenario.events if one.name == token), None)
+    if event is None or part.name is None:
+        return
+    first = finding.code == "PML341"
+    wanted = [ref.name for ref in ((event.gives, event.needs) if first else (event.takes,)) if ref is not None]
+    for other in document.scenario.events:
+        given = (other.takes, other.mounts) if first else (other.gives,)
+        if other is not event and any(ref is not None and ref.name in wanted for ref in given):
+            yield f"Let {bare(part.name)} do {other.name}", (_listed(part, "CAN_DO", other.name),)
+    yield from delete_listed(document, finding, part, at)

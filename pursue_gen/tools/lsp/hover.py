@@ -28,6 +28,7 @@ from pursue_gen.language.scenario import (
     Scenario,
     Sequence,
     State,
+    Thing,
     Window,
 )
 from pursue_gen.language.statements.base import Written
@@ -38,7 +39,7 @@ from pursue_gen.language.tokens import start_of
 from pursue_gen.language.tree_reader import TreeReader
 
 _MOST_LINES = 12
-_PLURALS = {"POI": "places", "agent": "agents", "event": "events", "state": "states"}
+_PLURALS = {"POI": "places", "agent": "agents", "event": "events", "state": "states", "thing": "things"}
 
 
 @dataclass(frozen=True)
@@ -113,6 +114,7 @@ def _about(scenario: Scenario, kind: str, name: str) -> Optional[str]:
         "rule": (scenario.rules, _rule),
         "state": (scenario.states, _state),
         "agent": (scenario.agents, _agent),
+        "thing": (scenario.things, _thing),
     }
     found, explain = parts[kind]
     part = next((part for part in found if getattr(part, "name", None) == name), None)
@@ -156,6 +158,7 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
     lines.append(f"- takes {lasts(event.window, scenario.unit)}" if event.window is not None else "- takes no time")
     if event.at_most is not None:
         lines.append(f"- happens at most {event.at_most} times")
+    lines += [f"- {in_markdown(scenario, event.load_words)}"] if event.load_words else []
     lines.append("- done by " + (", ".join(a.name for a in scenario.agents if _in(event.name, a.can_do)) or "nobody"))
     if event.collaborative:
         partners = ", ".join(a.name for a in scenario.agents if _in(event.name, a.reacts_to))
@@ -203,6 +206,11 @@ def _state(scenario: Scenario, state: State) -> List[str]:
     return lines + _said(scenario, "state", state.name)
 
 
+def _thing(scenario: Scenario, thing: Thing) -> List[str]:
+    head = f"**{thing.name}**: a thing that is carried{_read_as(thing.label)}"
+    return [head, "", *_said(scenario, "thing", thing.name)]
+
+
 def _said(scenario: Scenario, kind: str, name: str) -> List[str]:
     """What statements say of a thing that another one declares."""
     parts: Tuple[Written, ...] = (
@@ -227,6 +235,8 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
         movements = scenario.movements(agent).items()
         ways = [((a, b), lasts(window, scenario.unit)) for (a, b), window in movements if (a, b) in known]
         lines += _listed([f"- {a} to {b}: {time}" for (a, b), time in ways])
+    lines += [] if agent.carries is None else [f"- carries {agent.carries} at one time at most"]
+    lines += _if_any("has at the start", [ref.name for ref in agent.has])
     lines += [f"- {words} on a map" for words in [agent.size_words] if words]
     lines += _if_any("can do", [ref.name for ref in agent.can_do])
     lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])

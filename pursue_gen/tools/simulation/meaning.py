@@ -6,7 +6,8 @@ from itertools import product
 from typing import Callable, Iterable, Mapping, Set
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Atom, Condition, Holds, Not, OnWay, names_in
+from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Atom, Condition, Has, Holds, Not, OnWay, names_in
+from pursue_gen.language.loads import carriers
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, role_of
 
@@ -53,6 +54,10 @@ def _found(atom: Atom, scenario: Scenario, locations: Mapping[str, str], values:
         meant = [who.agent.name]
     else:
         meant = [agent.name for agent in scenario.agents if agent.is_robot or not who.robots]
+    if isinstance(atom, Has):
+        known = ((one.agent.name, one) for one in carriers(scenario) if atom.thing.name in one.names)
+        loads = {name: dict(zip(one.names, one.loads[values[names.load(name)]])) for name, one in known}
+        return {name for name in meant if loads.get(name, {}).get(atom.thing.name)}
     if isinstance(atom, OnWay) and not atom.ends:
         return {name for name in meant if role_of(locations[name]) is Role.WAY}
     if isinstance(atom, OnWay):

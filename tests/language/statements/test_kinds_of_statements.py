@@ -27,9 +27,11 @@ poi "a" label "the hall" //[1, 2, 0, 0, 0, 0, 1] bot [3, 4, 0, 0, 0, 0, 1]
 poi "b"
 connect a and b distance 3 one_way only_if open is_true
 connect b and a distance 2.5
+thing "box" label "parcel"
 event "work" collaborative together location a duration 6 to 9 at_most 2 times only_if not (bot on_way)
 event "first" label "do it" duration 3
-event "second"
+thing "brush"
+event "second" takes box gives box mounts brush needs brush
 rule "order" for each robot: (first before second) before (work or second)
 rule "turns" for each agent: first and second
 rule "plain": first before second
@@ -37,7 +39,7 @@ state "open": initially false, true_if first, second false_if work
 state "shut": initially true, false_if first
 stateDependency: second only_if open is_false
 agent "bot" label "Porter 1" controllable mobile 3 radius 0.2 tolerance 0.1 location a can_do work, first
-agent "ally" human controllable location b reacts_to work
+agent "ally" human controllable carries 2 has box, box location b reacts_to work
 agent "courier" speed 0.5 location b
 agent "guest" mobile 0.5 location b can_do second
 travel "bot" from a to b takes 5 to 8
@@ -140,6 +142,6 @@ def test_its_words_are_words_of_the_language(kind: Type[StatementKind]) -> None:
 @each_kind
 def test_its_forms_ask_for_things_that_there_are(kind: Type[StatementKind]) -> None:
     assert kind.forms and len({form.title for form in kind.forms}) == len(kind.forms)
-    things = {"POI", "event", "state", "agent", "group"}
+    things = {"POI", "event", "state", "agent", "group", "thing"}
     for form in kind.forms:
         assert all(example or what in things for example, what in HOLE.findall(form.words)), form

@@ -29,6 +29,12 @@ def changed(old: str, new: str) -> str:
     return SMALL.replace(old, new, 1)
 
 
+def carrying(old: str = "", new: str = "") -> str:
+    """A robot that takes a box where it works, and gives it to the man."""
+    text = SMALL.replace("duration 3\n", "duration 3 takes box\n").replace("collaborative", "collaborative gives box")
+    return text.replace(old, new, 1).replace('event "work"', 'thing "box"\nevent "work"')
+
+
 POSE = "[0, 0, 0, 0, 0, 0, 1]"
 PLACED_B = 'poi "b" //[3, 0, 0, 0, 0, 0, 1]'
 MISTAKES = {
@@ -122,6 +128,13 @@ MISTAKES = {
     "PML254": SMALL + "assume: man never at a\n",
     "PML254 an event": SMALL + "assume: man does work at_most 2 times\n",
     "PML220": SMALL + SMALL.rstrip().rsplit("\n", 1)[-1] + "\n",
+    "PML267": SMALL + "objective: patrol b every 90 by bot or bot\n",
+    "PML340": carrying("mobile 2", "mobile 2 carries 0"),
+    "PML341": carrying(" takes box", "").replace('event "rest"', 'event "rest" takes box'),
+    "PML342": carrying("takes box", "takes box gives box"),
+    "PML343": carrying(" gives box", "").replace('event "rest"', 'event "rest" gives box'),
+    "PML344": SMALL + 'thing "box" // it is here\n',
+    "PML344 room": changed("mobile 2", "mobile 2 carries 2"),
     "PML320": changed("true_if work", "true_if work, rest"),
     "PML320 in a list": changed("true_if work false_if rest", "true_if work false_if work, rest"),
     "PML420": changed("within 20", "within 2 min"),

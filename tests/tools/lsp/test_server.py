@@ -132,7 +132,7 @@ def test_each_kind_of_statement_is_in_the_outline(editor: Editor) -> None:
     lines = [kind.form().split(" · ")[0].split(" (")[0] for kind in STATEMENTS.values()]
     editor.change("\n".join([*lines, "controllable: x"]))
     symbols = editor.about("documentSymbol")
-    assert len(symbols) == len(lines) and len({symbol["kind"] for symbol in symbols}) == 8
+    assert len(symbols) == len(lines) and len({symbol["kind"] for symbol in symbols}) == 9
 
 
 def test_outline_folds_and_formatting(editor: Editor) -> None:

@@ -75,6 +75,15 @@ def test_who_has_loaded_unloads_and_nobody_for_him() -> None:
     assert events(lost, "cart2") == ["cart2_hall2plane", "load", "unload"] and events(lost, "cart1") == []
 
 
+def test_who_carries_a_thing_gives_it_and_nobody_for_him() -> None:
+    boxes = CARTS.replace('rule "bag" for each robot: load before unload\n', 'thing "box"\n')
+    boxes = boxes.replace("hall duration 1", "hall duration 1 takes box")
+    boxes = boxes.replace("location plane", "location plane gives box")
+    assert "load" not in events(asked(boxes, opened(), {**GATE_OPEN, "Hcart1": 1, "Hcart2": 1}, []), "cart1")
+    lost = asked(boxes, opened(), {**GATE_OPEN, "Hcart1": 1}, ["cart1"])
+    assert events(lost, "cart2") == ["cart2_hall2plane", "load", "unload"] and events(lost, "cart1") == []
+
+
 def test_what_a_lost_robot_keeps_from_happening_is_no_part_of_a_plan() -> None:
     there = {**opened(), "cart1": "plane"}
     values = {**GATE_OPEN, "Pcart1": AT_PLANE}

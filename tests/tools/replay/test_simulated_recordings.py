@@ -43,6 +43,13 @@ reach_objective: do unload
 """
 """Each cart unloads what it has loaded, and a gate has to be opened before one sets off."""
 
+BOXES = (
+    CARTS.replace('rule "bag" for each robot: load before unload\n', 'thing "box"\n')
+    .replace("location hall duration 1", "location hall duration 1 takes box")
+    .replace("location plane", "location plane gives box")
+)
+"""The same with things."""
+
 
 @functools.lru_cache(maxsize=None)
 def made(text: str) -> Tuple[Stage, Game]:
@@ -90,9 +97,9 @@ def by_number(states: Sequence[SystemState]) -> Dict[int, Any]:
     return {state.seq: (state.discrete(), state.event) for state in states if state.seq}
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
-def test_conditions_and_own_turns_are_steps_of_the_model(seed: int) -> None:
-    mission = Recorded(CARTS, seed)
+@pytest.mark.parametrize(("text", "seed"), [(CARTS, 1), (CARTS, 2), (CARTS, 3), (BOXES, 1), (BOXES, 2)])
+def test_conditions_own_turns_and_loads_are_steps_of_the_model(text: str, seed: int) -> None:
+    mission = Recorded(text, seed)
     assert mission.run().end == "goal"
     found = mission.found()
     assert kinds(found, FAULT, WORLD) == [] and found.won, found.findings
@@ -140,8 +147,9 @@ def test_an_order_without_a_number_is_acknowledged_by_nobody() -> None:
     assert "unacknowledged" not in kinds(mission.found(), FAULT)
 
 
-def test_who_unloads_without_having_loaded_is_a_fault() -> None:
-    mission = Recorded(CARTS, 1)
+@pytest.mark.parametrize("text", [CARTS, BOXES])
+def test_who_unloads_without_having_loaded_is_a_fault(text: str) -> None:
+    mission = Recorded(text, 1)
     mission.run()
     loaded = next(state for state in mission.recorder.states if state.event == "loadDONE").agent
     other = {"cart1": "cart2", "cart2": "cart1"}[loaded]

@@ -97,12 +97,14 @@ function list(thing, name, words, events) {
 }
 
 function agent(thing) {
+  const things = state.view.names.thing;
   const fields = [
     ...named("agent", thing),
     field("field-kind", "is", thing.kind, set(thing, "kind"), { options: KINDS }),
     field("field-location", "starts at", thing.location, set(thing, "location"), { options: places() }),
     field("field-mobile", "time units per unit of distance (empty: stays)", thing.mobile, set(thing, "mobile"), { inputmode: "decimal" }),
     field("field-speed", "or its speed in metres per second", thing.speed, set(thing, "speed"), { inputmode: "decimal" }),
+    ...(things.length ? [field("field-carries", "carries so many things at a time (empty: one)", thing.carries, set(thing, "carries"), { inputmode: "numeric" }), field("field-has", "has at the start (box, box)", thing.has, set(thing, "has"), { spellcheck: "false" })] : []),
     ...list(thing, "can_do", "can do", state.view.events),
     ...list(thing, "reacts_to", "reacts to", state.view.events.filter((one) => one.collaborative || thing.reacts_to.includes(one.name))),
   ];
@@ -110,11 +112,13 @@ function agent(thing) {
 }
 
 function event(thing) {
+  const things = state.view.names.thing;
   const fields = [
     ...named("event", thing),
     field("field-location", "happens", thing.location, set(thing, "location"), { options: [["", "anywhere"], ...places()] }),
     field("field-duration", "duration (3, 3 to 5, or 30 s to 1 min; empty: none)", thing.duration, set(thing, "duration"), { spellcheck: "false" }),
     tick("field-may_stop", "may be broken off before it ends", thing.may_stop, set(thing, "may_stop")),
+    ...["takes", "gives", "mounts", "needs"].filter(() => things.length).map((word) => field(`field-${word}`, word, thing[word], set(thing, word), { options: [["", "nothing"], ...things.map((one) => [one, one])] })),
     field("field-at_most", "at most so many times", thing.at_most, set(thing, "at_most"), { inputmode: "numeric" }),
     tick("field-collaborative", "needs a partner who reacts", thing.collaborative, set(thing, "collaborative")),
     tick("field-together", "keeps both busy until it ends", thing.together, set(thing, "together")),
