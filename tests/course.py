@@ -29,6 +29,7 @@ from pursue_gen.language.scenario import (
     Poi,
     Reaches,
     Ref,
+    Request,
     RuleBody,
     Scenario,
     Sequence,
@@ -92,6 +93,8 @@ class Course:
     """(agent, event) → beginnings and ends"""
     awaited: Dict[int, float] = field(default_factory=dict)
     """The numbers of assumptions that somebody comes, and when that was called for."""
+    happened: List[Tuple[float, str]] = field(default_factory=list)
+    """The events that have happened, with their moments; of those that last their ends."""
 
     def __post_init__(self) -> None:
         self.events = {event.name: event for event in self.scenario.events}
@@ -144,6 +147,7 @@ class Course:
 
     def _has_happened(self, event: str) -> None:
         """It has: whoever is to come then, and is not there, is awaited from now on."""
+        self.happened.append((self.now, event))
         for number, each in self._comes():
             stay = self.stays[each.agent.name]
             if each.event.name == event and (stay.to or stay.place != each.place.name):
@@ -198,6 +202,9 @@ class Course:
             return False
         if not self.agents[agent].controllable and any(self._is_over(each, name) for each in self.scenario.assumptions):
             return False
+        asked = [each for each in self.scenario.safety if isinstance(each, Request) and each.trigger.name == name]
+        if any(len(self.open(each)) >= each.most for each in asked):
+            return False
         return self.holds(event.only_if) and all(after(rest, name) is not None for rest in self._turns(agent, name))
 
     def _is_over(self, each: Assumption, event: str) -> bool:
@@ -209,6 +216,16 @@ class Course:
         return (
             sum(len(some) for (who, what), some in self.done.items() if who in others and what in events) >= each.times
         )
+
+    def open(self, request: Request) -> List[float]:
+        """When those have come that wait for their answer, the oldest first."""
+        waiting: List[float] = []
+        for moment, event in self.happened:
+            if event == request.trigger.name:
+                waiting.append(moment)
+            elif event == request.response.name:
+                del waiting[:1]
+        return waiting
 
     def partners(self, agent: str, event: Event) -> List[str]:
         """Those who can take part now: idle at the same place, or on the same way in the other direction."""

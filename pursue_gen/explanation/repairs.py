@@ -17,6 +17,7 @@ from pursue_gen.explanation.number_changes import (
     charge_changes,
     count_changes,
     event_changes,
+    open_changes,
     pause_changes,
     room_changes,
     times_changes,
@@ -32,6 +33,7 @@ from pursue_gen.language.scenario import (
     Pause,
     Poi,
     Reach,
+    Request,
     Scenario,
     StatedObjective,
 )
@@ -117,6 +119,8 @@ def _of_objectives(scenario: Scenario) -> Iterator[Repair]:
             yield from charge_changes(scenario, safety)
         elif isinstance(safety, Pause):
             yield from pause_changes(scenario, safety)
+        elif isinstance(safety, Request):
+            yield from open_changes(scenario, safety)
     for reach in scenario.reach:
         if reach.after > 0:
             yield _earlier(scenario, reach)

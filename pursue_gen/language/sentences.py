@@ -48,7 +48,7 @@ def periods_found(scenario: Scenario, won: bool = True) -> List[str]:
 
 def condition_of_promise(scenario: Scenario) -> str:
     """All that is assumed of agents that are not controlled, in one clause; "" where nothing is."""
-    says = [assumption.clause for assumption in scenario.assumptions]
+    says = [assumption.clause for assumption in scenario.assumed]
     return f"as long as {', and '.join(says)}" if says else ""
 
 

@@ -13,7 +13,7 @@ syntax keyword pursueKeyword after agents all always and answered any apart at a
 syntax keyword pursueKeyword can_do capacity charges collaborative controllable distance do does doing duration each
 syntax keyword pursueKeyword ends escort every except false_if from holds hour human if in inflation initially is label
 syntax keyword pursueKeyword lasts leaves location minute mobile never never_with no none not of on_way one_way only_if
-syntax keyword pursueKeyword or order patrol per place radius reaches reacts_to recharges robot robots second speed
+syntax keyword pursueKeyword open or order patrol per place radius reaches reacts_to recharges robot robots second speed
 syntax keyword pursueKeyword stays takes then times to together tolerance true_if twice two uses waits way when within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*\%([ \t]\+\%(s\|min\|h\)\>\%([ \t]\+\d[0-9.]*[ \t]\+\%(s\|min\|h\)\>\)*\)\?"
 syntax match pursueName +"[^"]*"+
