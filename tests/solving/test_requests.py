@@ -9,6 +9,7 @@ import pytest
 import yaml
 
 from pursue_gen.explanation.explain import explain
+from pursue_gen.language import check
 from pursue_gen.outcomes import Lost
 from pursue_gen.proof.checker import verify
 from pursue_gen.solving.answers import answers
@@ -21,7 +22,7 @@ from pursue_gen.tools.simulation.runs import MissionRunner, case_of
 from pursue_gen.vocabulary.statuses import statuses
 from pursue_gen.workspace import Options
 from pursue_runtime.observer.mission import Mission
-from pursue_runtime.state import HOLDING, RUNNING
+from pursue_runtime.state import HOLDING, RUNNING, WON
 from pursue_runtime.strategy import read_cover
 from tests.stories import files, model, scenario, solved
 
@@ -110,6 +111,25 @@ def test_one_more_than_may_be_open_breaks_what_is_assumed_and_the_mission_says_s
     state = under_way.state(6.0)
     assert (state.status, state.values["assume1"]) == (HOLDING, 0)
     assert "order happens only while fewer than 2 wait for pack" in state.reason
+
+
+def test_a_mission_that_ends_when_all_is_answered_waits_for_each() -> None:
+    text = SHOP.format(30, OPEN.format(2)) + "mission ends when all is answered\n"
+    assert list(check(scenario(text))) == []
+    assert [each.is_answered for each in model(text).promises.values()] == [True, True]
+    cover = read_cover(yaml.safe_load(files(text)["src/observer/config/cover.yaml"]))
+    under_way = Mission(model(text), cover, lambda level, line: None, on_uncovered="plan", lost_after=10.0)
+    under_way.on_word("_start_", 0.0)
+    for at, word in (
+        (2.0, "shop:order"), (2.0, "bot_desk2shelf"), (4.0, "shop:order"), (5.5, "bot_going_desk_to_shelf2shelf"),
+        (7.0, "pack"), (9.5, "packDONE"),
+    ):  # fmt: skip
+        under_way.on_word(word, at)
+    state = under_way.state(9.5)
+    assert (state.status, state.locations["obj"], state.locations["obj2"]) == (RUNNING, "idle", "atRisk")
+    under_way.on_word("pack", 11.0)
+    under_way.on_word("packDONE", 13.5)
+    assert under_way.state(13.5).status == WON
 
 
 STORIES = Path(__file__).resolve().parents[2] / "scenarios"
