@@ -20,10 +20,10 @@ poi "desk"
 poi "shelf"
 connect desk and shelf distance 3
 event "order" location desk
-event "pack" location shelf duration 12
+event "pack" location shelf duration 20
 agent "bot" controllable mobile 1 location desk can_do pack
 agent "shop" location desk can_do order
-objective: if order then pack within 60, at_most 2 open
+objective: if order then pack within 100, at_most 2 open
 """
 
 
@@ -45,7 +45,10 @@ def test_each_order_is_packed_and_one_too_many_breaks_what_is_assumed(ros: Ros, 
         run.until(lambda: run.orders().count(("bot", "pack")) == 2)
         run.until(lambda: {run.now()["places"][name] for name in ("obj", "obj2")} == {"idle"})
         assert run.now()["values"]["assume1"] == 1
-        for _ in range(3):
+        for _ in range(30):  # sooner or later three wait, however slow this machine is
             order()
-        run.until(lambda: "order happens only while fewer than 2 wait for pack" in str(run.now()["reason"]))
-        assert (run.now()["status"], run.now()["values"]["assume1"]) == ("holding", 0)
+            if run.now()["values"]["assume1"] == 0:
+                break
+        said = "order happens only while fewer than 2 wait for pack"
+        state = run.until(lambda: next((each for each in run.states() if said in str(each["reason"])), None))
+        assert (state["status"], state["values"]["assume1"]) == ("holding", 0)
