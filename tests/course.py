@@ -27,6 +27,7 @@ from pursue_gen.language.scenario import (
     Pause,
     Poi,
     Reaches,
+    Request,
     Scenario,
     Stays,
     ThereBy,
@@ -92,6 +93,9 @@ class Course:
     carried: Dict[str, List[str]] = field(default_factory=dict)
     mounted: Dict[str, str] = field(default_factory=dict)
     awaited: Dict[int, float] = field(default_factory=dict)
+    """The numbers of assumptions that somebody comes, and when that was called for."""
+    happened: List[Tuple[float, str]] = field(default_factory=list)
+    """The events that have happened, with their moments; of those that last their ends."""
 
     def __post_init__(self) -> None:
         self.events = {event.name: event for event in self.scenario.events}
@@ -165,6 +169,7 @@ class Course:
 
     def _has_happened(self, event: str) -> None:
         """It has: whoever is to come then, and is not there, is awaited from now on; states may be shown."""
+        self.happened.append((self.now, event))
         for state in self.scenario.states:
             if any(ref.name == event for ref in state.shown_by):
                 self._shows(state.name)
@@ -226,6 +231,9 @@ class Course:
             return False
         if not self.agents[agent].controllable and any(self._is_over(each, name) for each in self.scenario.assumptions):
             return False
+        asked = [each for each in self.scenario.safety if isinstance(each, Request) and each.trigger.name == name]
+        if any(len(self.open(each)) >= each.most for each in asked):
+            return False
         turns = self._turns(agent, name)
         return self.holds(event.only_if, agent) and all(after(rest, name) is not None for rest in turns)
 
@@ -238,6 +246,16 @@ class Course:
         return (
             sum(len(some) for (who, what), some in self.done.items() if who in others and what in events) >= each.times
         )
+
+    def open(self, request: Request) -> List[float]:
+        """When those have come that wait for their answer, the oldest first."""
+        waiting: List[float] = []
+        for moment, event in self.happened:
+            if event == request.trigger.name:
+                waiting.append(moment)
+            elif event == request.response.name:
+                del waiting[:1]
+        return waiting
 
     def partners(self, agent: str, event: Event) -> List[str]:
         """Those who can take part now: idle at the same place, or on the same way in the other direction."""

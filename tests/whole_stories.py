@@ -205,6 +205,8 @@ def _objectives(
         "patrol": f"objective: patrol {where} every {draw(st.integers(8, 40))} by bot1",
         "lasts": lasting,
         "round": f"objective: patrol a, b in order every {draw(st.integers(8, 40))} by bot1",
+        "request": f"objective: if call then {draw(st.sampled_from(('drop', 'load')))} within"
+        f" {draw(st.integers(5, 40))}, at_most {draw(st.integers(1, 2 if small else 3))} open",
     }
     safety = draw(st.lists(st.sampled_from(list(kinds)), max_size=1 if small else 2, unique=True))
     event = draw(st.sampled_from(("load", "drop", "sing", "wave")))

@@ -11,7 +11,8 @@ from pursue_gen.language.clauses import Domains
 from pursue_gen.language.loads import MOST_LOADS, Carrier
 from pursue_gen.language.numbers import Number, Window, whole_above, whole_below
 from pursue_gen.language.objectives.holds import Holds
-from pursue_gen.language.scenario import Battery, Endurance, Event, Pause, Reach, Scenario, Travel
+from pursue_gen.language.objectives.request import with_fewer
+from pursue_gen.language.scenario import Battery, Endurance, Event, Pause, Reach, Request, Scenario, Travel
 from pursue_gen.language.statements.event import MOST_TIMES
 from pursue_gen.language.times import instead, like, window_text
 from pursue_gen.solving.rules import Rules
@@ -135,6 +136,17 @@ def room_changes(scenario: Scenario, holds: Holds) -> Iterator[Repair]:
             "room", holds.where, f"more room {holds.where}", holds.most, values,
             lambda k: scenario.with_instead(holds, holds.with_room(k)),
             lambda k: f"room for {holds.with_room(k).some} {holds.where} instead of {holds.some}", holds.span,
+        )  # fmt: skip
+
+
+def open_changes(scenario: Scenario, request: Request) -> Iterator[Repair]:
+    """Fewer that may be open at once."""
+    event, most = request.trigger.shown, request.most
+    if request.number == 0 and most > 1:
+        yield Repair(
+            "open", event, f"fewer of {event} open", most, range(most - 1, 0, -1),
+            lambda k: replace(scenario, safety=with_fewer(scenario.safety, request, k)),
+            lambda k: f"at_most {k} of {event} open instead of {most}", request.span,
         )  # fmt: skip
 
 

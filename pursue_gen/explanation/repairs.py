@@ -18,6 +18,7 @@ from pursue_gen.explanation.number_changes import (
     count_changes,
     event_changes,
     load_changes,
+    open_changes,
     pause_changes,
     room_changes,
     times_changes,
@@ -35,6 +36,7 @@ from pursue_gen.language.scenario import (
     Poi,
     Reach,
     Ref,
+    Request,
     Respond,
     Scenario,
     StatedObjective,
@@ -126,6 +128,8 @@ def _of_objectives(scenario: Scenario) -> Iterator[Repair]:
             yield from charge_changes(scenario, safety)
         elif isinstance(safety, Pause):
             yield from pause_changes(scenario, safety)
+        elif isinstance(safety, Request):
+            yield from open_changes(scenario, safety)
     for reach in scenario.reach:
         if reach.after > 0:
             yield _earlier(scenario, reach)

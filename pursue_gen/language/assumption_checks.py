@@ -62,4 +62,5 @@ def check_assumptions(scenario: Scenario) -> Iterator[Diagnostic]:
         if assumption.subject in seen:
             yield assumption.again(seen[assumption.subject])
         seen.setdefault(assumption.subject, assumption.span)
+    for assumption in scenario.assumed:
         yield from assumption.check_in(setting)

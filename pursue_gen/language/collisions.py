@@ -62,14 +62,14 @@ def _numbered(scenario: Scenario) -> Iterator[_Stated]:
     """What is made for objectives and assumptions, which have numbers and no names."""
     for number, safety in enumerate(scenario.safety):
         automaton = names.safety_objective(number)
-        turn = [Role.SAFETY_TURN(automaton)] if safety.order else []
+        turn = [names.safety_turn(number), names.safety_oldest(number)] if safety.order else []
         charge = [names.charge_clock(number)] if isinstance(safety, Endurance) else []
         made = [automaton, names.safety_clock(number), names.safety_pause(number), *turn, *charge]
         yield safety.span, made
     for number, reach in enumerate(scenario.reach):
         made = [names.reach_objective(number), names.reach_clock(number), names.unlocking(number)]
         yield reach.span, [*made, *([] if reach.apart is None else [names.reach_apart(number)])]
-    for number, assumption in enumerate(scenario.assumptions, start=1):
+    for number, assumption in enumerate(scenario.assumed, start=1):
         made = [names.assumption(number), names.assumption_count(number), names.assumption_clock(number)]
         yield assumption.span, [*made, names.assumed_way(number)]
 

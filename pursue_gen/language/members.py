@@ -118,10 +118,13 @@ class Words:
     # Conditions -------------------------------------------------------------------------------------------------------
 
     def _quantified(self, tokens: Tokens, index: int, members: Mapping[str, Token], found: List[Token]) -> int:
-        """Writes `any of carts at door` as `(cart1 at door or cart2 at door)`; the index behind it."""
+        """Writes `any of carts at door` as `(cart1 at door or cart2 at door)`, and in a rule `any of trays` as
+        `(tray1 or tray2)`; the index behind it."""
         first = tokens[index]
         names, index = self._names_at(tokens, index + 2, members)
         held, index = self._held(tokens, index, members)
+        if tokens[0].type == "RULE" and first.type != "NONE" and not held:
+            held = [()]
         if not held:
             raise Refused(self._no_condition(first))
         self._spend(len(names) * sum(len(part) + 3 for part in held), first)
@@ -181,7 +184,8 @@ class Words:
 
     def _no_condition(self, quantifier: Token) -> Diagnostic:
         hint = "write what holds of them, as in any of carts at door; elsewhere, for each … before the statement"
-        return error("PML411", f"`{quantifier} of` stands in conditions only", self._at(quantifier), hint)
+        where = "conditions only" if quantifier.type == "NONE" else "conditions and rules only"
+        return error("PML411", f"`{quantifier} of` stands in {where}", self._at(quantifier), hint)
 
     # Limits and places ------------------------------------------------------------------------------------------------
 

@@ -84,6 +84,16 @@ def safety_pause(number: int) -> Symbol:
     return Role.SAFETY_PAUSE(safety_objective(number))
 
 
+def safety_turn(number: int) -> Symbol:
+    """The variable of that safety objective, from 0, and of those behind it in its statement: whose turn it is."""
+    return Role.SAFETY_TURN(safety_objective(number))
+
+
+def safety_oldest(number: int) -> Symbol:
+    """The variable of the statement that begins with that safety objective: which of its requests waits longest."""
+    return Role.SAFETY_OLDEST(safety_objective(number))
+
+
 reach_objective, reach_clock = partial(numbered, Role.REACH), partial(numbered, Role.REACH_CLOCK)
 """By the number of a reach objective, from 0: its automaton, `reachObj`, …, and its clock, `Creach`, …"""
 

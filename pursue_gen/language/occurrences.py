@@ -38,6 +38,8 @@ _OPENS = {(token, word.upper()) for token, kind in STATEMENTS.items() for word i
 
 _OPENING = frozenset(("ALWAYS", "AT_LEAST", "ESCORT", "PATROL", "PLACE", "WAY"))
 """Words that may be names and with which an objective may begin."""
+_BEHIND_STATES = frozenset(("IS_TRUE", "IS_FALSE"))
+"""Words behind which nothing stands but the name of a state."""
 _OBJECT = {"AT": "POI", "FROM": "POI", "TO": "POI", "BETWEEN": "POI", "DOING": "event", "HAS": "thing"}
 _SUBJECT = {
     "AT": "agent", "ON_WAY": "agent", "BETWEEN": "agent", "DOING": "agent", "HAS": "agent",
@@ -90,9 +92,10 @@ def are_names(tokens: Sequence[Token]) -> List[bool]:
         following = tokens[index + 1].type if index + 1 < len(tokens) else ""
         opens = before is not None and before.type == "COLON"
         begins = opens and kind == "OBJECTIVE" and token.type in _OPENING and following != "NEVER_WITH"
-        begins = begins or (opens and kind == "ASSUME" and (token.type, following) == ("AT_MOST", "NUMBER"))
+        begins = begins or (token.type, following) == ("AT_MOST", "NUMBER")
         whoever = token.type == "ANY" and following in ("ROBOT", "AGENT")
-        named.append(token.type == "WORD" or (token.type in MAY_BE_NAMES and behind and not begins and not whoever))
+        stands = (behind and not begins and not whoever) or following in _BEHIND_STATES
+        named.append(token.type == "WORD" or (token.type in MAY_BE_NAMES and stands))
     return named
 
 

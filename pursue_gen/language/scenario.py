@@ -11,11 +11,13 @@ from pursue_gen.language import assumptions as kinds_of_assumptions
 from pursue_gen.language import objectives as kinds_of_objectives
 from pursue_gen.language.assumptions import *
 from pursue_gen.language.assumptions.base import Assumption
+from pursue_gen.language.assumptions.most_open import MostOpen
 from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Condition, Doing, Has, Holds, Not, OnWay, Who
 from pursue_gen.language.numbers import Number, Window, exact
 from pursue_gen.language.objectives import *
 from pursue_gen.language.objectives import Endurance, GivenUp, Patrol, Reach, Safety, StatedObjective, WhyGivenUp
 from pursue_gen.language.objectives.patrol import patrols_in
+from pursue_gen.language.objectives.request import requests_in
 from pursue_gen.language.poses import Pose, Spot
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
@@ -138,6 +140,11 @@ class Scenario:
         named = {ref.name for ref in rule.events} if rule.each else set()
         able = (agent for agent in self.agents if any(ref.name in named for ref in agent.can_do))
         return tuple(agent for agent in able if agent.is_robot or rule.each == "agent")
+
+    @cached_property
+    def assumed(self) -> Tuple[Assumption, ...]:
+        """All that is assumed, which has numbers in this order: the statements, then what stands behind objectives."""
+        return (*self.assumptions, *(MostOpen.of(each) for _, each in requests_in(self.safety)))
 
     @cached_property
     def patrols(self) -> Tuple[Patrol, ...]:

@@ -6,6 +6,7 @@ from typing import Dict, List, Optional
 
 from pursue_gen.diagnostics import listed
 from pursue_gen.language.numbers import Number, Window
+from pursue_gen.language.one_for_all import is_one_for_all
 from pursue_gen.language.scenario import Agent, Scenario, StatedObjective
 from pursue_gen.language.times import in_units, window_text, words_for
 
@@ -21,8 +22,11 @@ def end_words(scenario: Scenario) -> List[str]:
 
 
 def objective_sentence(scenario: Scenario, objective: StatedObjective) -> str:
-    """What one objective wants, as a sentence, with its number where it is optional."""
+    """What one objective wants, as a sentence, with its number where it is optional; where one answer may be enough for
+    several, it says so."""
     text = objective.sentence(scenario.shown)
+    if is_one_for_all(objective, scenario):
+        text = f"{text[:-1]}, once for all that come before it."
     return f"Optional {objective.optional}: {text}" if objective.optional else text
 
 
@@ -49,7 +53,7 @@ def periods_found(scenario: Scenario, won: bool = True) -> List[str]:
 
 def condition_of_promise(scenario: Scenario) -> str:
     """All that is assumed of agents that are not controlled, in one clause; "" where nothing is."""
-    says = [assumption.clause for assumption in scenario.assumptions]
+    says = [assumption.clause for assumption in scenario.assumed]
     return f"as long as {', and '.join(says)}" if says else ""
 
 

@@ -65,6 +65,7 @@ class Role(enum.Enum):
     SAFETY_CLOCK = "Cobj{}", "a part of an objective"
     SAFETY_TURN = "P{}", "a part of an objective"
     CHARGE_CLOCK = "Ccharge{}", "a part of a battery"
+    SAFETY_OLDEST = "P{}_oldest", "a part of an objective"
     SAFETY_PAUSE = "P{}_pause", "a part of an objective"
     IDLE = "idle", "nothing is due"
     AT_RISK = "atRisk", "a deadline is running"

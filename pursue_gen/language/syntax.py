@@ -53,7 +53,7 @@ _ENDS = frozenset(
     (
         "WORD NUMBER NAME POSE RPAR IS_TRUE IS_FALSE TRUE FALSE "
         "COLLABORATIVE TOGETHER ONE_WAY TIMES TWICE APART CONTROLLABLE HUMAN ON_WAY ROBOT ROBOTS AGENTS "
-        "SECOND MINUTE HOUR ANSWERED"
+        "SECOND MINUTE HOUR ANSWERED OPEN"
     ).split()
 )
 """Tokens behind which no name can stand: one that opens the next line begins something else."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations, islice
-from typing import Iterable, List, Optional, Sequence, Tuple
+from typing import Dict, Iterable, List, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import listed
 from pursue_gen.language.scenario import Scenario, StatedObjective
@@ -145,14 +145,21 @@ def cannot_be_promised(names: Iterable[str]) -> str:
 
 
 def in_words(problem: Lost, scenario: Scenario) -> Lost:
-    """The error with the scenario's statements, and their places, in place of the automata that watch them."""
-    objectives, findings = stated(scenario), list(problem.diagnostics)
-    for k, names in enumerate(problem.parts):
+    """The error with the scenario's statements, and their places, in place of the automata that watch them; each once,
+    where several automata watch one."""
+    objectives = stated(scenario)
+    if not problem.parts:
+        return problem
+    parts: Dict[Tuple[str, ...], Tuple[str, ...]] = {}
+    findings = []
+    for finding, names in zip(problem.diagnostics, problem.parts):
         some = [objectives[name] for name in names]
-        before, after = cannot_be_promised(names), cannot_be_promised(quoted(some))
-        message = after + findings[k].message[len(before) :]
-        findings[k] = replace(findings[k], message=message, span=some[0].span)
-    return Lost(findings, problem.parts)
+        said = quoted(some)
+        if said not in parts:
+            message = cannot_be_promised(said) + finding.message[len(cannot_be_promised(names)) :]
+            findings.append(replace(finding, message=message, span=some[0].span))
+        parts.setdefault(said, names)
+    return Lost(findings, tuple(parts.values()))
 
 
 def quoted(objectives: Sequence[StatedObjective]) -> Tuple[str, ...]:

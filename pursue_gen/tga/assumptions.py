@@ -20,6 +20,7 @@ from pursue_gen.language.scenario import (
     Departure,
     InAll,
     Leaves,
+    MostOpen,
     NeverAt,
     NeverHolds,
     NotBefore,
@@ -34,12 +35,13 @@ from pursue_gen.tga.awaited import last_ways, latest_of
 from pursue_gen.tga.changes import Change, beginning, setting_off, states_set
 from pursue_gen.tga.conditions import Conditions
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Test
+from pursue_gen.tga.requests import fewer_open
 
 
 def assumed(automaton: Automaton, scenario: Scenario, conditions: Conditions) -> Automaton:
     """The automaton of an agent, kept to what the scenario assumes of it."""
     agents = [agent for agent in scenario.agents if agent.name == automaton.name]
-    for number, assumption in enumerate(scenario.assumptions, start=1):
+    for number, assumption in enumerate(scenario.assumed, start=1):
         if any(map(assumption.binds, agents)):
             automaton = _KEPT[type(assumption)](automaton, number, assumption, scenario, conditions)
     return automaton
@@ -48,7 +50,7 @@ def assumed(automaton: Automaton, scenario: Scenario, conditions: Conditions) ->
 def assumption_variables(scenario: Scenario) -> Tuple[Tuple[str, int], ...]:
     """The variables of the assumptions with their first values."""
     found: List[Tuple[str, int]] = []
-    for number, assumption in enumerate(scenario.assumptions, start=1):
+    for number, assumption in enumerate(scenario.assumed, start=1):
         found.append((names.assumption(number), 1))
         if assumption.counts:
             found.append((names.assumption_count(number), 0))
@@ -57,7 +59,7 @@ def assumption_variables(scenario: Scenario) -> Tuple[Tuple[str, int], ...]:
 
 def assumption_clocks(scenario: Scenario) -> Tuple[str, ...]:
     """The clocks of the assumptions about times."""
-    numbered = enumerate(scenario.assumptions, start=1)
+    numbered = enumerate(scenario.assumed, start=1)
     return tuple(names.assumption_clock(number) for number, assumption in numbered if assumption.since)
 
 
@@ -124,6 +126,16 @@ def _at_most(automaton: Automaton, number: int, assumption: Union[AtMost, InAll]
             return [edge]
         times = [edge.plus((Test(count, k),), assign=((count, k + 1),)) for k in range(assumption.times)]
         return [*times, _when_broken(edge, number)]
+
+    return automaton.with_each(edges)
+
+
+def _most_open(automaton: Automaton, number: int, assumption: MostOpen, scenario: Scenario, *_: object) -> Automaton:
+    """There is no edge for one more than may be open."""
+    fewer = fewer_open(assumption, scenario)
+
+    def edges(edge: Edge) -> List[Edge]:
+        return [edge.plus(fewer), _when_broken(edge, number)] if edge.sent == assumption.event.name else [edge]
 
     return automaton.with_each(edges)
 
@@ -263,5 +275,6 @@ _KEPT: Mapping[Type[Assumption], Callable[[Automaton, int, Any, Scenario, Condit
     ThereBy: _there_by,
     NeverAt: _never_at,
     NeverHolds: _never_holds,
+    MostOpen: _most_open,
 }
 """By the kind of an assumption, with its number, the automaton of an agent that keeps to it."""

@@ -32,7 +32,7 @@ def who_awaited(automaton: str, scenario: Scenario) -> str:
     symbol = Symbol.of(automaton)
     if symbol.role is not Role.AWAITED:
         return ""
-    assumption = scenario.assumptions[int(symbol.parts[0]) - 1]
+    assumption = scenario.assumed[int(symbol.parts[0]) - 1]
     return assumption.agent.name if isinstance(assumption, Reaches) else ""
 
 

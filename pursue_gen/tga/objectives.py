@@ -16,6 +16,7 @@ from pursue_gen.language.scenario import (
     Patrol,
     Pause,
     Reach,
+    Request,
     Respond,
     Safety,
     Scenario,
@@ -28,6 +29,7 @@ from pursue_gen.tga.apart import pause_automaton
 from pursue_gen.tga.endurance import endurance_automaton
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Objective, Sync, Test
 from pursue_gen.tga.patrols import patrol_automaton
+from pursue_gen.tga.requests import request_automaton
 from pursue_gen.tga.responses import respond_automaton
 
 Happened = Mapping[str, str]
@@ -162,5 +164,6 @@ _WITH_CLOCK: Mapping[Type[Safety], Callable[[Any, Surroundings, int], Automaton]
     Endurance: endurance_automaton,
     Pause: pause_automaton,
     Escort: respond_automaton,
+    Request: request_automaton,
 }
 """What makes the automata in which time runs, for each kind of objective that has one."""

@@ -9,7 +9,6 @@ from pursue_gen.language.clauses import Domains
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import Agent, Patrol, Reaches, Scenario
-from pursue_gen.language.symbols import Role
 from pursue_gen.tga.agents import Surroundings
 from pursue_gen.tga.endurance import batteries_by_time
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
@@ -55,7 +54,7 @@ def turns(scenario: Scenario) -> Tuple[Tuple[str, int], ...]:
 def _turn(patrol: Patrol, scenario: Scenario) -> str:
     """The variable of a patrol in order: it has the name of the first automaton of its statement."""
     first = next(number for number, each in enumerate(scenario.safety) if each.span == patrol.span)
-    return Role.SAFETY_TURN(names.safety_objective(first))
+    return names.safety_turn(first)
 
 
 def _begun(patrol: Patrol, scenario: Scenario) -> int:

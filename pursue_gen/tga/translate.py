@@ -23,6 +23,7 @@ from pursue_gen.tga.objectives import reach_automaton, safety_automaton, unlocki
 from pursue_gen.tga.own_turns import bound, own_turns
 from pursue_gen.tga.patrols import arrivals, awaited, turns
 from pursue_gen.tga.positions import positions
+from pursue_gen.tga.requests import request_variables
 from pursue_gen.tga.rules import rule_of
 from pursue_gen.tga.states import finding_automata, first_value, found_channels, states_automaton
 
@@ -53,7 +54,7 @@ def translate(scenario: Scenario) -> Network:
     variables = _variables(scenario, codes.pois) + _busy(around) + conditions.variables()
     variables += assumption_variables(scenario) + turns(scenario)
     variables += tuple((turn.variable, 0) for turn in own)
-    variables += pause_variables(scenario)
+    variables += (*pause_variables(scenario), *request_variables(scenario))
     variables += battery_variables(scenario) + load_variables(scenario)
     network = Network(_clocks(scenario), variables, _channels(scenario), tuple(automata))
     _check_names(network)

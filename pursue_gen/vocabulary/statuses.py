@@ -10,7 +10,7 @@ from typing import Iterator, List, Tuple
 from pursue_gen.language import network_names as names
 from pursue_gen.language.batteries import levels
 from pursue_gen.language.loads import carriers, load_words
-from pursue_gen.language.scenario import Pause, Scenario
+from pursue_gen.language.scenario import Pause, Request, Scenario
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.tga.counts import counted
 from pursue_gen.tga.network import Automaton, Network
@@ -79,7 +79,7 @@ def _own(scenario: Scenario, network: Network) -> Iterator[Status]:
 
 
 def _assumptions(scenario: Scenario) -> Iterator[Status]:
-    for number, assumption in enumerate(scenario.assumptions, start=1):
+    for number, assumption in enumerate(scenario.assumed, start=1):
         holds = {"1": "assumed", "0": "broken: not assumed any more"}
         yield Status(names.assumption(number), assumption.clause, holds)
         label, done = assumption.counted
@@ -87,10 +87,22 @@ def _assumptions(scenario: Scenario) -> Iterator[Status]:
             yield Status(names.assumption_count(number), label, dict(done))
 
 
+def _turns_of(request: Request, name: str) -> Iterator[Status]:
+    """What the variables of a statement say of those that may be open at once."""
+    if request.number == 0:
+        places = [each.which for each in request.each]
+        free = {str(k): f"the next one is {which}" for k, which in enumerate(places)}
+        yield Status(Role.SAFETY_TURN(name), request.text, {**free, str(len(places)): "no more may come"})
+        oldest = {str(k): f"next to be answered: {which}" for k, which in enumerate(places)}
+        yield Status(Role.SAFETY_OLDEST(name), request.text, oldest)
+
+
 def _objectives(scenario: Scenario, network: Network) -> Iterator[Status]:
     variables = {name for name, _ in network.variables}
     for name, objective in stated(scenario).items():
-        if objective.order and names.rule_turn(name) in variables:
+        if isinstance(objective, Request):
+            yield from _turns_of(objective, name)
+        elif objective.order and names.rule_turn(name) in variables:
             following = {str(k): f"next: {scenario.shown(place)}" for k, place in enumerate(objective.order)}
             yield Status(names.rule_turn(name), objective.text, following)
         if isinstance(objective, Pause):

@@ -106,7 +106,7 @@ def words_of(scenario: Scenario, network: Network) -> Words:
     clocks: Dict[str, str] = {names.agent_clock(each.name): f"{each.shown}'s last step" for each in scenario.agents}
     objectives = stated(scenario)
     clocks.update((clock_of(name), each.words.since) for name, each in objectives.items())
-    for number, assumption in enumerate(scenario.assumptions, start=1):
+    for number, assumption in enumerate(scenario.assumed, start=1):
         clocks[names.assumption_clock(number)] = assumption.since
     clocks = {clock: clocks.get(clock, "the start") for clock in network.clocks}
     texts = {each.of: each.texts for each in statuses(scenario, network)}

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.scenario import Respond, Scenario
+from pursue_gen.language.scenario import Request, Respond, Scenario
 from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
@@ -44,7 +44,7 @@ def model_data(network: Network, objective: Objective, scenario: Scenario, react
         data["ends"] = inline({**after, "answered": end.answered})
     if scenario.labels:
         data["labels"] = inline(scenario.labels)
-    if scenario.assumptions:
+    if scenario.assumed:
         data["assumptions"] = [inline(each) for each in _assumptions(scenario, network)]
     return data
 
@@ -55,7 +55,7 @@ def _format(has_partners: bool, scenario: Scenario, objective: Objective) -> int
         return 5
     if scenario.ends:
         return 4
-    return 3 if has_partners else 2 if scenario.assumptions or _has_several(objective) else 1
+    return 3 if has_partners else 2 if scenario.assumed or _has_several(objective) else 1
 
 
 def _promises(scenario: Scenario) -> Dict[str, Any]:
@@ -67,13 +67,13 @@ def _promises(scenario: Scenario) -> Dict[str, Any]:
     for name, each in stated(scenario).items():
         found[name] = {"says": each.text + each.words.which}
         if each.words.kept:
-            found[name].update({"kept": each.words.kept, "answered": isinstance(each, Respond)})
+            found[name].update({"kept": each.words.kept, "answered": isinstance(each, (Request, Respond))})
     return {"promises": found}
 
 
 def _assumptions(scenario: Scenario, network: Network) -> Iterator[Dict[str, str]]:
     """The variable of each assumption, its clock where it has one, and what it says."""
-    for place, assumption in enumerate(scenario.assumptions, start=1):
+    for place, assumption in enumerate(scenario.assumed, start=1):
         clock = names.assumption_clock(place)
         timed = {"clock": clock} if clock in network.clocks else {}
         yield {"variable": names.assumption(place), **timed, "says": assumption.clause}

@@ -127,6 +127,15 @@ def test_robots_are_a_group_that_is_not_declared() -> None:
     ]  # fmt: skip
 
 
+def test_a_rule_names_one_of_a_group_of_events_or_each_of_them() -> None:
+    text = HOTEL + 'event "load" location hall\nagent "eve" controllable location hall can_do load\n'
+    said = 'rule "trip" for each robot: load before any of look of rooms\n'
+    written = 'rule "trip" for each robot: load before (look_room1 or look_room2 or look_room3)\n'
+    assert meaning(text + said) == meaning(text + written)
+    assert meaning(text + said.replace("any of", "all of")) == meaning(text + written.replace(" or ", " and "))
+    assert said in format_text(text + said, "hotel.pur")
+
+
 def test_a_group_lists_what_is_of_another_one() -> None:
     text = HOTEL + 'group "looks": look of rooms\nagent "eve" controllable location hall can_do looks\n'
     story = parse(text, "hotel.pur")

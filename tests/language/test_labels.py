@@ -51,7 +51,7 @@ def test_people_read_labels_and_the_network_has_names() -> None:
         "a shelf, 'high'", "Porter 1", "other"
     )
     assert objective_words(scenario) == [
-        "Whenever ring the bell happens, fetch <it> happens within 30 units.",
+        "Whenever ring the bell happens, fetch <it> happens within 30 units, once for all that come before it.",
         "It never holds that a guest is at a shelf, 'high' and Porter 1 is not at a shelf, 'high'.",
         "Porter 1 visits a shelf, 'high' and front desk in this order, each at least every 40 units.",
     ]

@@ -171,6 +171,7 @@ def test_robots_are_those_that_are_controllable_and_not_human(kinds: List[str]) 
         ("objective: avoid guest at all of rooms", "PML413", 27, "`all of` stands behind `at`", "at any of"),
         ("objective: avoid any of crew doing none of jobs", "PML413", 36, "`none of` stands behind", "doing any of"),
         ("objective: cart1 never_with guest at any of rooms", "PML411", 38, "`any of` stands in conditions", "as in"),
+        ('rule "one": load before none of jobs', "PML411", 25, "`none of` stands in conditions only", "for each"),
         ("objective: avoid none of rooms", "PML411", 18, "`none of` stands in", "any of carts at door"),
         ("objective: avoid crew at any of rooms", "PML409", 18, "crew is a group", "any of crew"),
         ("objective: avoid guest at rooms", "PML409", 27, "rooms is a group", "any of rooms"),

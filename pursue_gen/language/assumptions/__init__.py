@@ -8,6 +8,7 @@ from pursue_gen.language.assumptions.at_most import AtMost
 from pursue_gen.language.assumptions.base import AboutOne, Assumption, Departure
 from pursue_gen.language.assumptions.in_all import InAll
 from pursue_gen.language.assumptions.leaves import Leaves
+from pursue_gen.language.assumptions.most_open import MostOpen
 from pursue_gen.language.assumptions.never_at import NeverAt
 from pursue_gen.language.assumptions.never_holds import NeverHolds
 from pursue_gen.language.assumptions.not_before import NotBefore
@@ -17,8 +18,8 @@ from pursue_gen.language.assumptions.there_by import ThereBy
 from pursue_gen.language.assumptions.waits import Waits
 
 __all__ = [
-    "AboutOne", "Assumption", "AtMost", "Departure", "InAll", "Leaves", "NeverAt", "NeverHolds", "NotBefore", "Reaches",
-    "Stays", "ThereBy", "Waits",
+    "AboutOne", "Assumption", "AtMost", "Departure", "InAll", "Leaves", "MostOpen", "NeverAt", "NeverHolds",
+    "NotBefore", "Reaches", "Stays", "ThereBy", "Waits",
 ]  # fmt: skip
 """Parts of scenarios: `language.scenario` hands them on."""
 
@@ -26,7 +27,7 @@ KINDS: Mapping[str, Type[Assumption]] = {
     "at_most": AtMost, "not_before": NotBefore, "waits": Waits, "leaves": Leaves, "stays": Stays,
     "reaches": Reaches, "there_by": ThereBy, "never_at": NeverAt, "never_holds": NeverHolds, "in_all": InAll,
 }  # fmt: skip
-"""The kinds of assumptions, by their rules in the grammar."""
+"""The kinds of assumptions, by their rules in the grammar; `MostOpen` stands behind an objective."""
 
 NUMBERED: Mapping[str, Type[Assumption]] = {word.upper(): kind for kind in KINDS.values() for word in kind.numbers}
 """A kind of assumption with a number, by the token of the word before it."""

@@ -15,17 +15,19 @@ from pursue_gen.language.objectives.never_with import NeverWith
 from pursue_gen.language.objectives.patrol import Patrol
 from pursue_gen.language.objectives.pause import Pause
 from pursue_gen.language.objectives.reach import Reach
+from pursue_gen.language.objectives.request import Request
 from pursue_gen.language.objectives.respond import Respond
 
 __all__ = [
     "Always", "Avoid", "Endurance", "Escort", "GivenUp", "NeverWith", "Patrol", "Pause", "PlaceHolds", "Reach",
-    "Respond", "Safety", "StatedObjective", "WayHolds",
+    "Request", "Respond", "Safety", "StatedObjective", "WayHolds",
 ]  # fmt: skip
 """Parts of scenarios: `language.scenario` hands them on."""
 
 KINDS: Mapping[str, Type[Safety]] = {
     "respond": Respond, "avoid": Avoid, "always": Always, "never_with": NeverWith, "patrol": Patrol,
     "place_holds": PlaceHolds, "way_holds": WayHolds, "pause": Pause, "escort": Escort,
+    "request": Request,
 }  # fmt: skip
 """The kinds of what always holds, by their rules in the grammar."""
 

@@ -41,7 +41,11 @@ class Respond(Safety):
     )
     note: ClassVar[str] = "or conditions: if bot1 at a then open is_true within 20"
     own_words: ClassVar[Tuple[Word, ...]] = (
-        Word("if", "After this event, or when this condition comes to hold, there has to be an answer."),
+        Word(
+            "if",
+            "After this event, or when this condition comes to hold, there has to be an answer: one for all that come "
+            "before it; with at_most 3 open behind it each event has an answer of its own.",
+        ),
         Word("then", "The event that has to follow, or the condition that has to hold at some moment."),
         Word("within", "How many units of time later the answer must have come."),
     )

@@ -211,8 +211,11 @@ def _words(place: _Place, expected: FrozenSet[str], grouped: bool) -> Iterator[C
     span = (place.start, place.end)
     names_hide = set(MAY_BE_NAMES) if "WORD" in expected else set()
     kinds = kinds_behind(place.behind)
+    quantified = grouped and [token.type for token in body_of(place.behind)[:1]] == ["RULE"]
     if set(SUBJECTS) <= set(kinds) and place.behind[-1].type not in ("COMMA", "OF"):
         names_hide -= {"ANY", "NO", "AT_MOST", *(("ALL", "NONE") if grouped else ())}
+    elif quantified and kinds == ("event",):
+        names_hide -= {"ANY", "ALL"}
     elif grouped and condition_start(place.behind) is not None and place.behind[-1].type in ("AT", "DOING"):
         names_hide.discard("ANY")
     elif (
@@ -229,8 +232,9 @@ def _words(place: _Place, expected: FrozenSet[str], grouped: bool) -> Iterator[C
         names_hide.discard("AT_MOST")
     if place.behind[-1].type == "BY":
         names_hide.discard("ANY")
-    among = condition_start(place.behind) is not None and place.behind[-1].type in ("ANY", "ALL", "NONE")
-    if grouped and (among or [token.type for token in place.behind[-2:]] == ["BY", "ANY"]):
+    quantified = quantified or (grouped and condition_start(place.behind) is not None)
+    by_any = grouped and [token.type for token in place.behind[-2:]] == ["BY", "ANY"]
+    if by_any or (quantified and place.behind[-1].type in ("ANY", "ALL", "NONE")):
         yield Completion("of", "of", "OF", "word", *span, about=MEANINGS["OF"])
     for token, word in KEYWORDS.items():
         if token == "TOGETHER" and "COLLABORATIVE" in expected:

@@ -75,8 +75,8 @@ def opening(session: Session) -> Tuple[str, ...]:
     setup = session.setup
     wants = (f"{setup.scenario.name}. What is wanted:", *(f"  {wish}" for wish in objective_words(setup.scenario)))
     wants += tuple(f"  ({sentence}.)" for sentence in promise_words(setup.scenario))
-    if setup.scenario.assumptions:
-        wants += ("What is assumed of others:", *(f"  {a.clause}." for a in setup.scenario.assumptions))
+    if setup.scenario.assumed:
+        wants += ("What is assumed of others:", *(f"  {a.clause}." for a in setup.scenario.assumed))
     if isinstance(session.game, StrategyPlay):
         plays = f"a strategy of {session.game.advisor.size} blocks plays the robots."
         first = ("The robots can see to it, whatever others do.", f"You play all other agents, {plays}")

@@ -226,7 +226,7 @@ class _Checker:
         """The state before with the assumptions broken that are broken in the next one; each of them is reported."""
         broken = newly_broken(before.values, state.values)
         for name in broken:
-            assumption = self._game.scenario.assumptions[int(Symbol.of(name).parts[0]) - 1]
+            assumption = self._game.scenario.assumed[int(Symbol.of(name).parts[0]) - 1]
             self._report(WORLD, "assumption", state, f"an assumption is broken: {assumption.clause}")
         return before._replace(values={**before.values, **dict.fromkeys(broken, 0)}) if broken else before
 

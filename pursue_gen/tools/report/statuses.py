@@ -29,7 +29,7 @@ def holding(recording: Recording, condition: Condition) -> Tuple[Stay, ...]:
 def broken(recording: Recording) -> Tuple[Tuple[str, Stay], ...]:
     """The assumptions that were broken, in words, and since when."""
     found: List[Tuple[str, Stay]] = []
-    for number, assumption in enumerate(recording.scenario.assumptions, start=1):
+    for number, assumption in enumerate(recording.scenario.assumed, start=1):
         variable = names.assumption(number)
         changes = ((step.at, str(step.values.get(variable, 1))) for step in recording.steps)
         found += [(assumption.clause, stay) for stay in lasting(recording, changes) if stay.what == "0"]

@@ -39,7 +39,7 @@ def section(
     values: Dict[str, Any] = {
         "explain": explain,
         "wanted": [*objective_words(scenario), *end_words(scenario)],
-        "assumed": [each.clause for each in scenario.assumptions],
+        "assumed": [each.clause for each in scenario.assumed],
         "won": won,
         "within": "" if won is None or won.within is None else words_for(won.within, scenario.unit),
         "lost": lost,

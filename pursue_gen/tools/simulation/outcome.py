@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Mapping, Optional, Tuple
 
-from pursue_gen.tools.simulation.promises import Duty
+from pursue_gen.tools.simulation.open_requests import Duty
 
 GOAL, SAFE, HELD, FAILED = "goal", "safe", "held", "failed"
 """How missions end: goal reached; safe to the end; still holding at the end; and what must never be. Beside these

@@ -6,32 +6,28 @@ lost only where an objective is broken. The batteries of robots are never empty 
 
 from __future__ import annotations
 
-from typing import Dict, FrozenSet, List, NamedTuple, Optional, Set, Tuple
+from typing import Dict, FrozenSet, List, Optional, Set, Tuple
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import EventOrCondition
 from pursue_gen.language.network_names import going, has_happened
 from pursue_gen.language.objectives.base import Breaks
-from pursue_gen.language.scenario import Endurance, Ref, Safety, Scenario
+from pursue_gen.language.objectives.request import is_further
+from pursue_gen.language.scenario import Endurance, Ref, Request, Safety, Scenario
 from pursue_gen.tools.simulation.charges import Charges
 from pursue_gen.tools.simulation.meaning import holds
+from pursue_gen.tools.simulation.open_requests import Duty, OpenRequests
 from pursue_gen.tools.simulation.recorder import EPSILON
 from pursue_runtime.locations import is_action, is_under_way, place_of
 from pursue_runtime.state import LOST, WON, SystemState
 
 
-class Duty(NamedTuple):
-    """How often an objective was called upon in a mission, and how many time units its latest answer took; None where
-    there was none."""
-
-    calls: int = 0
-    latest: Optional[float] = None
-
-
 def duties_of(scenario: Scenario) -> Tuple[Tuple[int, Safety], ...]:
-    """The objectives that are called upon, each time with a limit for the answer, with their numbers."""
-    return tuple((k, each) for k, each in enumerate(scenario.safety) if each.limit is not None)
+    """The objectives that are called upon, each time with a limit for the answer, with their numbers; of requests the
+    first of their statement."""
+    numbered = enumerate(scenario.safety)
+    return tuple((k, each) for k, each in numbered if each.limit is not None and not is_further(each))
 
 
 class Promises:
@@ -62,6 +58,7 @@ class Promises:
         self._seen: Dict[str, Tuple[float, str]] = {}
         by_time = {k: each for k, each in enumerate(scenario.safety) if isinstance(each, Endurance)}
         self._charges = Charges(by_time, self._places)
+        self._open = OpenRequests(scenario)
         self._begun: Optional[float] = None
         self._seq = 0
         self._called: Dict[int, float] = {}
@@ -88,6 +85,7 @@ class Promises:
         self._seq = max(self._seq, state.seq)
         visited = self._visited(state)
         late = [number for number, safety in enumerate(self._scenario.safety) if self._is_empty(number, safety, latest)]
+        late += self._open.on_event(event, at, latest)
         self._charges.on_state(state.locations, at)
         for number, safety in enumerate(self._scenario.safety):
             too_soon = self._is_too_soon(self._how[number], word, at, latest) and state.status != WON
@@ -118,6 +116,7 @@ class Promises:
                 self._duties[number] = Duty(calls + 1, latest)
             elif number not in self._since and number in self._called:
                 self._duties[number] = Duty(calls, max(latest or 0.0, at - self._called.pop(number)))
+        self._duties.update(self._open.duties)
 
     def _check_batteries(self, state: SystemState, at: float) -> None:
         """Takes from each battery what its robot has used since the state before, or adds what it has recharged."""
@@ -139,6 +138,8 @@ class Promises:
     def _breaks(self, number: int, safety: Safety, event: str, latest: float, state: SystemState) -> bool:
         """True if the objective is broken now."""
         breaks = self._how[number]
+        if isinstance(safety, Request):
+            return False
         if isinstance(safety, Endurance):
             since_full = self._charges.since(number)
             self._since.pop(number, None)
@@ -190,12 +191,12 @@ class Promises:
         self._was_broken = broken and not lost
 
     def _check_assumed(self, state: SystemState) -> None:
-        """What is assumed never to hold does not, until a mission has seen it broken."""
-        for number, assumption in enumerate(self._scenario.assumptions, start=1):
+        """What is assumed never to hold, or to come, does not, until a mission has seen it broken."""
+        for number, assumption in enumerate(self._scenario.assumed, start=1):
             relied_on = state.values.get(names.assumption(number), 0)
-            if relied_on and any(
-                holds(each, self._scenario, state.locations, state.values) for each in assumption.conditions
-            ):
+            conditions = assumption.conditions
+            holding = (holds(each, self._scenario, state.locations, state.values) for each in conditions)
+            if relied_on and (any(holding) or number in self._open.too_many):
                 self.problems.append(f"state {state.seq}: not so that {assumption.clause}, but not broken")
 
     def _is(self, what: Optional[EventOrCondition], event: str, state: SystemState) -> bool:

@@ -148,6 +148,9 @@ def test_what_is_wrong_with_them_is_explained_too() -> None:
         ("objective: avoid none of ", {"robots", "rooms"}, {"bob"}),
         ("objective: avoid bob at ", {"any", "hall"}, {"rooms", "none"}),
         ("objective: avoid bob at any ", {"of"}, set()),
+        ('rule "trip": call_room1 before ', {"any", "all"}, {"none", "rooms"}),
+        ('rule "trip": call_room1 before all ', {"of"}, set()),
+        ('rule "trip": call_room1 before all of ', {"rooms"}, {"bob"}),
     ],
 )
 def test_what_is_proposed(line: str, offered: "set[str]", not_offered: "set[str]") -> None:

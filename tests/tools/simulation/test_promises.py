@@ -11,8 +11,9 @@ from pursue_gen.language import parse
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.tools.simulation.mission import simulate_mission
+from pursue_gen.tools.simulation.open_requests import Duty
 from pursue_gen.tools.simulation.outcome import Settings
-from pursue_gen.tools.simulation.promises import Duty, Promises
+from pursue_gen.tools.simulation.promises import Promises
 from pursue_gen.tools.simulation.stage import stage_of
 from pursue_gen.workspace import Options
 from pursue_runtime.state import SystemState
@@ -51,6 +52,7 @@ LOAD, WAVE, FALL = "loadDONE", "wave", "fall"
 ONE = "reach_objective: do load"
 BOTH = "reach_objective: do load and wave after 2 within 9"
 DUTY = "objective: if fall then wave within 4"
+REQUESTS = "objective: if fall then wave within 4, at_most 2 open"
 ROOM = "objective: place lab holds 1 agent"
 WAY = "objective: way lab to hall holds 1 agent"
 APART = "objective: bot never_with kid"
@@ -70,6 +72,29 @@ def test_how_often_an_objective_is_called_upon_is_counted_with_its_latest_answer
     gone = [(1.0, "bot_hall2lab", "going_hall_to_lab", "lab"), (6.0, "bot_lab2hall", "hall", "lab")]
     (round_,) = watched(patrol, "running", *gone).duties
     assert (round_.calls, round_.latest) == (1, pytest.approx(5.0))
+
+
+def test_requests_are_counted_one_by_one_and_the_oldest_is_answered() -> None:
+    asked = [(1.0, FALL, "hall", "lab"), (2.0, FALL, "hall", "lab"), (4.5, WAVE, "lab", "lab")]
+    (duty,) = watched(REQUESTS, "running", *asked).duties
+    assert (duty.calls, duty.latest) == (2, pytest.approx(3.5))
+    assert not ended(REQUESTS, "running", *asked, (5.5, WAVE, "lab", "lab"))
+    assert not ended(REQUESTS, "lost", *asked, (6.0, "bot_lab2hall", "going_lab_to_hall", "lab"))
+    early = ended(REQUESTS, "lost", *asked, (5.5, "bot_lab2hall", "going_lab_to_hall", "lab"))
+    assert early == ["the mission is lost, but no objective is broken"]
+
+
+def test_one_more_than_may_be_open_is_a_problem_where_that_is_still_assumed() -> None:
+    def more(assumed: int) -> List[str]:
+        promises = Promises(parse(PLACES + REQUESTS, "x.pur", "x"))
+        for number, event in enumerate(["", FALL, FALL, FALL], 1):
+            place, values = {"bot": "hall", "kid": "lab"}, {"assume1": assumed}
+            state = SystemState(number, float(number), place, values, {}, event, "kid", "running")
+            promises.on_state(state, float(number))
+        return promises.problems
+
+    assert more(1) == ["state 4: not so that fall happens only while fewer than 2 wait for wave, but not broken"]
+    assert more(0) == []
 
 
 @pytest.mark.parametrize(
