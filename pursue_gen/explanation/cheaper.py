@@ -57,7 +57,7 @@ def _forms(scenario: Scenario) -> Iterator[Tuple[Form, Scenario]]:
 
 
 def _named(scenario: Scenario, robot: Agent) -> Iterator[Tuple[Form, Scenario]]:
-    """This robot in place of any robot, in one statement: who keeps that, keeps the promise as it stands."""
+    """This robot in place of any robot, or of several, in one statement: who keeps that, keeps the promise, too."""
     ref = Ref(robot.name, robot.span)
     for span in dict.fromkeys(each.span.written for each in scenario.safety):
         statement = [each for each in scenario.safety if each.span.written == span]
@@ -67,7 +67,10 @@ def _named(scenario: Scenario, robot: Agent) -> Iterator[Tuple[Form, Scenario]]:
             meaning = "other robots do not count there then, but the promise is kept as it stands, too"
             text = named[0].statement(named).text
             if statement[0].span.member:
-                text = statement_text(scenario.text, span).replace("any robot", robot.name)
+                written = statement_text(scenario.text, span)
+                if "any robot" not in written:  # some robots, or a group of them
+                    continue
+                text = written.replace("any robot", robot.name)
             yield Form(span.line, text, meaning), replace(scenario, safety=safety)
 
 

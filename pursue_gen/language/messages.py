@@ -33,6 +33,16 @@ _MEANT = {
     "never": "never_with", "is": "is_true", "to": "and", "then": "before", "starts": "location",
 }  # fmt: skip
 """Other words that people try, and the word of the language they most likely mean."""
+_ESCORT = "escort visitor at rooms within 5 by bot1, where rooms may be a group of all places"
+_MEETING = (
+    "two meet in a collaborative event, which one can_do and the other reacts_to: reach_objective: do meet within 60, "
+    "or objective: if call then meet within 60"
+)
+_SAID_OTHERWISE = {
+    "follow": f"to follow somebody write {_ESCORT}", "follows": f"to follow somebody write {_ESCORT}",
+    "meet": _MEETING, "meets": _MEETING,
+}  # fmt: skip
+"""Words with which people begin an objective that is said in another way, and how."""
 
 
 def kind_of(chunk: Sequence[Token]) -> str:
@@ -131,6 +141,10 @@ def _hint(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     if token.type == "NAME" and "WORD" in expected:
         name = proposal(text.strip('"'), RESERVED)
         return f"quotes stand only where a name is declared: write {shown(name)} without them"
+    if statement in ("OBJECTIVE", "REACH_OBJECTIVE"):
+        otherwise = _otherwise(chunk, index)
+        if otherwise:
+            return otherwise
     if statement == "OBJECTIVE" and token.type == "DO":
         return "to have something done write reach_objective: do …"
     if token.type in KEYWORDS and "WORD" in expected and statement != "FOR":
@@ -152,6 +166,21 @@ def _hint(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     if token.type == "COLON" and "COLON" not in expected:
         return f"delete the colon behind {chunk[index - 1]}; {_form(chunk)}"
     return _meant(chunk, index, expected)
+
+
+def _otherwise(chunk: Sequence[Token], index: int) -> str:
+    """How an objective is written that has been said in another way; "" where nothing is known of it."""
+    token, before, kinds = chunk[index], chunk[index - 1], [one.type for one in chunk]
+    for word in (token, before):
+        if word.type == "WORD" and str(word).lower() in _SAID_OTHERWISE:
+            return _SAID_OTHERWISE[str(word).lower()]
+    if "PATROL" in kinds and (token.type == "TWICE" or kinds[index : index + 2] == ["NUMBER", "TIMES"]):
+        return "write the time between two visits: twice in 60 is every 30"
+    if "BY" in kinds[:index] and token.type in ("COMMA", "AND") and {"PATROL", "ESCORT"} & {*kinds}:
+        return f"write or between them: by {before} or {''.join(chunk[index + 1 : index + 2])} is one of the two"
+    if "ESCORT" in kinds and token.type == "WITHIN" and before.type == "WORD":
+        return f"name the places: {_ESCORT}"
+    return ""
 
 
 def _with_comma(whole: str, rest: str) -> str:

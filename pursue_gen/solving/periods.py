@@ -68,8 +68,12 @@ def _every(text: str, span: Span, every: Number) -> Edit:
     """Writes the period into the statement of a patrol, before the word behind which the robots stand."""
     begin, end = Lines(text).of_span(span)
     words = Document(text[begin:end]).statements[0].tokens
-    *_, first, second, _ = without_owners(words)
-    by = next(n for n, word in enumerate(words) if word is (second if second.type == "BY" else first))  # by any robot
+    ahead = without_owners(words)[:-1]
+    while ahead[-1].type == "OR":  # by bot1 or bot2
+        ahead = ahead[:-2]
+    while ahead[-1].type in ("ANY", "OF"):  # by any robot, by any of guards
+        ahead = ahead[:-1]
+    by = next(n for n, word in enumerate(words) if word is ahead[-1])
     at = begin + end_of(words[by - 1])
     return Edit(at, at, f" every {written_time(every)}")
 

@@ -94,7 +94,7 @@ def test_a_scenario_says_its_times_as_they_were_written() -> None:
     ]
     assert [each.clause for each in scenario.assumptions] == [
         "guest waits 5 min between one call and the next",
-        "guest stays 90 to 20 min at each place",
+        "guest stays 90 s to 20 min at each place",
     ]
 
 

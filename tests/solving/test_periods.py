@@ -46,7 +46,14 @@ def period(scenario: Scenario) -> int:
     return found
 
 
-@pytest.mark.parametrize("objective", ["patrol gate, hall by any robot", "patrol gate, vault, hall in order by bot1"])
+@pytest.mark.parametrize(
+    "objective",
+    [
+        "patrol gate, hall by any robot",
+        "patrol gate, hall, vault by bot2 or bot1",
+        "patrol gate, vault, hall in order by bot1",
+    ],
+)
 def test_the_period_that_is_found_is_won_and_the_next_shorter_one_is_lost(objective: str) -> None:
     found = least_period(rooms(objective), DEFAULT)
     every = period(found)
