@@ -144,12 +144,12 @@ def _keeps_out(agent: Automaton, at: str, each: _Meeting, robot: Automaton) -> b
     """True if the robot is not where it must not meet the agent once that has been there, and has come from there:
     it would be back before a robot is gone that sets off for it meanwhile. (Where a robot sets off at its arrival,
     before it has rested, it stays.)"""
-    times = [_past(robot, edge, each.location) for edge in robot.edges]
-    past = min((time for time in times if time), default=0)
     there = 0 if each.other == agent.initial else _soonest(agent, agent.initial, each.other)
     back = _soonest(agent, each.other, at) + _rest(agent, at) + _soonest(agent, at, each.other)
-    stays = agent.longest.get(each.other, math.inf)
-    return there < math.inf and back < past and _rest(agent, each.other) + past <= stays
+    stays = agent.longest.get(each.other, math.inf) - _rest(agent, each.other)
+    ends = {end.source for end in robot.edges if end.target == each.location and end.source in robot.stays}
+    times = [_past(robot, e, each.location) for e in robot.edges if e.target in ends and e.source != each.location]
+    return there < math.inf and all(back < past <= stays for past in times)
 
 
 def _rest(agent: Automaton, place: str) -> Number:
