@@ -23,6 +23,9 @@ def random_wishes(seed: int, size: Size) -> str:
     kinds = draw.sample(forms, draw.randint(1, MOST))
     if draw.randint(0, 4) == 0:  # what takes time may be broken off
         text = re.sub(r"(duration \d+)$", r"\1 may_stop", text, flags=re.MULTILINE)
+    if '"pick' in text and draw.randint(0, 1) == 0:  # what is delivered is carried
+        text = 'thing "box"\n' + re.sub(r'^(event "pick.*)$', r"\1 takes box", text, flags=re.MULTILINE)
+        text = re.sub(r'^(event "drop.*)$', r"\1 gives box", text, flags=re.MULTILINE)
     return text + "".join(f"{form.format(**told)}\n" for form in kinds)
 
 
@@ -67,6 +70,7 @@ _FORMS: Tuple[str, ...] = (
     "objective: way {way} holds 1 robot",
     "objective: at_least {t10} between {done}",
     "objective: at_least {t4} between {done} and {also}",
+    "objective: if {called} then {done} within {t80}, at_most 2 open",
     "objective: escort {person} at {room} within {t30} by {who}",
     "objective: escort {person} at {room}, {other} within {t30} by any robot",
     "objective: patrol {room}, {place} in order every {t80} by {robot}",
