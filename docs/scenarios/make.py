@@ -156,7 +156,9 @@ def _verdict_part(found: Facts, number: int, pictures: Dict[str, str]) -> str:
     command = f"    pursue-gen solve {file}"
     if found.won is None:
         periods = "".join(f" {text}" for text in periods_found(found.settled, won=False))
-        return f"**It cannot be done**: the others can always prevent it.{periods} {looked}.\n\n{command}"
+        others = any(not agent.controllable for agent in found.scenario.agents)
+        why = ": the others can always prevent it" if others else ", whatever the robots do"
+        return f"**It cannot be done**{why}.{periods} {looked}.\n\n{command}"
     count = sum(len(block.commands) for block in found.won.strategy.blocks)
     has = f"{looked}; the strategy has {count} commands, and a second program has proven it."
     if found.guarantee is None:
