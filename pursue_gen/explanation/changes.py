@@ -33,9 +33,9 @@ from pursue_gen.thresholds import narrowed
 _SHARE = 0.5
 """The part of what is left that one attempt may take. Measured on the third ecobot."""
 
-_GUESSED = 0.1
-"""The part of what is left that a strategy in shares, or by a policy, may take where there are several promises.
-Measured on a depot with three carts, and on a ward."""
+_SHARED, _GUESSED = 0.02, 0.1
+"""The part of what is left that a strategy in shares may take, or one by a policy where there is one robot, for several
+promises. Measured on a depot with three carts, a ward, and labs 9, 73 and 181."""
 
 _PROBES = (11, 19, 31, 63, 127, 255)
 """Where a search for a number that wins looks before the end of a long list: large ones take longer. Not measured."""
@@ -142,7 +142,8 @@ def _least(repair: Repair, scenario: Scenario, rules: Rules, budget: Budget) -> 
 
     def strategy_of(k: int) -> Optional[Strategy]:
         changed = repair.make(repair.values[k])
-        return _strategy(*((changed, rules) if isinstance(changed, Scenario) else (scenario, changed)), budget)
+        what = (changed, rules) if isinstance(changed, Scenario) else (scenario, changed)
+        return _strategy(*what, budget, repair.what in _TURNS[0])
 
     last = len(repair.values) - 1
     win: Optional[_Win] = None
@@ -188,15 +189,16 @@ def _price(change: Change) -> Tuple[int, Fraction]:
     return (0, large / small) if small else (1, large)
 
 
-def _strategy(scenario: Scenario, rules: Rules, budget: Budget) -> Optional[Strategy]:
-    """A strategy that wins the changed game, None where it is lost. Raises LimitHit."""
+def _strategy(scenario: Scenario, rules: Rules, budget: Budget, guessed: bool) -> Optional[Strategy]:
+    """A strategy that wins the changed game, None where it is lost. Raises LimitHit. `guessed`: also one in shares, or
+    by a policy."""
     network, objective = played(translate(scenario), rules), scenario_objective(scenario)
     if lost_to_a_stay(network, objective) is not None:
         return None
-    if not objective.reaches and len(promises(objective)) > 1:
-        limits = budget.part(_GUESSED)
-        how = network, objective, rules.reaction
-        if can_be_shared(network, objective):
+    if guessed and not objective.reaches and len(promises(objective)) > 1:
+        shared, how = can_be_shared(network, objective), (network, objective, rules.reaction)
+        limits = budget.part(_SHARED if shared else _GUESSED)
+        if shared:
             found = won_in_shares(*how, SolveOptions(limits), EFFORTS[:2])
         else:
             found = won_by_policy(*how, limits.work, SolveOptions(limits))
