@@ -6,6 +6,7 @@ Limits count work, states and zones, never seconds, so a game ends the same on e
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import Callable, Dict, List, Optional, Sequence, Union
 
 from pursue_gen.diagnostics import PursueError
@@ -189,11 +190,6 @@ def on_scenario(network: Network, objective: Objective, rules: Rules) -> Opinion
     found = Opinions()
     game, reaction = played(network, rules), rules.reaction
 
-    def whole() -> bool:
-        verdict = solve(game, objective, reaction, NativeEngine(), _SCENARIO, whole=True)
-        found.states = verdict.stats.discrete_states
-        return verdict.won
-
     def by_some(who: str, some: Optional[Found]) -> Verdict:
         return None if some is None else found.check(who, Solution(game, objective, some.strategy, reaction))
 
@@ -205,7 +201,7 @@ def on_scenario(network: Network, objective: Objective, rules: Rules) -> Opinion
     def no_rests() -> Verdict:
         return by_some(NO_RESTS, won_without_pauses(game, objective, reaction, _BY_SOME_WORK, SolveOptions()))
 
-    found.ask(WHOLE, whole)
+    found.ask(WHOLE, lambda: _in_one_piece(found, game, objective, reaction, _SCENARIO))
     found.ask(COMPOSED, composed)
     found.ask(NO_RESTS, no_rests)
     found.ask(FEW_CALLS, lambda: False if lost_to_few_calls(game, objective, reaction, SolveOptions()) else None)
@@ -224,11 +220,6 @@ def on_varied(network: Network, objective: Objective, rules: Rules) -> Optional[
     found = Opinions()
     game, reaction = played(network, rules), rules.reaction
 
-    def whole() -> bool:
-        verdict = solve(game, objective, reaction, NativeEngine(), _VARIED, whole=True)
-        found.states = verdict.stats.discrete_states
-        return verdict.won
-
     def apart() -> Verdict:
         options = SolveOptions(_ATTEMPTS)
         if objective.reaches:
@@ -240,9 +231,17 @@ def on_varied(network: Network, objective: Objective, rules: Rules) -> Optional[
         found.stages = bool(some.strategy.stages)
         return found.check(ATTEMPTS, Solution(game, objective, some.strategy, reaction), _VARIED_TWIN)
 
-    if found.ask(WHOLE, whole) is None and not found.faults:
+    one = found.ask(WHOLE, lambda: _in_one_piece(found, game, objective, reaction, _VARIED))
+    if one is None and not found.faults:
         return None
     found.ask(ATTEMPTS, apart)
     command = SolveOptions(most_work=_SCENARIO.work)
     found.ask(COMMAND, lambda: found.check(COMMAND, solved(network, objective, rules, command), _VARIED_TWIN))
     return found
+
+
+def _in_one_piece(found: Opinions, game: Network, objective: Objective, reaction: Fraction, limits: Limits) -> bool:
+    """The verdict on the whole game; its discrete states are noted."""
+    verdict = solve(game, objective, reaction, NativeEngine(), limits, whole=True)
+    found.states = verdict.stats.discrete_states
+    return verdict.won

@@ -15,7 +15,7 @@ MOST = 3
 
 def random_wishes(seed: int, size: Size) -> str:
     """The PuRSUE-ML of a lab scenario of this size, with one to three statements of the kinds that lab scenarios do
-    not have. Some of them have errors: where nobody calls, what callers do is said of nobody."""
+    not have; in some, what takes time may be broken off, or what is delivered is a thing. Some of them have errors."""
     cast, text = lab_scenario_with(seed, size)
     draw = Random(f"wishes {seed} {size}")
     told = {**_drawn(draw, cast, text), **{f"t{time}": draw.randint(time // 2, time * 2) for time in _TIMES}}

@@ -44,7 +44,10 @@ _PROBES = (11, 19, 31, 63, 127, 255)
 _IN_IDEAL = ("ends", "reaction")
 """Changes of the rules that the ideal game has too."""
 
-_TURNS = (("assumption", "control"), ("deadline", "within", "after"), ("game",), _IN_IDEAL)
+_WHO_PREVENTS = ("assumption", "control")
+"""Changes of what those do whom nobody controls."""
+
+_TURNS = (_WHO_PREVENTS, ("deadline", "within", "after"), ("game",), _IN_IDEAL)
 
 
 @dataclass(frozen=True)
@@ -143,7 +146,7 @@ def _least(repair: Repair, scenario: Scenario, rules: Rules, budget: Budget) -> 
     def strategy_of(k: int) -> Optional[Strategy]:
         changed = repair.make(repair.values[k])
         what = (changed, rules) if isinstance(changed, Scenario) else (scenario, changed)
-        return _strategy(*what, budget, repair.what in _TURNS[0])
+        return _strategy(*what, budget, repair.what in _WHO_PREVENTS)
 
     last = len(repair.values) - 1
     win: Optional[_Win] = None

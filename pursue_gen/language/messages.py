@@ -177,7 +177,7 @@ def _otherwise(chunk: Sequence[Token], index: int) -> str:
     if "PATROL" in kinds and (token.type == "TWICE" or kinds[index : index + 2] == ["NUMBER", "TIMES"]):
         return "write the time between two visits: twice in 60 is every 30"
     if "BY" in kinds[:index] and token.type in ("COMMA", "AND") and {"PATROL", "ESCORT"} & {*kinds}:
-        return f"write or between them: by {before} or {''.join(chunk[index + 1 : index + 2])} is one of the two"
+        return f"put `or` between them: by {before} or {''.join(chunk[index + 1 : index + 2])}"
     if "ESCORT" in kinds and token.type == "WITHIN" and before.type == "WORD":
         return f"name the places: {_ESCORT}"
     return ""
