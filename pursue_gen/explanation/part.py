@@ -81,8 +81,8 @@ def _without_events(scenario: Scenario) -> Scenario:
 
 def _pastimes(scenario: Scenario) -> Set[str]:
     """The events, rules aside, that only robots do, each alone, who take part in nothing else and have no battery; and
-    that change no state, take and give nothing, and are named in no
-    condition and by no objective."""
+    that change no state, take and give nothing, and are named in no condition and by no
+    objective."""
     charged = {battery.agent.name for battery in scenario.powered}
     busy = [a for a in scenario.agents if not a.controllable or a.reacts_to or a.name in charged]
     used = events_used(replace(scenario, rules=(), dependencies=(), agents=()))

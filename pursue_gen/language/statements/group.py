@@ -26,7 +26,7 @@ class Group(_WrittenOut):
     """Things of one kind. Statements that name it are written out before they are read."""
 
     own_words: ClassVar[Tuple[Word, ...]] = (
-        Word("group", "Things of one kind under one name: places, agents, events, states or things.", True),
+        Word("group", "Several of one kind under one name: places, agents, events, states or things.", True),
     )
     template: ClassVar[Template] = Template(
         'group {name="rooms"}: {members=room1, room2}', members=FILLINGS["POIs"]._replace(behind=("group",))
