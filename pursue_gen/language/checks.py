@@ -18,7 +18,7 @@ from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.numbers import MOST_DIGITS, exact, is_fine
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
-from pursue_gen.language.scenario import Agent, Poi, Request, Respond, Scenario
+from pursue_gen.language.scenario import Agent, Poi, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
 from pursue_gen.language.times import in_units, written_time
 from pursue_gen.language.tokens import shown
@@ -300,7 +300,7 @@ def _ends(scenario: Scenario) -> Iterator[Diagnostic]:
         elif scenario.reach:
             message = "a mission with a reach_objective ends when all of them are reached"
             yield error("PML330", message, end.span, "delete this line; for a deadline write within behind do")
-        elif end.answered and not any(isinstance(each, (Request, Respond)) for each in scenario.safety):
+        elif end.answered and not any(each.is_answered for each in scenario.safety):
             message = "nothing has to be answered: there is no objective with if and then"
             hint = "write mission ends after …, or add an objective: if e1 then e2 within 20"
             yield error("PML331", message, end.span, hint)

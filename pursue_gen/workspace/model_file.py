@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.scenario import Request, Respond, Scenario
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.partition.strategy_data import number
 from pursue_gen.partition.yaml_text import inline, yaml_text
@@ -67,7 +67,7 @@ def _promises(scenario: Scenario) -> Dict[str, Any]:
     for name, each in stated(scenario).items():
         found[name] = {"says": each.text + each.words.which}
         if each.words.kept:
-            found[name].update({"kept": each.words.kept, "answered": isinstance(each, (Request, Respond))})
+            found[name].update({"kept": each.words.kept, "answered": each.is_answered})
     return {"promises": found}
 
 

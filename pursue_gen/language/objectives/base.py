@@ -70,6 +70,8 @@ class StatedObjective(Written):
     """It stands behind those that stand in other statements, wherever its own one stands."""
     once: ClassVar[bool] = False
     """It is reached once, and its limit counts from the start; else each time that something becomes due."""
+    is_answered: ClassVar[bool] = False
+    """Somebody or something asks for it, and it has to be answered in time."""
 
     @property
     def full_text(self) -> str:

@@ -36,6 +36,7 @@ class Request(Safety):
     span: Span = NOWHERE
     optional: int = 0
     limited_by: ClassVar[str] = "deadline"
+    is_answered: ClassVar[bool] = True
 
     template: ClassVar[Template] = Template(
         "if {trigger:event=order} then {response:event=pack} within {deadline:time=120}, at_most {most:count=3} open"

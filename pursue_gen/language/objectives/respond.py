@@ -35,6 +35,7 @@ class Respond(Safety):
     span: Span = NOWHERE
     optional: int = 0
     limited_by: ClassVar[str] = "deadline"
+    is_answered: ClassVar[bool] = True
 
     template: ClassVar[Template] = Template(
         "if {trigger:event or condition=e1} then {response:event or condition=e2} within {deadline:time=20}"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Iterator, Mapping, Optional
 
 from pursue_gen.language.network_names import AT_RISK
-from pursue_gen.language.scenario import Request, Respond
 from pursue_gen.tga.objectives import clock_of, stated
 from pursue_gen.tools.replay.game import Game
 from pursue_gen.tools.replay.gaps import AROUND, OBSERVER
@@ -32,7 +31,7 @@ def wrong_end(
         if begun is None:
             begun = passed if end.answered else after
     for name, objective in stated(scenario).items():
-        due = isinstance(objective, (Request, Respond)) and last.locations[name] == AT_RISK
+        due = objective.is_answered and last.locations[name] == AT_RISK
         if begun is not None and due and passed - clocks[clock_of(name)] < begun - tolerance:
             yield f"its status is won, but {name} waits for an answer that was due when the end began"
 
