@@ -47,7 +47,8 @@ _IN_IDEAL = ("ends", "reaction")
 _WHO_PREVENTS = ("assumption", "control")
 """Changes of what those do whom nobody controls."""
 
-_TURNS = (_WHO_PREVENTS, ("deadline", "within", "after"), ("game",), _IN_IDEAL)
+_FIRST, _LAST = (_WHO_PREVENTS, ("deadline", "within", "after")), (("game",), _IN_IDEAL)
+"""What is tried before all else, and after it: no robot can play the ideal game."""
 
 
 @dataclass(frozen=True)
@@ -93,11 +94,16 @@ def findings(scenario: Scenario, rules: Rules, budget: Budget) -> Findings:
     won: Dict[int, _Win] = {}
     lost: Dict[int, str] = {}
     undecided: Dict[int, str] = {}
+    ideal = next((k for k, repair in enumerate(tried) if repair.what == "game"), None)
     # What says most comes first. Long lists come last: they make numbers larger, and larger games.
     for k in sorted(range(len(tried)), key=lambda k: (_turn(tried[k]), len(tried[k].values) > _PROBES[0], k)):
         repair = tried[k]
-        if repair.what in _IN_IDEAL and any(tried[n].what == "game" for n in lost):
-            lost[k] = repair.say(repair.values[-1])  # the ideal game is easier still
+        easier = ideal if repair.what in _IN_IDEAL else None
+        if easier in lost:
+            lost[k] = repair.say(repair.values[-1])
+            continue
+        if easier in undecided:
+            undecided[k] = repair.label
             continue
         try:
             win = _least(repair, scenario, rules, budget)
@@ -124,8 +130,9 @@ def findings(scenario: Scenario, rules: Rules, budget: Budget) -> Findings:
 
 
 def _turn(repair: Repair) -> int:
-    """What is tried before what: who prevents it, then which deadline would do, then how it is played."""
-    return next((turn for turn, some in enumerate(_TURNS) if repair.what in some), len(_TURNS))
+    """What is tried before what: who prevents it, then which deadline would do; how it is played comes last."""
+    turns = (*_FIRST, (), *_LAST)
+    return next((turn for turn, some in enumerate(turns) if repair.what in some), len(_FIRST))
 
 
 @dataclass(frozen=True)

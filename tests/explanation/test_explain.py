@@ -13,10 +13,11 @@ import pytest
 
 from benchmarks.lab_scenarios import lab_scenario
 from benchmarks.ordinary_families import errands_beside_a_visitor
-from pursue_gen.explanation.changes import Change
+from pursue_gen.explanation.changes import Change, findings
 from pursue_gen.explanation.explain import Explanation, as_json, explain, render
 from pursue_gen.language import parse
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, Rules, played
+from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
@@ -495,3 +496,10 @@ def test_what_would_keep_somebody_away_is_found_though_the_game_is_large() -> No
     found = explain(parse(DEPOT, "depot.pur", "depot"), DEFAULT, Limits(work=6_000_000))
     assert "assume: officer never at gate3" in [change.sentence for change in found.changes]
     assert [text for text in found.lost if "a deadline of" in text], "he may stay there for ever"
+
+
+def test_what_no_robot_can_play_takes_no_work_from_what_can_be_changed() -> None:
+    errands = parse(errands_beside_a_visitor(6), "errands.pur")
+    found = findings(errands, DEFAULT, Budget(Limits(work=12_000_000)))
+    assert "water_room1 lasting 1 instead of 3" in [change.sentence for change in found.changes]
+    assert {"ends chosen by the plan", "ends chosen by the plan and no reaction"} <= set(found.undecided)
