@@ -18,12 +18,8 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.times import Time, like, written_time
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.cut_off import lost_to_a_stay
-from pursue_gen.solving.efforts import EFFORTS
-from pursue_gen.solving.lost_promises import promises
-from pursue_gen.solving.options import SolveOptions
-from pursue_gen.solving.policies import won_by_policy
+from pursue_gen.solving.decided import strategy_of
 from pursue_gen.solving.rules import Rules, played
-from pursue_gen.solving.shares import can_be_shared, won_in_shares
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.strategy import Strategy
@@ -33,9 +29,9 @@ from pursue_gen.thresholds import narrowed
 _SHARE = 0.5
 """The part of what is left that one attempt may take. Measured on the third ecobot."""
 
-_SHARED, _GUESSED = 0.02, 0.1
-"""The part of what is left that a strategy in shares may take, or one by a policy where there is one robot, for several
-promises. Measured on a depot with three carts, a ward, and labs 9, 73 and 181."""
+_SHARED = 0.02
+"""The part of what is left that a strategy in shares may take. Measured on a depot with three carts, and labs 9, 73 and
+181."""
 
 _PROBES = (11, 19, 31, 63, 127, 255)
 """Where a search for a number that wins looks before the end of a long list: large ones take longer. Not measured."""
@@ -205,14 +201,5 @@ def _strategy(scenario: Scenario, rules: Rules, budget: Budget, guessed: bool) -
     network, objective = played(translate(scenario), rules), scenario_objective(scenario)
     if lost_to_a_stay(network, objective) is not None:
         return None
-    if guessed and not objective.reaches and len(promises(objective)) > 1:
-        shared, how = can_be_shared(network, objective), (network, objective, rules.reaction)
-        limits = budget.part(_SHARED if shared else _GUESSED)
-        if shared:
-            found = won_in_shares(*how, SolveOptions(limits), EFFORTS[:2])
-        else:
-            found = won_by_policy(*how, limits.work, SolveOptions(limits))
-        budget.spend(limits.work if found is None else min(limits.work, found.stats.work))
-        if found is not None:
-            return found.strategy
-    return verdict_of(budget, network, objective, rules.reaction, _SHARE).strategy
+    verdict = (budget, network, objective, rules.reaction, _SHARE)
+    return strategy_of(*verdict, _SHARED) if guessed else verdict_of(*verdict).strategy

@@ -23,10 +23,10 @@ from pursue_gen.language.sentences import periods_found
 from pursue_gen.language.times import in_units, written_time
 from pursue_gen.language.tokens import end_of
 from pursue_gen.outcomes import LimitHit
+from pursue_gen.solving.decided import strategy_of
 from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.tours import PATROL, least_period_of_patrols, period_of_tours
-from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.enforced import enforced
 from pursue_gen.synthesis.limits import Limits, careful_memory
@@ -38,8 +38,13 @@ WORK = 200_000_000
 _LITTLE = 5_000_000
 """The work of a search for `check`: a second at most. Not measured."""
 
-_SHARE = 0.4
-"""The part of what is left of the budget that one game may take. Not measured."""
+_SHARE, _SHARED = 0.3, 0.1
+"""The part of what is left of the budget that one game may take, and that its strategy in shares may. Measured on a
+hotel with two lifts."""
+
+_NEAR = 0.1
+"""The part of a period by which it may be too long where shorter ones are not decided. Measured on a hotel with two
+lifts."""
 
 _SEARCH = 0.5
 """The part of the seconds that the search may take. Not measured."""
@@ -92,15 +97,21 @@ def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAU
     # With the period that is found the scenario is solved and proven: half of the seconds are for that.
     limits = replace(limits, seconds=limits.left * _SEARCH, spent=0.0)
     budget = Budget(limits, options.progress, options.engine, whole=options.whole)
-    tours = None if options.whole else _of_tours(base, rules)
+    patrols = base.with_each(lambda each: each if each in without_period(base) else None)
+    tours = None if options.whole else _of_tours(patrols, rules)
+    alone = len(patrols.objectives) == len(base.objectives)
     # Nothing below `low` is won; `high` is, where it is `known`.
     low, high = (2, longest(scenario)) if tours is None else tours
-    known = tours is not None
-    if tours is not None and len(base.safety) >= PATROL:
+    known = tours is not None and alone
+    if known and len(base.safety) >= PATROL:
         return with_period(scenario, high, low)
     floor, probe = low, min(high, _farthest(scenario))
-    while floor <= high and not (known and floor == high) and not budget.used_up:
+    if tours is not None and not alone:  # a robot that has something else to do keeps a longer one
+        probe, high = high, longest(scenario)
+    near = 0.0  # where a shorter period is not decided, those that are little longer are hardly
+    while floor <= high and not (known and high - floor <= near * high) and not budget.used_up:
         won = _won(base, probe, rules, budget)
+        near = _NEAR if won is None else near
         if won:
             high, known = probe, True
         else:
@@ -111,10 +122,7 @@ def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAU
 
 
 def _of_tours(scenario: Scenario, rules: Rules) -> Optional[Tuple[int, int]]:
-    """A period below which nothing can be promised, and the one that tours keep; None where there are none, or
-    something else is asked for, too."""
-    if scenario.reach or len(without_period(scenario)) < len(scenario.safety):
-        return None
+    """A period below which nothing can be promised, and the one that tours keep; None where there are none."""
     tried = with_period(scenario, longest(scenario))
     game = played(translate(tried), rules), scenario_objective(tried), rules.reaction
     every = period_of_tours(*game)
@@ -150,5 +158,5 @@ def _won(scenario: Scenario, every: int, rules: Rules, budget: Budget) -> Option
     tried = with_period(scenario, every)
     with suppress(LimitHit), enforced(budget.for_proofs):
         network = played(translate(tried), rules)
-        return verdict_of(budget, network, scenario_objective(tried), rules.reaction, _SHARE).won
+        return strategy_of(budget, network, scenario_objective(tried), rules.reaction, _SHARE, _SHARED) is not None
     return None

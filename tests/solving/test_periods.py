@@ -205,3 +205,33 @@ def test_the_scenario_says_that_the_period_is_the_least() -> None:
         "bot1 is at gate at least every 2 units, the least that can be promised."
     ]
     assert check(asked) == ()
+
+
+LIFT = """\
+unit second
+
+poi "hall"
+poi "shop"
+poi "cabin1"
+poi "cabin2"
+poi "room1"
+poi "room2"
+
+connect hall and shop distance 20
+connect hall and cabin1 distance 6
+connect cabin1 and cabin2 distance 8
+connect cabin2 and room1 distance 12
+connect cabin2 and room2 distance 9
+
+agent "bot1" controllable speed 0.5 location hall
+agent "bot2" controllable speed 0.5 location room1
+
+objective: always at_most 1 robots at cabin1, cabin2
+objective: patrol shop, hall, room1, room2 by any robot
+"""
+
+
+def test_beside_another_promise_the_period_is_about_what_tours_keep() -> None:
+    assert period(least_period(parse(LIFT, "lift.pur", "lift"), DEFAULT)) <= 150
+    alone = parse(LIFT.replace("objective: always at_most 1 robots at cabin1, cabin2\n", ""), "lift.pur", "lift")
+    assert period(least_period(alone, DEFAULT)) <= period(least_period(parse(LIFT, "lift.pur", "lift"), DEFAULT))

@@ -1,0 +1,42 @@
+"""Who wins one of many games that share a budget: changed scenarios, periods that are tried.
+
+The exact game alone does not decide what is large; a strategy in shares or by a policy shows that it is won.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Optional
+
+from pursue_gen.solving.efforts import EFFORTS
+from pursue_gen.solving.lost_promises import promises
+from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.policies import won_by_policy
+from pursue_gen.solving.shares import can_be_shared, won_in_shares
+from pursue_gen.solving.without_pauses import verdict_of
+from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.strategy import Strategy
+from pursue_gen.tga.network import Network, Objective
+
+_GUESSED = 0.1
+"""The part of what is left that a strategy by a policy may take, for several promises of one robot. Measured on a
+ward."""
+
+
+def strategy_of(
+    budget: Budget, network: Network, objective: Objective, reaction: Fraction, share: float, shared: float
+) -> Optional[Strategy]:
+    """A strategy that wins, None where the game is lost. Raises LimitHit where that `share` of what is left of the
+    budget does not decide the exact game, and there is no strategy in shares (with the part `shared` of what is left)
+    or by a policy, which are tried before."""
+    if not objective.reaches and len(promises(objective)) > 1:
+        several, how = can_be_shared(network, objective), (network, objective, reaction)
+        limits = budget.part(shared if several else _GUESSED)
+        if several:
+            found = won_in_shares(*how, SolveOptions(limits), EFFORTS[:2])
+        else:
+            found = won_by_policy(*how, limits.work, SolveOptions(limits))
+        budget.spend(limits.work if found is None else min(limits.work, found.stats.work))
+        if found is not None:
+            return found.strategy
+    return verdict_of(budget, network, objective, reaction, share).strategy
