@@ -10,10 +10,13 @@ import os
 import shlex
 import tempfile
 from pathlib import Path
-from typing import Any, List, Mapping, Tuple
+from typing import TYPE_CHECKING, Any, List, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError, Span, error
 from pursue_runtime import named_files
+
+if TYPE_CHECKING:
+    from pursue_runtime.bounded import Bounds
 
 LARGEST_TEXT = 256 << 20
 """Bytes of a text that a program has written: a plan, a network."""
@@ -85,15 +88,17 @@ def write_bytes(contents: Mapping[Path, bytes]) -> None:
                 os.unlink(name)
 
 
-def compose_yaml(text: str, file: str, code: str, hint: str) -> Any:
-    """The text as PyYAML's tree of nodes, None for an empty text; `file` is its name in messages.
+def compose_yaml(text: str, file: str, code: str, hint: str, bounds: Optional[Bounds] = None) -> Any:
+    """The text as PyYAML's tree of nodes, None for an empty text; `file` is its name in messages. `bounds`: what it may
+    hold, where that is more than what people write.
 
     Raises PursueError with this code and hint where the text is not YAML, or is refused (exit status 2).
     """
-    from pursue_runtime.bounded import BadText, yaml_tree  # most commands read no YAML, and PyYAML takes long to import
+    # Most commands read no YAML, and PyYAML takes long to import.
+    from pursue_runtime.bounded import SETTINGS, BadText, yaml_tree
 
     try:
-        return yaml_tree(text)
+        return yaml_tree(text, bounds or SETTINGS)
     except BadText as problem:
         line, column = max(1, problem.line), max(1, problem.column)
         place = Span(file, line, column, line, column + 1)

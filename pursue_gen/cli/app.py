@@ -49,6 +49,7 @@ COMMANDS = (
     ("tools.commands.sim", "For example: pursue-gen sim my_floor.pur --runs 10000 --faults delay,loss --jobs 4"),
     ("cli.fmt", "For example: pursue-gen fmt my_floor.pur"),
     ("tools.commands.new", "For example: pursue-gen new my_floor --kind reach --robots 2"),
+    ("tools.commands.import_", "For example: pursue-gen import office.building.yaml --speed 0.7"),
     ("tools.commands.draw", "For example: pursue-gen draw map.yaml my_floor.pur"),
     ("tools.commands.examples", "For example: pursue-gen examples thesis/scenario_1"),
     ("tools.commands.replan", "For example: pursue-gen replan < request.json"),
@@ -102,8 +103,8 @@ for _module, _example in COMMANDS:
     _command = getattr(import_module(f"pursue_gen.{_module}"), _name)
     if isinstance(_command, typer.Typer):
         app.add_typer(_command, name=_name)
-    else:
-        app.command(epilog=_example)(_command)
+    else:  # `import` is a word of Python
+        app.command(_name.rstrip("_"), epilog=_example)(_command)
 
 
 if __name__ == "__main__":

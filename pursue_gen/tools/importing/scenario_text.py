@@ -1,0 +1,231 @@
+"""The text of a scenario from a floor plan: places, ways, what dispensers and ingestors are for, robots, a patrol."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from fractions import Fraction
+from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+
+from pursue_gen.diagnostics import usage_error
+from pursue_gen.language.formatter import format_text
+from pursue_gen.language.kinds import RESERVED
+from pursue_gen.language.similar import closest
+from pursue_gen.language.usable import proposal
+from pursue_gen.tools.importing.building import Building
+from pursue_gen.tools.importing.plan import FloorPlan, Node, RobotStart, Stop, Track
+
+_TASKS = {"pickup_dispenser": "pick_up_at", "dropoff_ingestor": "drop_off_at"}
+"""Properties of vertices at which robots do something, and what it is called."""
+_NO_VISITS = ("is_charger", "lift_cabin")
+"""Places with these properties are not visited by the patrol that is written."""
+
+_HANDLING = "30 s"
+"""How long an action at a dispenser or an ingestor takes, until people write what it is. Not measured."""
+_LIFT = "20 s to 60 s"
+"""How long a robot takes from level to level, until people write what it is. Not measured."""
+
+
+def chosen(plan: FloorPlan, names: Optional[str]) -> Sequence[RobotStart]:
+    """The robots of these names, with commas between; all of them for None. Raises PursueError."""
+    if names is None:
+        return plan.robots
+    known = {robot.name: robot for robot in plan.robots}
+    wanted = [name.strip() for name in names.split(",") if name.strip()]
+    wrong = [name for name in wanted if name not in known]
+    if wrong or not wanted:
+        meant = closest(wrong[0], tuple(known)) if wrong else None
+        hint = f"did you mean {meant}?" if meant else f"there are: {', '.join(known)}"
+        raise usage_error(f"the building has no robot {wrong[0]}" if wrong else "--robots names no robot", hint)
+    return [known[name] for name in dict.fromkeys(wanted)]
+
+
+def scenario_text(
+    building: Building, plan: FloorPlan, robots: Sequence[RobotStart], speeds: Mapping[str, Fraction], file: str
+) -> str:
+    """The scenario, laid out; `speeds`: robot → metres per second; `file` is its name in messages."""
+    return _Writer(building, plan, robots, speeds).text(file)
+
+
+class _Writer:
+    """Gives everything its name, and writes the statements."""
+
+    def __init__(
+        self, building: Building, plan: FloorPlan, robots: Sequence[RobotStart], speeds: Mapping[str, Fraction]
+    ) -> None:
+        self._building, self._robots, self._speeds = building, robots, speeds
+        self._used = frozenset(graph for robot in robots for graph in robot.graphs)
+        self._tracks = [track for track in plan.tracks if track.graphs & self._used]
+        ends = {node for track in self._tracks for node in (track.start, track.end)} | {robot.node for robot in robots}
+        self._stops = [stop for stop in plan.stops if stop.node in ends]
+        self._lifts = {name: [node for node in some if node in ends] for name, some in plan.lifts.items()}
+        self._taken: Set[str] = set()
+        self._shown = dict(_told_apart({stop.node: self._title(stop) for stop in self._stops}))
+        self._places: Dict[Node, str] = {node: self._name(title) for node, title in self._shown.items()}
+        self._agents = {robot.name: self._name(robot.name) for robot in robots}
+        self._groups = self._named_groups()
+        self._reached = {robot.name: self._from(robot) for robot in robots}
+        self._tasks = self._named_tasks()
+
+    def text(self, file: str) -> str:
+        """All of it."""
+        parts = [self._head(), ["unit second"], self._poi_lines(), self._group_lines(), self._way_lines()]
+        parts += [self._lift_lines(), self._event_lines(), self._agent_lines(), self._objectives()]
+        return format_text("\n\n".join("\n".join(part) for part in parts if part) + "\n", file)
+
+    def _title(self, stop: Stop) -> str:
+        """What people call the place: its name, with the level where several levels have it; else lift or number."""
+        level, number = stop.node
+        name = stop.vertex.name
+        if not name:
+            name = stop.lift or f"v{number}"
+            several = len(self._building.levels) > 1
+        else:
+            several = sum(one.vertex.name == name for one in self._stops) > 1
+        return f"{name}_{level}" if several else name
+
+    def _name(self, title: str) -> str:
+        name = proposal(title, RESERVED, self._taken)
+        self._taken.add(name)
+        return name
+
+    def _named_groups(self) -> Dict[FrozenSet[str], str]:
+        """Those who drive on one graph → the name of their group; nothing where all drive on it, or one robot."""
+        found: Dict[FrozenSet[str], str] = {}
+        for graph in sorted(self._used):
+            some = frozenset(robot.name for robot in self._robots if graph in robot.graphs)
+            if 1 < len(some) < len(self._robots) and some not in found:
+                found[some] = self._name(f"fleet{graph}")
+        return found
+
+    def _from(self, robot: RobotStart) -> Set[Node]:
+        """Where the robot can come from where it stands."""
+        ways: Dict[Node, List[Node]] = {}
+        for track in self._tracks:
+            for way in (track, track.turned()):
+                ways.setdefault(way.start, []).extend([way.end] if way.there & robot.graphs else [])
+        for cabins in self._lifts.values():
+            for node in cabins:
+                ways.setdefault(node, []).extend(cabins)
+        found, waiting = {robot.node}, [robot.node]
+        while waiting:
+            new = set(ways.get(waiting.pop(), ())) - found
+            found |= new
+            waiting += new
+        return found
+
+    def _named_tasks(self) -> Dict[str, Node]:
+        """Event → where it happens."""
+        found: Dict[str, Node] = {}
+        for stop in self._stops:
+            for key, what in _TASKS.items():
+                if stop.vertex.properties.get(key):
+                    found[self._name(f"{what}_{self._places[stop.node]}")] = stop.node
+        return found
+
+    def _head(self) -> List[str]:
+        left_out = len(self._building.levels) > 1 and any(self._lifts.values())
+        lines = [
+            f"// {self._building.name}, from Open-RMF's traffic editor. Metres and seconds.",
+            "// Say what is wanted below (docs/language.md); durations are first guesses.",
+        ]
+        return lines + (["// How long lifts take is a guess, too: write what you know."] if left_out else [])
+
+    def _poi_lines(self) -> List[str]:
+        lines = []
+        for stop in self._stops:
+            name, title = self._places[stop.node], self._shown[stop.node]
+            label = f' label "{_in_quotes(title)}"' if title != name else ""
+            pose = ", ".join(f"{value:.2f}" for value in (stop.x, stop.y, stop.z))
+            lines.append(f'poi "{name}"{label} //[{pose}, 0, 0, 0, 1]')
+        return lines
+
+    def _group_lines(self) -> List[str]:
+        return [f'group "{group}": {", ".join(self._agents_of(some))}' for some, group in self._groups.items()]
+
+    def _agents_of(self, names: AbstractSet[str]) -> List[str]:
+        return [self._agents[robot.name] for robot in self._robots if robot.name in names]
+
+    def _way_lines(self) -> List[str]:
+        return [line for track in self._tracks for line in self._ways(track)]
+
+    def _ways(self, track: Track) -> Iterator[str]:
+        """A statement for those who drive in both directions, and for those who drive in one."""
+        there, back = (
+            frozenset(robot.name for robot in self._robots if robot.graphs & graphs)
+            for graphs in (track.there, track.back)
+        )
+        metres = max(math.floor(track.metres * 10 + 0.5), 1) / 10
+        doors = f" // through {' and '.join(track.doors)}" if any(track.doors) else ""
+        for some, way, one_way in (
+            (there & back, track, ""),
+            (there - back, track, " one_way"),
+            (back - there, track.turned(), " one_way"),
+        ):
+            if some:
+                ends = f"connect {self._places[way.start]} and {self._places[way.end]} distance {metres:g}"
+                yield f"{ends}{one_way}{self._for(some)}{doors}"
+
+    def _for(self, some: FrozenSet[str]) -> str:
+        """For whom a way is, where it is not for all."""
+        if len(some) == len(self._robots):
+            return ""
+        return f" for {self._groups.get(some) or ', '.join(self._agents_of(some))}"
+
+    def _lift_lines(self) -> List[str]:
+        lines: List[str] = []
+        heights = {stop.node: stop.z for stop in self._stops}
+        for nodes in self._lifts.values():
+            for k, low in enumerate(nodes):
+                for high in nodes[k + 1 :]:
+                    a, b = self._places[low], self._places[high]
+                    metres = max(abs(heights[high] - heights[low]), 0.1)
+                    lines.append(f"connect {a} and {b} distance {metres:g} // by lift")
+                    riders = [self._agents[name] for name, reached in self._reached.items() if low in reached]
+                    for start, end in ((a, b), (b, a)):
+                        lines += [f"travel {robot} from {start} to {end} takes {_LIFT}" for robot in riders]
+        return lines
+
+    def _event_lines(self) -> List[str]:
+        tasks = self._tasks.items()
+        return [f'event "{name}" location {self._places[node]} duration {_HANDLING}' for name, node in tasks]
+
+    def _agent_lines(self) -> List[str]:
+        lines = []
+        for robot in self._robots:
+            able = [name for name, node in self._tasks.items() if node in self._reached[robot.name]]
+            doing = f" can_do {', '.join(able)}" if able else ""
+            name, place, speed = self._agents[robot.name], self._places[robot.node], self._speeds[robot.name]
+            label = f' label "{_in_quotes(robot.name)}"' if robot.name != name else ""
+            line = f'agent "{name}"{label} controllable speed {float(speed):g} location {place}{doing}'
+            lines.append(f"{line} // {robot.type}" if robot.type else line)
+        return lines
+
+    def _objectives(self) -> List[str]:
+        """What makes the scenario one that can be solved: each place that people have named is visited."""
+        lines = []
+        for name, nodes in self._lifts.items():
+            if len(nodes) > 1 and len(self._robots) > 1:
+                places = ", ".join(self._places[node] for node in nodes)
+                lines.append(f"objective: always at_most 1 robots at {places} // one in lift {name}")
+        reached: Set[Node] = set().union(*self._reached.values())
+        visited = [
+            self._places[stop.node]
+            for stop in self._stops
+            if stop.vertex.name and stop.node in reached and not any(map(stop.vertex.properties.get, _NO_VISITS))
+        ]
+        some = visited or [self._places[robot.node] for robot in self._robots]
+        return [*lines, f"objective: patrol {', '.join(dict.fromkeys(some))} by any robot"]
+
+
+def _told_apart(titles: Mapping[Node, str]) -> Iterator[Tuple[Node, str]]:
+    """The titles, with a number behind what another place is called, too."""
+    seen: Counter[str] = Counter()
+    for node, title in titles.items():
+        seen[title] += 1
+        yield node, title if seen[title] == 1 else f"{title} {seen[title]}"
+
+
+def _in_quotes(text: str) -> str:
+    """The text as a label can hold it."""
+    return "".join(letter for letter in text if letter.isprintable() and letter not in '"\\')
