@@ -82,9 +82,7 @@ def strategy_margin(
     return _largest(wins, reaction)
 
 
-def game_margin(
-    network: Network, objective: Objective, reaction: Fraction, limits: Limits = NO_LIMITS
-) -> Margin:
+def game_margin(network: Network, objective: Objective, reaction: Fraction, limits: Limits = NO_LIMITS) -> Margin:
     """The margin of a game, as far as it is found within the limits. Requires that it is won with the reaction; ensures
     that the margin is no smaller."""
     start = limits.now()

@@ -81,9 +81,7 @@ def kept_apart(pieces: Sequence[Piece], ranks: Sequence[int], late: int) -> List
     return result
 
 
-def ended_earlier(
-    game: Game, blocks: Iterable[RawBlock], ranks: Iterable[Ranks]
-) -> Optional[Tuple[RawBlock, ...]]:
+def ended_earlier(game: Game, blocks: Iterable[RawBlock], ranks: Iterable[Ranks]) -> Optional[Tuple[RawBlock, ...]]:
     """The blocks in which no command is on its way where another one of a higher rank is decided; None: they are so.
 
     Each command's zone ends so early that it takes effect before; the points that are left out are waited in, up to the
