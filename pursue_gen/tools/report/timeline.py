@@ -235,9 +235,7 @@ def _due(scenario: Scenario) -> Dict[str, str]:
     return found if len(found) > 1 else dict.fromkeys(found, "deadline")
 
 
-def _deadline(
-    recording: Recording, scale: Scale, risks: Sequence[Tuple[Stay, float]], what: str
-) -> Tuple[str, ...]:
+def _deadline(recording: Recording, scale: Scale, risks: Sequence[Tuple[Stay, float]], what: str) -> Tuple[str, ...]:
     """How long something was due, and by when."""
     parts: List[str] = []
     for stay, due in risks:
