@@ -11,6 +11,7 @@ from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Agent, Connection, Event, Pose, Scenario
 from pursue_gen.language.sentences import speed_words, window_words
+from pursue_gen.language.times import written_time
 
 _WIDTH, _WIDEST = 640.0, 1600.0
 _MARGIN, _RIM = 80.0, 12.0
@@ -115,7 +116,7 @@ def _connection(line: Sequence[Point], way: Connection) -> Iterator[str]:
 
     Where it is not always open, the line is dashed and a question mark is behind the length.
     """
-    dash = None if way.only_if is None else "7 5"
+    dash, length = None if way.only_if is None else "7 5", written_time(way.distance)
     if len(line) == 2:
         (x1, y1), (x2, y2) = line
         yield tag("line", class_="pg-way", x1=x1, y1=y1, x2=x2, y2=y2, stroke_dasharray=dash)
@@ -127,7 +128,7 @@ def _connection(line: Sequence[Point], way: Connection) -> Iterator[str]:
         part = 0.42  # two that go opposite ways do not cover each other's lengths
         yield _arrow(*line[-2:])
     x, y = along(line, part)
-    yield text(x, y + 5, f"{way.distance} ?" if dash else way.distance, "pg-small pg-halo")
+    yield text(x, y + 5, f"{length} ?" if dash else length, "pg-small pg-halo")
 
 
 def along(line: Sequence[Point], part: float) -> Point:

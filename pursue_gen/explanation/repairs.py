@@ -235,8 +235,8 @@ def _of_way(scenario: Scenario, way: Connection) -> Iterator[Repair]:
     if way.distance > 1:
         yield Repair(
             "distance", ends, f"a shorter way between {ends}", way.distance, whole_below(way.distance, 1),
-            lambda k: scenario.with_instead(way, replace(way, distance=k)),
-            lambda k: f"{ends} at distance {k} instead of {way.distance}", way.span,
+            lambda k: scenario.with_instead(way, replace(way, distance=like(k, way.distance))),
+            lambda k: f"{ends} at distance {instead(k, way.distance)}", way.span,
         )  # fmt: skip
     if way.one_way and not any((other.a, other.b) == (way.b, way.a) for other in scenario.connections):
         label = f"a way between {ends} in both directions"

@@ -13,6 +13,7 @@ from pursue_gen.language.assumptions import *
 from pursue_gen.language.assumptions.base import Assumption
 from pursue_gen.language.assumptions.most_open import MostOpen
 from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Condition, Doing, Has, Holds, Not, OnWay, Who
+from pursue_gen.language.lengths import Length
 from pursue_gen.language.numbers import Number, Window, exact
 from pursue_gen.language.objectives import *
 from pursue_gen.language.objectives import Endurance, GivenUp, Patrol, Reach, Safety, StatedObjective, WhyGivenUp
@@ -34,6 +35,7 @@ from pursue_gen.language.statements.state import State
 from pursue_gen.language.statements.thing import Thing
 from pursue_gen.language.statements.travel import Travel
 from pursue_gen.language.statements.unit import Unit
+from pursue_gen.language.times import like
 
 __all__ = [
     "Agent", "AllOf", "AnyOf", "At", "AtMostOf", "Battery", "Both", "Choice", "Condition", "Connection", "Dependency",
@@ -84,6 +86,16 @@ class Scenario:
     def unit(self) -> Optional[Number]:
         """The seconds of a time unit; None: it does not say."""
         return self.units[0].seconds if self.units else None
+
+    @property
+    def in_metres(self) -> bool:
+        """True where distances are metres: one has a unit, or an agent a speed."""
+        lengths = any(isinstance(way.distance, Length) for way in self.connections)
+        return lengths or any(agent.speed is not None for agent in self.agents)
+
+    def as_distance(self, number: Number) -> Number:
+        """A distance as one would write it beside those that it has."""
+        return like(number, next((way.distance for way in self.connections if isinstance(way.distance, Length)), None))
 
     @property
     def rest(self) -> Number:

@@ -85,6 +85,8 @@ FILLINGS: Mapping[str, Filling] = {
     ),
     "name": Filling("NAME", lambda _, token: bare(token), '"{}"'.format),
     "number": Filling("NUMBER", TreeReader.number),
+    "distance": Filling("NUMBER", TreeReader.distance, written_time),
+    "metres": Filling("NUMBER", TreeReader.metres, written_time),
     "time": Filling("NUMBER", TreeReader.time, written_time),
     "count": Filling("NUMBER", TreeReader.count),
     "window": Filling("window", TreeReader.window, window_text),

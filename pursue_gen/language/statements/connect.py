@@ -43,11 +43,11 @@ class Connection(ForSome):
             "The other end of the way; in a rule: both of the two, in any order; in a condition: both hold.",
             may_break=True,
         ),
-        Word("distance", "How long the way is, in the unit of distance that you chose."),
+        Word("distance", "How long the way is, in the unit of distance that you chose, or with its unit: 12 m."),
         Word("one_way", "From the first place to the second only. Without it, the way goes in both directions.", True),
     )
     template: ClassVar[Template] = Template(
-        "connect {a:POI=a} and {b:POI=b} distance {distance:number=3} [one_way] "
+        "connect {a:POI=a} and {b:POI=b} distance {distance=3} [one_way] "
         + ForSome.for_whom
         + " [only_if {only_if:condition=open is_true}]"
     )

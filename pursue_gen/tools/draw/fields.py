@@ -8,8 +8,9 @@ from typing import Any, List, Mapping
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.labels import why_no_label
+from pursue_gen.language.lengths import LENGTHS
 from pursue_gen.language.numbers import read_number
-from pursue_gen.language.times import has_unit, read_seconds
+from pursue_gen.language.times import TIMES, has_unit
 
 Values = Mapping[str, Any]
 
@@ -63,7 +64,13 @@ def number_of(values: Values, field: str) -> str:
 def time_of(values: Values, field: str) -> str:
     """A time as it is written in a scenario, with its unit or without."""
     value = " ".join(text_of(values, field).split())
-    return value if has_unit(value) and read_seconds(value).seconds is not None else number_of(values, field)
+    return value if has_unit(value) and TIMES.read(value).value is not None else number_of(values, field)
+
+
+def distance_of(values: Values, field: str) -> str:
+    """A distance as it is written in a scenario, with its unit or without."""
+    value = " ".join(text_of(values, field).split())
+    return value if has_unit(value) and LENGTHS.read(value).value is not None else number_of(values, field)
 
 
 def window_of(values: Values, field: str) -> str:

@@ -18,7 +18,7 @@ from pursue_gen.language.scenario import Connection, Poi
 from pursue_gen.language.sentences import end_words, objective_words
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.template import names_text
-from pursue_gen.language.times import window_text
+from pursue_gen.language.times import window_text, written_time
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.word import HOLE
 from pursue_gen.solving.inputs import findings_of
@@ -176,7 +176,7 @@ def _ways(document: Draft, known: Collection[str]) -> List[Dict[str, Any]]:
             found.append({**way, "one_way": statement.first("ONE_WAY") is not None, **_placed(document, number)})
     for one in document.scenario.connections:
         if one.span.member and {one.a, one.b} <= {*known} and one.a != one.b:
-            way = {"a": one.a, "b": one.b, "distance": str(one.distance), "only_if": _condition(one.only_if)}
+            way = {"a": one.a, "b": one.b, "distance": written_time(one.distance), "only_if": _condition(one.only_if)}
             way.update(_whom_made(one))
             found.append({**way, "one_way": one.one_way, **_made(document, one.span)})
     return found

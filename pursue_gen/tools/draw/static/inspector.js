@@ -73,7 +73,7 @@ function place(thing) {
 
 function way(thing) {
   const fields = [
-    field("field-distance", "distance", thing.distance, set(thing, "distance"), { inputmode: "decimal" }),
+    field("field-distance", "distance", thing.distance, set(thing, "distance")),
     tick("field-one_way", `from ${thing.a} to ${thing.b} only`, thing.one_way, set(thing, "one_way")),
     ...whom(thing),
     field("field-only_if", "only while (a condition)", thing.only_if, set(thing, "only_if"), { wide: true, spellcheck: "false" }),
