@@ -66,6 +66,8 @@ def _repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
         yield from _of_way(scenario, connection)
     controlled = [agent.name for agent in scenario.agents if agent.controllable]
     for part in (part for part in scenario.for_some if not all(map(part.admits, controlled))):
+        if isinstance(part, Connection) and scenario.is_lane(part):
+            continue  # who may take it as well would have two ways
         what = part.name if isinstance(part, Poi) else f"the way between {part.a} and {part.b}"
         freer = scenario.with_instead(part, replace(part, only_for=(), not_for=()))
         yield _switch("whom", what, f"{what} for all (without {part.whom_text})", part.whom_text, freer, part.span, 1)
@@ -232,6 +234,7 @@ def _may_be_endless(scenario: Scenario, event: Event) -> bool:
 
 def _of_way(scenario: Scenario, way: Connection) -> Iterator[Repair]:
     ends = f"{scenario.shown(way.a)} and {scenario.shown(way.b)}"
+    ends += f" ({way.whom_words})" if scenario.is_lane(way) else ""
     if way.distance > 1:
         yield Repair(
             "distance", ends, f"a shorter way between {ends}", way.distance, whole_below(way.distance, 1),

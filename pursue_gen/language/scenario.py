@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any, Callable, Collection, Dict, Iterator, Optional, Tuple, Union
+from typing import Any, Callable, Collection, Dict, FrozenSet, Iterator, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language import assumptions as kinds_of_assumptions
@@ -197,6 +198,16 @@ class Scenario:
         """The places and ways that are not for all agents."""
         parts: Tuple[Union[Poi, Connection], ...] = (*self.pois, *self.connections)
         return tuple(part for part in parts if part.only_for or part.not_for)
+
+    @cached_property
+    def _several(self) -> FrozenSet[Tuple[str, str]]:
+        """From and to of what has more than one way."""
+        ends = Counter(direction for way in self.connections for direction in way.directions)
+        return frozenset(direction for direction, number in ends.items() if number > 1)
+
+    def is_lane(self, way: Connection) -> bool:
+        """True for a way of some agents beside which others have one of their own."""
+        return not self._several.isdisjoint(way.directions)
 
     def closed_to(self, agent: str) -> Tuple[Union[Poi, Connection], ...]:
         """The places and ways that are not for the agent of this name."""

@@ -11,6 +11,7 @@ from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import ForSome
 from pursue_gen.language.template import Template
+from pursue_gen.language.times import written_time
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word
 
@@ -79,7 +80,7 @@ class Connection(ForSome):
         if kind == "state" and self.only_if is not None and self.speaks_of(kind, name):
             yield f"between {self.a} and {self.b} only while {shown(condition_words(self.only_if))}"
         if kind == "agent" and not self.admits(name):
-            yield f"never goes between {self.a} and {self.b}"
+            yield f"never takes the way between {self.a} and {self.b} at distance {written_time(self.distance)}"
 
     def check(self) -> Iterator[Diagnostic]:
         if self.distance <= 0:

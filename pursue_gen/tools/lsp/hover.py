@@ -143,7 +143,8 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
         other = way.b if way.a == poi.name else way.a
         there = (poi.name, other) in way.directions
         words, direction = (f"to {other}", (poi.name, other)) if there else (f"from {other} only", (other, poi.name))
-        movers = [(agent.name, scenario.movements(agent).get(direction)) for agent in scenario.agents]
+        able = [agent for agent in scenario.agents if way in scenario.ways_of(agent.name)]
+        movers = [(agent.name, scenario.movements(agent).get(direction)) for agent in able]
         times = ", ".join(f"{name} {lasts(window, scenario.unit)}" for name, window in movers if window is not None)
         only = f", only while {in_markdown(scenario, condition_words(way.only_if))}" if way.only_if is not None else ""
         whom = f", {in_markdown(scenario, way.whom_words)}" if way.whom_words else ""
@@ -263,7 +264,9 @@ def _number(document: Draft, part: Statement, start: int, time: Number) -> str:
     movers = [agent for agent in scenario.agents if agent.mobile is not None]
     if word == "DISTANCE":
         lines = [f"A way of {units_of_distance(time, scenario.in_metres)}.", ""]
-        needs = [f"- {agent.name} needs {lasts(agent.window_on(number), scenario.unit)}" for agent in movers]
+        of_it = [way for way in scenario.connections if way.span.line == part.tokens[0].line]
+        able = [agent for agent in movers if not of_it or any(way.admits(agent.name) for way in of_it)]
+        needs = [f"- {agent.name} needs {lasts(agent.window_on(number), scenario.unit)}" for agent in able]
         return "\n".join(lines + _listed(needs))
     if word in ("DURATION", "TAKES", "TO"):
         begins = next(start_of(t) for t in part.tokens if t.type in ("DURATION", "TAKES"))
@@ -282,7 +285,7 @@ def _number(document: Draft, part: Statement, start: int, time: Number) -> str:
     if word == "SPEED":
         here = [agent for agent in movers if agent.span.line == part.tokens[0].line and agent.speed is not None]
         lines = [f"It moves {number} metres in a second.", ""]
-        windows = [(way, agent.window_on(way.distance)) for agent in here for way in scenario.connections]
+        windows = [(way, agent.window_on(way.distance)) for agent in here for way in scenario.ways_of(agent.name)]
         ways = [f"- {way.a} to {way.b}: {lasts(window, scenario.unit)}" for way, window in windows]
         return "\n".join(lines + _listed(ways))
     if part.kind == "BATTERY":
