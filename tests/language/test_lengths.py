@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pursue_gen.explanation.explain import explain, render
 from pursue_gen.explanation.repairs import repairs
 from pursue_gen.language import parse
 from pursue_gen.language.checks import check, check_reading
@@ -117,6 +118,8 @@ def test_changes_and_surveys_write_lengths_where_the_text_has_them() -> None:
     scenario = parse(TEXT, "story.pur")
     said = [each.say(each.values[0]) for each in repairs(scenario, Rules()) if each.what == "distance"]
     assert said == ["desk and shelf at distance 11 m instead of 12 m"]
+    text = render(explain(parse(TEXT.replace("within 2 min", "within 40 s"), "story.pur"), Rules()), 200)
+    assert "desk and shelf at distance 2 m instead of 12 m (3 m is not enough" in text
     edits = Rewriting(scenario).distance(scenario.connections[1], exact(Fraction(5, 2)), "survey: 2.5 m")
     assert "connect shelf and door distance 2.5 m // survey: 2.5 m" in edited(TEXT, edits)
     assert str(scenario.as_distance(3)) == "3" and length_text(3) == "3 m"
