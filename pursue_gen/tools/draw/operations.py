@@ -19,6 +19,7 @@ from pursue_gen.language.numbers import read_number
 from pursue_gen.language.occurrences import GROUP
 from pursue_gen.language.poses import read_poses
 from pursue_gen.language.rewriting import parts_in, parts_of
+from pursue_gen.language.statements.agent import SIZE
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.times import written_time
 from pursue_gen.language.tokens import bare
@@ -121,7 +122,7 @@ def _connect(document: Draft, values: Values) -> Done:
     for way in document.scenario.connections:
         if way.span.member and ((a, b) in way.directions and (one_way or not way.one_way)):
             return document, number_at(document, way.span)
-    distance = fields.distance_of(values, "distance") if values.get("distance") else _length(document, a, b)
+    distance = fields.length_of(values, "distance") if values.get("distance") else _length(document, a, b)
     return added(document, f"connect {a} and {b} distance {distance}{' one_way' if one_way else ''}")
 
 
@@ -233,7 +234,7 @@ _WHOM = {"only_for": _text("FOR", fields.text_of), "not_for": _text("EXCEPT", fi
 _FIELDS: Mapping[str, Mapping[str, Callable[[Values, str], Parts]]] = {
     "POI": {"label": _text("LABEL", fields.label_of), **_WHOM},
     "CONNECT": {
-        "distance": _needed("DISTANCE", fields.distance_of),
+        "distance": _needed("DISTANCE", fields.length_of),
         "one_way": _tick("ONE_WAY"),
         **_WHOM,
         "only_if": _text("ONLY_IF", fields.text_of),
@@ -257,6 +258,7 @@ _FIELDS: Mapping[str, Mapping[str, Callable[[Values, str], Parts]]] = {
         "kind": _kind,
         "mobile": _pace("MOBILE", "SPEED"),
         "speed": _pace("SPEED", "MOBILE"),
+        **{word: _text(word.upper(), fields.length_of) for word in SIZE},
         "carries": _text("CARRIES", fields.number_of),
         "has": _text("HAS", fields.text_of),
         "location": _needed("LOCATION", fields.name_of),
@@ -290,7 +292,7 @@ def filled(form: Form, given: Any) -> str:
         field = {"value": value}
         is_number = bool(example) and what.replace(".", "").isdigit()
         if is_number:
-            text = fields.time_of(field, "value")
+            text = fields.measure_of(field, "value")
         elif what == "agent" and value in ANYBODY:
             text = str(value)
         else:
