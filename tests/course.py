@@ -269,8 +269,8 @@ class Course:
 
     def _used_on_way(self, agent: str, a: str, b: str) -> int:
         battery = self.batteries.get(agent)
-        ways = [{way.a, way.b} for way in self.scenario.connections]
-        if battery is None or {a, b} not in ways:
+        own = [way for way in self.scenario.connections if is_for(way, agent)]
+        if battery is None or not any((a, b) in way.directions for way in own):
             return 0
         return ceil(battery.uses * self._window(self.agents[agent], Stay(a, 0.0, to=b))[1])
 
