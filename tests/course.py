@@ -181,7 +181,8 @@ class Course:
     def _open_to(self, agent: str, place: str) -> Set[str]:
         """The places from which ways that are always open lead to this one."""
         never = {(each.agent.name, each.place.name) for each in self.scenario.assumptions if isinstance(each, NeverAt)}
-        ways = [pair for way in self.scenario.connections if way.only_if is None for pair in way.directions]
+        own = [way for way in self.scenario.connections if is_for(way, agent) and way.only_if is None]
+        ways = [pair for way in own for pair in way.directions]
         found = {place}
         for _ in ways:
             found |= {a for a, b in ways if b in found and (agent, b) not in never}
@@ -268,8 +269,8 @@ class Course:
 
     def _used_on_way(self, agent: str, a: str, b: str) -> int:
         battery = self.batteries.get(agent)
-        ways = [{way.a, way.b} for way in self.scenario.connections]
-        if battery is None or {a, b} not in ways:
+        own = [way for way in self.scenario.connections if is_for(way, agent)]
+        if battery is None or not any((a, b) in way.directions for way in own):
             return 0
         return ceil(battery.uses * self._window(self.agents[agent], Stay(a, 0.0, to=b))[1])
 
@@ -390,7 +391,8 @@ class Course:
         for travel in self.scenario.travels:
             if (travel.agent.name, travel.a.name, travel.b.name) == (agent.name, stay.place, stay.to):
                 return travel.earliest, travel.earliest + 1 if travel.latest is None else travel.latest
-        lengths = [w.distance for w in self.scenario.connections if {w.a, w.b} == {stay.place, stay.to}]
+        own = [way for way in self.scenario.connections if is_for(way, agent.name)]
+        lengths = [way.distance for way in own if (stay.place, stay.to) in way.directions]
         low = lengths[0] * (agent.mobile or 0)
         return low, low + 1
 

@@ -85,11 +85,15 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
         some = ", ".join(draw(st.lists(st.sampled_from(names), min_size=1, max_size=2, unique=True)))
         return maybe(draw(st.sampled_from((f" for {some}", f" except {some}", " for robots"))), 5)
 
+    def ways(ends: str, some: str) -> List[str]:
+        """A way for some, and perhaps another one, in both directions or not, for all others."""
+        every = (some, some.replace(" for ", " except ")) if some.startswith(" for ") else (some,)
+        each = [f"connect {ends} distance {draw(st.integers(1, 3))}{maybe(' one_way', 7)}{one}" for one in every]
+        return [f"{way}{only_if()}" for way in each]
+
     lines = [f'poi "{name}"{whom()}' for name in places]
-    lines += [
-        f"connect {x} and {y} distance {draw(st.integers(1, 3))}{maybe(' one_way', 7)}{whom()}{only_if()}"
-        for x, y in zip(places, places[1:])
-    ]
+    for x, y in zip(places, places[1:]):
+        lines += ways(f"{x} and {y}", whom())
     lines += [f'thing "{thing}"' for thing in things]
     limit = f" at_most {draw(st.integers(1, 3))} times"
     lines += [

@@ -133,7 +133,7 @@ def overview(setup: Setup, words: Words, play: PlayState) -> Iterator[str]:
     widest = max((len(poi.shown) for poi in setup.scenario.pois), default=0)
     for poi in setup.scenario.pois:
         ways = [
-            f"{shown(to)} ({c.distance}{_only(c)})"
+            f"{shown(to)} ({written_time(c.distance)}{_only(c)})"
             for c in setup.scenario.connections
             for a, to in c.directions
             if a == poi.name

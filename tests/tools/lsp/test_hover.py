@@ -178,5 +178,5 @@ def test_times_have_their_units_where_the_scenario_says_what_one_is() -> None:
     assert "bot 6 s to 7 s" in told('poi "', timed)
     fast = timed.replace("mobile 2", "speed 0.5")
     assert "It moves 0.5 metres in a second." in told("speed ", fast) and "- a to b: 6 s to 7 s" in told("speed ", fast)
-    assert "A way of 3 metres." in told("distance ", fast) and "moves 0.5 metres in a second" in told('agent "b', fast)
+    assert "A way of 3 m." in told("distance ", fast) and "moves 0.5 metres in a second" in told('agent "b', fast)
     assert told("within 2", timed.replace("unit second\n", "")) == ""
