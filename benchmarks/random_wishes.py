@@ -83,6 +83,7 @@ _FORMS: Tuple[str, ...] = (
     "reach_objective: do {done} within {t80}",
     "reach_objective: do {done} twice at_least {t10} apart",
     "battery \"{robot}\" lasts {t80}, charges in {t4} at {home}",
+    "battery \"{robot}\" lasts {t80}, charges in {t30} in 4 parts at {home}",
     "battery \"{robot}\" capacity {t30} uses 1 per unit",
     "travel {robot} from {room} to {place} takes {t4}",
     "rest 0.5",

@@ -184,7 +184,9 @@ def _objectives(
     draw: st.DrawFn, small: bool, condition: st.SearchStrategy[str], guard: st.SearchStrategy[str], place: object
 ) -> List[str]:
     where = place()  # type: ignore[operator]
-    lasting = f"battery bot1 lasts {draw(st.integers(6, 40))}, charges in {draw(st.integers(1, 12))} at {where}"
+    lasts, charge = draw(st.integers(6, 40)), draw(st.integers(1, 12))
+    parts = draw(st.sampled_from(("", "", " in 2 parts", " in 4 parts")))
+    lasting = f"battery bot1 lasts {lasts}, charges in {charge}{parts} at {where}"
     other = "guest" if small else "nurse"
     kinds = {
         "avoid": "objective: avoid call",

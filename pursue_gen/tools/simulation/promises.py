@@ -84,7 +84,7 @@ class Promises:
         event = self._events.get(word, "")
         self._seq = max(self._seq, state.seq)
         visited = self._visited(state)
-        late = [number for number, safety in enumerate(self._scenario.safety) if self._is_empty(number, safety, latest)]
+        late = [number for number in range(len(self._scenario.safety)) if self._is_empty(number, latest)]
         late += self._open.on_event(event, at, latest)
         self._charges.on_state(state.locations, at)
         for number, safety in enumerate(self._scenario.safety):
@@ -160,10 +160,10 @@ class Promises:
             self._since.setdefault(number, latest)
         return since is not None and latest - since > safety.limit
 
-    def _is_empty(self, number: int, safety: Safety, latest: float) -> bool:
+    def _is_empty(self, number: int, latest: float) -> bool:
         """True if a battery by time was needed for too long until now."""
         since = self._charges.since(number)
-        return since is not None and safety.limit is not None and latest - since > safety.limit
+        return since is not None and latest - since > self._charges.limit(number)
 
     def _is_too_soon(self, breaks: Breaks, word: str, at: float, latest: float) -> bool:
         """True if an event begins before the pause after another one is over."""
