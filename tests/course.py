@@ -292,11 +292,12 @@ class Course:
         if event.needs is not None and event.needs.name not in (*load, self.mounted.get(agent)):
             return None
         if event.gives is not None:
-            if event.gives.name not in load:
+            if load.count(event.gives.name) < event.given:
                 return None
-            load.remove(event.gives.name)
+            for _ in range(event.given):
+                load.remove(event.gives.name)
         if event.takes is not None:
-            load.append(event.takes.name)
+            load += [event.takes.name] * event.taken
         return load if len(load) <= (self.agents[agent].carries or 1) else None
 
     def _has_moved(self, agent: str, event: Event) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
+from itertools import takewhile
 from typing import Callable, Dict, List, Optional, Tuple
 
 from lark import Token
@@ -254,10 +255,13 @@ def _number(document: Draft, part: Statement, start: int, time: Number) -> str:
         lines = [f"A way of {number} metres." if metres else f"A way of {units(number)} of distance.", ""]
         needs = [f"- {agent.name} needs {lasts(agent.window_on(number), scenario.unit)}" for agent in movers]
         return "\n".join(lines + _listed(needs))
+    if part.kind == "EVENT" and word in ("TAKES", "GIVES"):
+        return f"So many at one time: {number}."
     if word in ("DURATION", "TAKES", "TO"):
-        begins = next(start_of(t) for t in part.tokens if t.type in ("DURATION", "TAKES"))
-        written = (t for t in part.tokens if t.type == "NUMBER" and start_of(t) > begins)
-        numbers = [value for value in (read_time(document, token) for token in written) if value is not None]
+        begins = next(k for k, t in enumerate(part.tokens) if t.type in ("DURATION", "TAKES"))
+        written = takewhile(lambda token: token.type in ("NUMBER", "TO"), part.tokens[begins + 1 :])
+        read = (read_time(document, token) for token in written if token.type == "NUMBER")
+        numbers = [value for value in read if value is not None]
         return f"It takes {lasts(window_of(numbers[0], numbers[1] if len(numbers) > 1 else None), scenario.unit)}."
     behind = next((t.type for t in part.tokens if start_of(t) > start), "")
     if word in ("AT_MOST", "HOLDS") and behind != "TIMES":
