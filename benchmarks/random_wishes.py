@@ -85,6 +85,7 @@ _FORMS: Tuple[str, ...] = (
     "battery \"{robot}\" lasts {t80}, charges in {t4} at {home}",
     "battery \"{robot}\" lasts {t80}, charges in {t30} in 4 parts at {home}",
     "battery \"{robot}\" capacity {t30} uses 1 per unit",
+    "battery \"{robot}\" capacity {t80} uses 1 per metre, 0.5 per unit",
     "travel {robot} from {room} to {place} takes {t4}",
     "rest 0.5",
     'state "open": initially false, true_if {done} false_if {called}\nstateDependency: {also} only_if open is_false',

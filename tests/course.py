@@ -13,6 +13,7 @@ from typing import Dict, List, Optional, Set, Tuple, Union
 
 from pursue_gen.language.conditions import Condition
 from pursue_gen.language.loads import carriers
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import (
     Agent,
     Assumption,
@@ -110,7 +111,7 @@ class Course:
         for name, stay in self.stays.items():
             self._sees(name, stay.place)
         self.batteries = {battery.agent.name: battery for battery in self.scenario.batteries}
-        self.levels = {name: battery.capacity for name, battery in self.batteries.items()}
+        self.levels: Dict[str, Number] = {name: battery.capacity for name, battery in self.batteries.items()}
 
     @property
     def locations(self) -> Dict[str, str]:
@@ -266,18 +267,21 @@ class Course:
             return [name for name, other in others if (other.place, other.to) == (stay.to, stay.place)]
         return [name for name, other in others if other.is_idle and other.place == stay.place]
 
-    def _used_on_way(self, agent: str, a: str, b: str) -> int:
+    def _used_on_way(self, agent: str, a: str, b: str) -> Number:
         battery = self.batteries.get(agent)
         ways = [{way.a, way.b} for way in self.scenario.connections]
         if battery is None or {a, b} not in ways:
             return 0
+        if battery.driving is not None:
+            return battery.driving * next(way.distance for way in self.scenario.connections if {way.a, way.b} == {a, b})
         return ceil(battery.uses * self._window(self.agents[agent], Stay(a, 0.0, to=b))[1])
 
-    def _used_at_work(self, agent: str, event: Event) -> int:
+    def _used_at_work(self, agent: str, event: Event) -> Number:
         battery = self.batteries.get(agent)
         if battery is None or event.duration is None or self._is_docked(agent):
             return 0
-        return ceil(battery.uses * (event.duration + 1 if event.latest is None else event.latest))
+        use = battery.uses * (event.duration + 1 if event.latest is None else event.latest)
+        return ceil(use) if battery.driving is None else use
 
     def _is_docked(self, agent: str) -> bool:
         dock = self.batteries[agent].dock
@@ -442,7 +446,9 @@ class Course:
         self._advance(agent, event.name, f"{event.name}DONE")
         if agent in self.levels and self._is_docked(agent):
             battery = self.batteries[agent]
-            self.levels[agent] = min(battery.capacity, self.levels[agent] + floor(battery.recharges * low))
+            gain = battery.recharges * low
+            gain = floor(gain) if battery.driving is None else gain
+            self.levels[agent] = min(battery.capacity, self.levels[agent] + gain)
         self._has_moved(agent, event)
         self._has_happened(event.name)
         beginning, _ = self.done[agent, event.name][-1]

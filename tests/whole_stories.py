@@ -179,7 +179,8 @@ def _batteries(draw: st.DrawFn, place: object) -> List[str]:
         return []
     capacity, rate = draw(st.sampled_from((8, 12, 20, 30))), draw(st.integers(0, 3))
     recharges = f" recharges {rate} per unit at {place()}" if rate else ""  # type: ignore[operator]
-    return [f"battery bot1 capacity {capacity} uses {draw(st.integers(1, 2))} per unit{recharges}"]
+    driving = draw(st.sampled_from(("", "", "1 per metre, ", "3 per metre, ")))
+    return [f"battery bot1 capacity {capacity} uses {driving}{draw(st.integers(1, 2))} per unit{recharges}"]
 
 
 def _objectives(

@@ -10,7 +10,7 @@ from typing import Callable, Dict, List, Optional, Tuple
 from lark import Token
 
 from pursue_gen.diagnostics import listed, units
-from pursue_gen.language.batteries import levels
+from pursue_gen.language.batteries import full, levels
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.for_each import ranges_of
@@ -293,7 +293,7 @@ def _battery(scenario: Scenario, part: Statement) -> str:
     agents = {agent.name for agent in scenario.agents}
     for battery in scenario.batteries:
         here = battery.span.line == part.tokens[0].line and battery.agent.name in agents
-        if here and battery.capacity <= MOST_CAPACITY:
+        if here and full(scenario, battery) <= MOST_CAPACITY:
             count = len(levels(scenario, battery))
             return f"The battery can be at {count} levels; the game has up to {count} times as many states."
     return ""

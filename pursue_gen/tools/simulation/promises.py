@@ -39,6 +39,8 @@ class Promises:
         self._scenario, self._exact = scenario, exact
         self._events: Dict[str, str] = {has_happened(event): event.name for event in scenario.events}
         ends = (way for connection in scenario.connections for way in connection.directions)
+        lengths = {way: float(each.distance) for each in scenario.connections for way in each.directions}
+        self._lengths: Dict[str, float] = {going(*way): length for way, length in lengths.items()}
         self._ways: Dict[str, FrozenSet[str]] = {going(*way): frozenset(way) for way in ends}
         self._places = [poi.name for poi in scenario.pois]
         self._done: List[List[str]] = [[] for _ in scenario.reach]
@@ -127,11 +129,13 @@ class Promises:
             self._seen[name] = (at, here)
             if not is_under_way(was):
                 continue
-            rate = -float(battery.uses)
+            rate = -float(battery.uses if battery.driving is None or is_action(was) else 0)
             if battery.dock is not None and is_action(was) and place_of(was, self._places) == battery.dock.name:
                 rate = float(battery.recharges)
             level = min(float(battery.capacity), self._levels[name] + rate * (at - before))
-            if self._levels[name] >= 0 > level + EPSILON * float(battery.uses):
+            if here != was and battery.driving is not None:
+                level -= float(battery.driving) * self._lengths.get(was, 0.0)
+            if self._levels[name] >= 0 > level + EPSILON * float(battery.uses + (battery.driving or 1)):
                 self.problems.append(f"the battery of {name} has run empty")
             self._levels[name] = level
 
