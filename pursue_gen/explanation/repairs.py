@@ -145,8 +145,9 @@ def _of_limit(scenario: Scenario, objective: StatedObjective) -> Iterator[Repair
     if before is None or statement.objectives[0] is not objective:
         return
     together, _, change, about, label, begins, ends = statement
+    longer = whole_above(before, before + max(before, 2 * _all_time(scenario)))
     yield Repair(
-        change, about, label, before, whole_above(before, before + max(before, 2 * _all_time(scenario))),
+        change, about, label, before, objective.possible_limits(longer),
         lambda k: scenario.with_each(lambda each: each.with_limit(k) if each in together else each),
         lambda k: f"{begins} {instead(k, before)}{ends}", objective.span, 1,
     )  # fmt: skip

@@ -156,10 +156,9 @@ TIMED = frozenset(("DURATION", "TAKES", "WITHIN", "EVERY", "AFTER", "WAITS", "ST
 def in_seconds(text: str, unit: int) -> str:
     """The text with `unit`, and each of its times with a unit behind it."""
     tokens = Document(text).tokens
-    pairs = ((word, number) for word, number in zip(tokens, tokens[1:]) if number.type == "NUMBER")
-    edits = [
-        written(number, duration_text(exact(Fraction(number) * unit))) for word, number in pairs if word.type in TIMED
-    ]
+    triples = zip(tokens, tokens[1:], [*tokens[2:], ""])
+    times = [two for one, two, three in triples if one.type in TIMED and two.type == "NUMBER" and three != "box"]
+    edits = [written(number, duration_text(exact(Fraction(number) * unit))) for number in times]
     return f"unit {unit} s\n{edited(text, edits)}"
 
 

@@ -19,6 +19,7 @@ from pursue_gen.language.rewriting import parts_in, parts_of
 from pursue_gen.language.scenario import Connection, Poi
 from pursue_gen.language.sentences import end_words, objective_words
 from pursue_gen.language.statements.agent import SIZE
+from pursue_gen.language.statements.event import counted_text
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.template import names_text
 from pursue_gen.language.times import unit_name, window_text, written_time
@@ -241,7 +242,8 @@ def _events(document: Draft) -> List[Dict[str, Any]]:
             event = {"name": each.name, "label": each.label or "", "at_most": str(each.at_most or "")}
             event.update(location=each.location.name if each.location else "", only_if=_condition(each.only_if))
             event["duration"] = "" if each.duration is None else window_text(each.duration, each.latest)
-            event.update({key: getattr(getattr(each, key), "name", "") for key in _MOVES})
+            counts = {"takes": each.taken, "gives": each.given}
+            event.update({key: counted_text(getattr(each, key), counts.get(key, 1)) for key in _MOVES})
             ticks = {key: getattr(each, key) for key in _TICKS}
             found.append({**event, **ticks, **_made(document, each.span)})
     return found

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
+from itertools import takewhile
 from typing import Callable, Dict, List, Optional, Tuple
 
 from lark import Token
 
 from pursue_gen.diagnostics import listed
-from pursue_gen.language.batteries import levels
+from pursue_gen.language.batteries import full, levels
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.for_each import ranges_of
@@ -268,10 +269,13 @@ def _number(document: Draft, part: Statement, start: int, time: Number) -> str:
         able = [agent for agent in movers if not of_it or any(way.admits(agent.name) for way in of_it)]
         needs = [f"- {agent.name} needs {lasts(agent.window_on(number), scenario.unit)}" for agent in able]
         return "\n".join(lines + _listed(needs))
+    if part.kind == "EVENT" and word in ("TAKES", "GIVES"):
+        return f"So many at one time: {number}."
     if word in ("DURATION", "TAKES", "TO"):
-        begins = next(start_of(t) for t in part.tokens if t.type in ("DURATION", "TAKES"))
-        written = (t for t in part.tokens if t.type == "NUMBER" and start_of(t) > begins)
-        numbers = [value for value in (read_time(document, token) for token in written) if value is not None]
+        begins = next(k for k, t in enumerate(part.tokens) if t.type in ("DURATION", "TAKES"))
+        written = takewhile(lambda token: token.type in ("NUMBER", "TO"), part.tokens[begins + 1 :])
+        read = (read_time(document, token) for token in written if token.type == "NUMBER")
+        numbers = [value for value in read if value is not None]
         return f"It takes {lasts(window_of(numbers[0], numbers[1] if len(numbers) > 1 else None), scenario.unit)}."
     behind = next((t.type for t in part.tokens if start_of(t) > start), "")
     if word in ("AT_MOST", "HOLDS") and behind != "TIMES":
@@ -303,7 +307,7 @@ def _battery(scenario: Scenario, part: Statement) -> str:
     agents = {agent.name for agent in scenario.agents}
     for battery in scenario.batteries:
         here = battery.span.line == part.tokens[0].line and battery.agent.name in agents
-        if here and battery.capacity <= MOST_CAPACITY:
+        if here and full(scenario, battery) <= MOST_CAPACITY:
             count = len(levels(scenario, battery))
             return f"The battery can be at {count} levels; the game has up to {count} times as many states."
     return ""

@@ -71,8 +71,9 @@ def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Itera
     for automaton, objective in stated(setup.scenario).items():
         number = where[automaton]
         place = setup.game.automata[number].locations[play.position.state.locations[number]]
-        if place == names.AT_RISK and objective.limit is not None:
-            due = play.now - clocks[clock_of(automaton)] + objective.limit
+        limit = objective.limit_in(place)
+        if limit is not None:
+            due = play.now - clocks[clock_of(automaton)] + limit
             yield f"deadline: {objective.words.due_by or objective.words.due} by {time_text(due)} at the latest"
     for k, reach in enumerate(setup.scenario.reach):
         number = where[names.reach_objective(k)]

@@ -95,6 +95,12 @@ def test_windows_and_travel_times() -> None:
     assert "a robot" in told("travel b", more) and "a place" in told("from ", more)
 
 
+def test_how_many_things_are_no_time() -> None:
+    more = SMALL.replace("duration 3", "duration 3 takes 2 box at_most 4 times") + 'thing "box"\n'
+    assert "3 to 4 units" in told("duration ", more) and "So many at one time: 2" in told("takes ", more)
+    assert "work takes 2 of it" in told("takes 2 b", more)
+
+
 def test_when_events_and_ways_are_open() -> None:
     limited = SMALL.replace('event "work" location b duration 3', 'event "work" location b duration 3 only_if man at b')
     limited = limited.replace("distance 3", "distance 3 only_if no robot on_way and tired is_false")
