@@ -55,6 +55,11 @@ def parse_word(text: str) -> Optional[Word]:
     return Word(agent or "", event, seq, as_of, moment)
 
 
+def event_in(text: str) -> str:
+    """The event in `[agent:]event[@seq][#as_of]`; of any other text about the same part."""
+    return text.partition("@")[0].partition("#")[0].rpartition(":")[2]
+
+
 def format_word(word: Word) -> str:
     """Writes what parse_word reads."""
     prefix = word.agent + ":" if word.agent else ""

@@ -13,6 +13,7 @@ from typing import Dict, List, Optional, Set, Tuple, Union
 
 from pursue_gen.language.conditions import Condition
 from pursue_gen.language.loads import carriers
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import (
     Agent,
     Assumption,
@@ -110,7 +111,7 @@ class Course:
         for name, stay in self.stays.items():
             self._sees(name, stay.place)
         self.batteries = {battery.agent.name: battery for battery in self.scenario.batteries}
-        self.levels = {name: battery.capacity for name, battery in self.batteries.items()}
+        self.levels: Dict[str, Number] = {name: battery.capacity for name, battery in self.batteries.items()}
 
     @property
     def locations(self) -> Dict[str, str]:
@@ -181,7 +182,8 @@ class Course:
     def _open_to(self, agent: str, place: str) -> Set[str]:
         """The places from which ways that are always open lead to this one."""
         never = {(each.agent.name, each.place.name) for each in self.scenario.assumptions if isinstance(each, NeverAt)}
-        ways = [pair for way in self.scenario.connections if way.only_if is None for pair in way.directions]
+        own = [way for way in self.scenario.connections if is_for(way, agent) and way.only_if is None]
+        ways = [pair for way in own for pair in way.directions]
         found = {place}
         for _ in ways:
             found |= {a for a, b in ways if b in found and (agent, b) not in never}
@@ -266,18 +268,21 @@ class Course:
             return [name for name, other in others if (other.place, other.to) == (stay.to, stay.place)]
         return [name for name, other in others if other.is_idle and other.place == stay.place]
 
-    def _used_on_way(self, agent: str, a: str, b: str) -> int:
+    def _used_on_way(self, agent: str, a: str, b: str) -> Number:
         battery = self.batteries.get(agent)
-        ways = [{way.a, way.b} for way in self.scenario.connections]
-        if battery is None or {a, b} not in ways:
+        own = [way for way in self.scenario.connections if is_for(way, agent)]
+        if battery is None or not any((a, b) in way.directions for way in own):
             return 0
+        if battery.driving is not None:
+            return battery.driving * next(way.distance for way in self.scenario.connections if {way.a, way.b} == {a, b})
         return ceil(battery.uses * self._window(self.agents[agent], Stay(a, 0.0, to=b))[1])
 
-    def _used_at_work(self, agent: str, event: Event) -> int:
+    def _used_at_work(self, agent: str, event: Event) -> Number:
         battery = self.batteries.get(agent)
         if battery is None or event.duration is None or self._is_docked(agent):
             return 0
-        return ceil(battery.uses * (event.duration + 1 if event.latest is None else event.latest))
+        use = battery.uses * (event.duration + 1 if event.latest is None else event.latest)
+        return ceil(use) if battery.driving is None else use
 
     def _is_docked(self, agent: str) -> bool:
         dock = self.batteries[agent].dock
@@ -292,11 +297,12 @@ class Course:
         if event.needs is not None and event.needs.name not in (*load, self.mounted.get(agent)):
             return None
         if event.gives is not None:
-            if event.gives.name not in load:
+            if load.count(event.gives.name) < event.given:
                 return None
-            load.remove(event.gives.name)
+            for _ in range(event.given):
+                load.remove(event.gives.name)
         if event.takes is not None:
-            load.append(event.takes.name)
+            load += [event.takes.name] * event.taken
         return load if len(load) <= (self.agents[agent].carries or 1) else None
 
     def _has_moved(self, agent: str, event: Event) -> None:
@@ -390,7 +396,8 @@ class Course:
         for travel in self.scenario.travels:
             if (travel.agent.name, travel.a.name, travel.b.name) == (agent.name, stay.place, stay.to):
                 return travel.earliest, travel.earliest + 1 if travel.latest is None else travel.latest
-        lengths = [w.distance for w in self.scenario.connections if {w.a, w.b} == {stay.place, stay.to}]
+        own = [way for way in self.scenario.connections if is_for(way, agent.name)]
+        lengths = [way.distance for way in own if (stay.place, stay.to) in way.directions]
         low = lengths[0] * (agent.mobile or 0)
         return low, low + 1
 
@@ -441,7 +448,9 @@ class Course:
         self._advance(agent, event.name, f"{event.name}DONE")
         if agent in self.levels and self._is_docked(agent):
             battery = self.batteries[agent]
-            self.levels[agent] = min(battery.capacity, self.levels[agent] + floor(battery.recharges * low))
+            gain = battery.recharges * low
+            gain = floor(gain) if battery.driving is None else gain
+            self.levels[agent] = min(battery.capacity, self.levels[agent] + gain)
         self._has_moved(agent, event)
         self._has_happened(event.name)
         beginning, _ = self.done[agent, event.name][-1]

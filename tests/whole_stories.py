@@ -63,7 +63,8 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     places = ["a", "b"] if small or draw(st.booleans()) else ["a", "b", "c"]
     names = ["bot1", "guest"] if small else ["bot1", "bot2", "nurse", "guest"]
     condition = conditions(places, names)
-    takes, gives = draw(st.sampled_from((("", ""), ("", ""), (" takes box", " gives box"))))
+    moved = ((" takes box", " gives box"), (" takes 2 box", " gives box"), (" takes 2 box", " gives 2 box"))
+    takes, gives = draw(st.sampled_from((("", ""), ("", ""), *moved)))
     mounts, needs = draw(st.sampled_from((("", ""), ("", ""), (" mounts brush", " needs brush"))))
     things = ["box"] * bool(takes) + ["brush", "saw"] * bool(mounts)
     guard = conditions(places, names, things)
@@ -85,11 +86,15 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
         some = ", ".join(draw(st.lists(st.sampled_from(names), min_size=1, max_size=2, unique=True)))
         return maybe(draw(st.sampled_from((f" for {some}", f" except {some}", " for robots"))), 5)
 
+    def ways(ends: str, some: str) -> List[str]:
+        """A way for some, and perhaps another one, in both directions or not, for all others."""
+        every = (some, some.replace(" for ", " except ")) if some.startswith(" for ") else (some,)
+        each = [f"connect {ends} distance {draw(st.integers(1, 3))}{maybe(' one_way', 7)}{one}" for one in every]
+        return [f"{way}{only_if()}" for way in each]
+
     lines = [f'poi "{name}"{whom()}' for name in places]
-    lines += [
-        f"connect {x} and {y} distance {draw(st.integers(1, 3))}{maybe(' one_way', 7)}{whom()}{only_if()}"
-        for x, y in zip(places, places[1:])
-    ]
+    for x, y in zip(places, places[1:]):
+        lines += ways(f"{x} and {y}", whom())
     lines += [f'thing "{thing}"' for thing in things]
     limit = f" at_most {draw(st.integers(1, 3))} times"
     lines += [
@@ -111,7 +116,7 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     lines.append(f'state "open": initially {first}, true_if drop false_if call{shows}')
     needing = draw(st.sampled_from(("load", "sing", "ride", "")))
     lines += [f"stateDependency: {needing} only_if open is_true"] if needing else []
-    lines += _agents(draw, names, place, bool(takes), bool(mounts))
+    lines += _agents(draw, names, place, takes + gives, bool(mounts))
     lines += _travels(draw, names[:-1], places)
     lines += _assumptions(draw, place)
     lines += _objectives(draw, small, condition, guard, place)
@@ -126,13 +131,14 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     return text, scenario
 
 
-def _agents(draw: st.DrawFn, names: Sequence[str], place: object, carry: bool, mount: bool) -> List[str]:
+def _agents(draw: st.DrawFn, names: Sequence[str], place: object, carry: str, mount: bool) -> List[str]:
     lines = []
     for name in names[:-1]:
         own = [event for event in EVENTS if name == "bot1" or draw(st.booleans())]
-        also = ["load"] * (carry and "drop" in own) + ["wave"] * (mount and "sing" in own)
+        also = ["load"] * (bool(carry) and "drop" in own) + ["wave"] * (mount and "sing" in own)
         own = [event for event in EVENTS if event in own or event in also]
-        carries = draw(st.sampled_from(("", " carries 2", " carries 3"))) if carry else ""
+        room = (" carries 2", " carries 3") if " 2 " in carry else ("", " carries 2", " carries 3")
+        carries = draw(st.sampled_from(room)) if carry else ""
         carries += draw(st.sampled_from(("", " has box"))) if carry and "load" in own else ""
         brush = ", brush" if " has" in carries else " has brush"
         carries += draw(st.sampled_from(("", brush))) if mount and "wave" in own else ""
@@ -177,14 +183,17 @@ def _batteries(draw: st.DrawFn, place: object) -> List[str]:
         return []
     capacity, rate = draw(st.sampled_from((8, 12, 20, 30))), draw(st.integers(0, 3))
     recharges = f" recharges {rate} per unit at {place()}" if rate else ""  # type: ignore[operator]
-    return [f"battery bot1 capacity {capacity} uses {draw(st.integers(1, 2))} per unit{recharges}"]
+    driving = draw(st.sampled_from(("", "", "1 per metre, ", "3 per metre, ")))
+    return [f"battery bot1 capacity {capacity} uses {driving}{draw(st.integers(1, 2))} per unit{recharges}"]
 
 
 def _objectives(
     draw: st.DrawFn, small: bool, condition: st.SearchStrategy[str], guard: st.SearchStrategy[str], place: object
 ) -> List[str]:
     where = place()  # type: ignore[operator]
-    lasting = f"battery bot1 lasts {draw(st.integers(6, 40))}, charges in {draw(st.integers(1, 12))} at {where}"
+    lasts, charge = draw(st.integers(6, 40)), draw(st.integers(1, 12))
+    parts = draw(st.sampled_from(("", "", " in 2 parts", " in 4 parts")))
+    lasting = f"battery bot1 lasts {lasts}, charges in {charge}{parts} at {where}"
     other = "guest" if small else "nurse"
     kinds = {
         "avoid": "objective: avoid call",

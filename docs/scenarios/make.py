@@ -37,14 +37,14 @@ from pursue_gen.outcomes import LimitHit, Lost
 from pursue_gen.solving.inputs import game_of
 from pursue_gen.solving.least_time import Guarantee
 from pursue_gen.solving.optional import promised
-from pursue_gen.solving.options import DEFAULT
+from pursue_gen.solving.options import DEFAULT, SolveOptions
 from pursue_gen.solving.periods import least_period
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.shares import can_be_shared
 from pursue_gen.solving.solution import Solution, solution
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import NO_LIMITS, Limits
-from pursue_gen.synthesis.solve import solve
+from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.tga.network import Kind
 from pursue_gen.tools.report import timeline
 from pursue_gen.tools.report.recording import ending_text, simulated
@@ -100,33 +100,39 @@ def facts(path: Path) -> Facts:
     """Solves a scenario and proves the strategy."""
     scenario = load(path)
     settled = least_period(scenario, Rules())
-    won, states = _verdict(settled)
-    if not won:
-        return Facts(path.stem, scenario, settled, states, None, None)
-    found = promised(settled, DEFAULT, lambda some, how: solved(*game_of(some), Rules(), how))
+    whole = _in_one_piece(settled, _WORK)
+    if whole is not None and not whole.won:
+        return Facts(path.stem, scenario, settled, whole.stats.discrete_states, None, None)
+    solutions: List[Solution] = []
+
+    def solve_once(some: Scenario, how: SolveOptions) -> Solution:
+        solutions.append(solved(*game_of(some), Rules(), how))
+        return solutions[-1]
+
+    try:
+        found = promised(settled, DEFAULT, solve_once)
+    except Lost:
+        return Facts(path.stem, scenario, settled, 0, None, None)
+    stats = solutions[0].stats if whole is None else whole.stats
+    states = stats.discrete_states if stats is not None else 0
     return Facts(path.stem, scenario, found.scenario, states, found.solution, found.solution.guarantee)
 
 
-_WORK = 20_000_000
-"""The work for a game of several promises in one piece: about a second. Measured on care_round."""
+_WORK, _WORK_IF = 20_000_000, 1_000_000
+"""The work for a game of several promises in one piece: about a second; and where nothing but the verdict is wanted, so
+that another way to it may be shorter. Measured on care_round, care_home."""
 
 
-def _verdict(scenario: Scenario) -> Tuple[bool, int]:
-    """Whether the default game is won, with nothing optional, and the states that were looked at: of the game in one
-    piece, which takes less time than a proof; in another way where it is too large for that (`_WORK`), and in shares,
-    where several promises can be shared out."""
+def _in_one_piece(scenario: Scenario, work: int) -> Optional[Verdict]:
+    """Who wins the default game, with nothing optional, looked at in one piece: that takes less time than a proof. None
+    where it takes more than this work, or where several promises can be shared out."""
     rules, (network, objective) = Rules(), game_of(scenario.giving_up(scenario.optional))
-    game = played(network, rules)
-    if len(objective.bad) < 2 or not can_be_shared(game, objective):
-        limits = NO_LIMITS if len(objective.bad) < 2 else Limits(work=_WORK)
-        with suppress(LimitHit):
-            verdict = solve(game, objective, rules.reaction, limits=limits)
-            return verdict.won, verdict.stats.discrete_states
-    try:
-        stats = solution(network, objective, rules).stats
-    except Lost:
-        return False, 0
-    return True, stats.discrete_states if stats is not None else 0
+    game, several = played(network, rules), len(objective.bad) > 1
+    if several and can_be_shared(game, objective):
+        return None
+    with suppress(LimitHit):
+        return solve(game, objective, rules.reaction, limits=Limits(work=work) if several else NO_LIMITS)
+    return None
 
 
 # Pages ----------------------------------------------------------------------------------------------------------------
@@ -218,11 +224,15 @@ def _if(text: str, changes: str) -> str:
     if changed == text:
         raise ValueError(f"this changes nothing: {changes}")
     scenario = least_period(parse(changed, "changed.pur", "changed"), Rules())
-    if not _verdict(scenario)[0]:
+    whole = _in_one_piece(scenario, _WORK_IF)
+    if whole is not None and not (whole.won and scenario.optional):
+        return "can be done" if whole.won else "cannot be done"
+    try:
+        found = promised(scenario, DEFAULT, lambda some, how: solution(*game_of(some), Rules(), how)).scenario
+    except Lost:
         return "cannot be done"
     if not scenario.optional:
         return "can be done"
-    found = promised(scenario, DEFAULT, lambda some, how: solution(*game_of(some), Rules(), how)).scenario
     given_up = dict.fromkeys(f"optional {one.objective.optional}" for one in found.given_up)
     return f"can be done, {f'without {listed(given_up)}' if given_up else 'all of it'}"
 

@@ -134,8 +134,8 @@ def _surveyed(given: _Given, options: Options) -> Tuple[Scenario, bytes, Survey,
     scenario = read_placed(text, file)
     scenario = read_placed(with_sizes(scenario, sizes_of(scenario, given.sizes)), file)
     robots = [agent.name for agent in scenario.agents if agent.is_robot and agent.mobile is not None]
-    if options.unit != 1 and any(agent.speed is not None for agent in scenario.agents):
-        raise usage_error(f"--unit is {options.unit:g}, and robots have a speed", "distances are metres: leave it out")
+    if options.unit != 1 and scenario.in_metres:
+        raise usage_error(f"--unit is {options.unit:g}, and distances are metres", "leave it out")
     unit = _time_unit(options.drive.time_unit, scenario)
     drive = replace(options.drive, speeds=_speeds(given.speed, robots), time_unit=unit)
     sizes = sizes_of(scenario).with_radius(given.radius)

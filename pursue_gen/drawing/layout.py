@@ -25,7 +25,7 @@ def drawable(scenario: Scenario) -> Scenario:
     names = {poi.name for poi in pois}
     long = (way if way.distance > 0 else replace(way, distance=1) for way in scenario.connections)
     ways = {
-        way.directions[0] if way.one_way else frozenset((way.a, way.b)): way
+        (way.directions[0] if way.one_way else frozenset((way.a, way.b)), way.whom_text): way
         for way in long
         if way.a != way.b and {way.a, way.b} <= names
     }

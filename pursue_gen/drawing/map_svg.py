@@ -11,6 +11,7 @@ from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Agent, Connection, Event, Pose, Scenario
 from pursue_gen.language.sentences import speed_words, window_words
+from pursue_gen.language.times import written_time
 
 _WIDTH, _WIDEST = 640.0, 1600.0
 _MARGIN, _RIM = 80.0, 12.0
@@ -40,8 +41,8 @@ def draw(
     places = {name: paper.point(pose.x, pose.y) for name, pose in poses.items()}
     looks = agent_looks([agent.name for agent in scenario.agents])
     body = [paper.floor(floor)] if floor else []
-    for way in scenario.connections:
-        body += _connection(paper.way(way.a, way.b, poses, floor), way)
+    for ways in _beside_each_other(scenario):
+        body += _connection(paper.way(ways[0].a, ways[0].b, poses, floor), ways)
     body += [_poi(scenario.shown(name), places[name]) for name in sorted(places)]
     for agent_name, table in (spots or {}).items():
         beside = [pose for place, pose in table.items() if pose != poses[place]]
@@ -110,12 +111,25 @@ class Paper:
         return tag("g", tag("image", opacity=0.6, preserveAspectRatio="none", **picture), transform=turn)
 
 
-def _connection(line: Sequence[Point], way: Connection) -> Iterator[str]:
+def _beside_each_other(scenario: Scenario) -> List[List[Connection]]:
+    """The ways, those together that are one line: each is for agents of its own."""
+    found: Dict[Tuple[str, str], List[Connection]] = {}
+    for way in scenario.connections:
+        a, b = way.directions[0]
+        ends = (a, b) if way.one_way or (b, a) not in found else (b, a)
+        found.setdefault(ends, []).append(way)
+    return list(found.values())
+
+
+def _connection(line: Sequence[Point], ways: Sequence[Connection]) -> Iterator[str]:
     """A line with its length in the middle; one that goes one way has its length, and an arrow, nearer to its end.
 
-    Where it is not always open, the line is dashed and a question mark is behind the length.
+    Where it is not always open, the line is dashed and a question mark is behind the length. `ways`: of different
+    agents, which have their own lengths.
     """
-    dash = None if way.only_if is None else "7 5"
+    way = ways[0]
+    dash = None if all(each.only_if is None for each in ways) else "7 5"
+    length = ", ".join(dict.fromkeys(written_time(each.distance) for each in ways))
     if len(line) == 2:
         (x1, y1), (x2, y2) = line
         yield tag("line", class_="pg-way", x1=x1, y1=y1, x2=x2, y2=y2, stroke_dasharray=dash)
@@ -127,7 +141,7 @@ def _connection(line: Sequence[Point], way: Connection) -> Iterator[str]:
         part = 0.42  # two that go opposite ways do not cover each other's lengths
         yield _arrow(*line[-2:])
     x, y = along(line, part)
-    yield text(x, y + 5, f"{way.distance} ?" if dash else way.distance, "pg-small pg-halo")
+    yield text(x, y + 5, f"{length} ?" if dash else length, "pg-small pg-halo")
 
 
 def along(line: Sequence[Point], part: float) -> Point:
@@ -240,8 +254,9 @@ def _conditions(scenario: Scenario) -> Iterator[str]:
     yield from (f"{poi.shown} {poi.whom_words}" for poi in scenario.pois if poi.whom_words)
     for way in scenario.connections:
         ends = f"{scenario.shown(way.a)} and {scenario.shown(way.b)}"
+        lane = f" at distance {written_time(way.distance)}" if scenario.is_lane(way) else ""
         if way.whom_words:
-            yield f"Between {ends} {way.whom_words}"
+            yield f"Between {ends}{lane} {way.whom_words}"
         if way.only_if is not None:
             yield f"Between {ends} only while {condition_words(way.only_if)}"
     for event in scenario.events:

@@ -104,7 +104,7 @@ def without_conditions(scenario: Scenario) -> Iterator[Tuple[str, str, Callable[
     """For each event or way with `only_if` its name, the condition as a text, and what makes a scenario without it."""
     for way in scenario.connections:
         if way.only_if is not None:
-            free = _smaller("connections", way, "a b", "only_if")
+            free = _smaller("connections", way, "a b only_for not_for", "only_if")
             yield f"the way between {way.a} and {way.b}", condition_text(way.only_if), free
     for event in scenario.events:
         if event.only_if is not None:

@@ -15,7 +15,7 @@ from pursue_gen.diagnostics import PursueError, Span
 from pursue_gen.explanation.number_changes import Repair
 from pursue_gen.explanation.repairs import repairs
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.times import Time, like, written_time
+from pursue_gen.language.times import like, written_time
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.cut_off import lost_to_a_stay
 from pursue_gen.solving.decided import strategy_of
@@ -179,8 +179,7 @@ def _change(repair: Repair, win: _Win) -> Change:
     value, next_lost = repair.values[win.high], repair.values[win.low] if win.low >= 0 else repair.before
     texts, least = (str(repair.before), str(value), repair.say(value)), win.high - win.low == 1
     other: Any = next_lost
-    worse = like(other, repair.before) if isinstance(repair.before, Time) else other
-    lost = "" if str(next_lost) == str(repair.before) else written_time(worse)
+    lost = "" if str(next_lost) == str(repair.before) else written_time(like(other, repair.before))
     return Change(repair.what, repair.name, *texts, repair.span, str(next_lost), least, lost)
 
 

@@ -149,9 +149,7 @@ def as_json(found: Costs) -> Dict[str, Any]:
     return {"decided": decided_ones, "undecided": list(found.undecided), **objectives, **forms, **more}
 
 
-def _alone(
-    scenario: Scenario, rules: Rules, budget: Budget, objectives: bool
-) -> Tuple[List[Cost], List[Part]]:
+def _alone(scenario: Scenario, rules: Rules, budget: Budget, objectives: bool) -> Tuple[List[Cost], List[Part]]:
     """What is decided without one part that matters, and the parts without which it is not; the smallest game first."""
     parts = list(without_each(scenario, objectives))
     sizes, whole = [_size(*_game(smaller, rules)) for _, smaller in parts], _size(*_game(scenario, rules))

@@ -10,6 +10,7 @@ from pursue_gen.diagnostics import Span
 from pursue_gen.language.clauses import Domains
 from pursue_gen.language.loads import MOST_LOADS, Carrier
 from pursue_gen.language.numbers import Number, Window, whole_above, whole_below
+from pursue_gen.language.objectives.endurance import MOST_PARTS
 from pursue_gen.language.objectives.holds import Holds
 from pursue_gen.language.objectives.request import with_fewer
 from pursue_gen.language.scenario import Battery, Endurance, Event, Pause, Reach, Request, Scenario, Travel
@@ -119,13 +120,21 @@ def battery_changes(scenario: Scenario, battery: Battery) -> Iterator[Repair]:
 
 
 def charge_changes(scenario: Scenario, endurance: Endurance) -> Iterator[Repair]:
-    """A battery by time that is full sooner."""
-    name, before = endurance.agent.name, endurance.charge
+    """A battery by time that is full sooner, or of which smaller parts of a charge count."""
+    name, before, parts = endurance.agent.name, endurance.charge, endurance.parts
     yield Repair(
-        "charges", name, f"a battery of {name} that is full sooner", before, whole_below(before, 1),
+        "charges", name, f"a battery of {name} that is full sooner", before,
+        endurance.possible_limits(whole_below(before, 1)),
         lambda k: scenario.with_instead(endurance, replace(endurance, charge=k)),
         lambda k: f"a battery of {name} that charges in {instead(k, before)}", endurance.span, 1,
     )  # fmt: skip
+    finer = [parts * k for k in (2, 4, 8) if parts * k <= MOST_PARTS and replace(endurance, parts=parts * k).is_even]
+    if finer:
+        yield Repair(
+            "parts", name, f"a battery of {name} that counts smaller parts of a charge", parts, finer,
+            lambda k: scenario.with_instead(endurance, replace(endurance, parts=k)),
+            lambda k: f"a battery of {name} that is charged in {k} parts instead of {parts}", endurance.span, 1,
+        )  # fmt: skip
 
 
 def room_changes(scenario: Scenario, holds: Holds) -> Iterator[Repair]:

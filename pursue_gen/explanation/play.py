@@ -19,15 +19,7 @@ from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.compile_game import compile_game
-from pursue_gen.synthesis.game import (
-    Game,
-    JointMove,
-    State,
-    initial_state,
-    is_bad,
-    is_goal,
-    joint_moves,
-)
+from pursue_gen.synthesis.game import Game, JointMove, State, initial_state, is_bad, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Edge, Network, Objective
 from pursue_gen.tga.pauses import pauses
@@ -206,7 +198,7 @@ class _CounterPlayer:
             steps.append(CounterStep(self._now, move.owner, move.edges))
             if self._first and move.edges[0] == self._first[0]:
                 self._first = None
-            before, here = here.state, _after(here, move, delay)
+            before, here = here.state, here.after(move, delay)
             if self._goes_in_circles(steps, before, here.state):
                 return self._end("endless", steps, here)
         return self._end("open", steps, here)
@@ -326,10 +318,10 @@ class _CounterPlayer:
 
     def _in_vain(self, here: Position, move: JointMove, delay: Fraction) -> bool:
         """True if the move only leads to where the play has been at the same time."""
-        return self._met.get(self._oracle.same(_after(here, move, delay))) == self._now + delay
+        return self._met.get(self._oracle.same(here.after(move, delay))) == self._now + delay
 
     def _leaves_lost(self, here: Position, move: JointMove, delay: Fraction) -> bool:
-        after, at = _after(here, move, delay), self._now + delay
+        after, at = here.after(move, delay), self._now + delay
         if self._is_broken(after):
             return True
         return self._oracle.lost(after, at, self._horizon)
@@ -354,13 +346,6 @@ class _CounterPlayer:
         if self._horizon is None and able & set(at_bound):
             return ()
         return tuple(k for k in at_bound if k not in able)
-
-
-def _after(here: Position, move: JointMove, delay: Fraction) -> Position:
-    clocks = [value + delay for value in here.clocks]
-    for clock in move.resets:
-        clocks[clock - 1] = Fraction(0)
-    return Position(move.target, tuple(clocks))
 
 
 def _kept(whole: Network, spared: Network) -> FrozenSet[int]:

@@ -83,8 +83,9 @@ def _remarks(scenario: Scenario, play: Play, step: CounterStep) -> Iterator[str]
         objective = objectives.get(play.game.automata[play.game.edges[k].automaton].name)
         if objective is None or objective.limit is None:
             continue
-        if play.game.origins[k].target == names.AT_RISK:
-            yield f" ({objective.words.must} by {moment(step.at + objective.limit, scenario.unit)})"
+        limit = objective.limit_in(play.game.origins[k].target)
+        if limit is not None and play.game.origins[k].resets:
+            yield f" ({objective.words.must} by {moment(step.at + limit, scenario.unit)})"
         elif play.game.origins[k].target == names.IDLE and objective.words.in_time:
             yield f" ({objective.words.in_time})"
 

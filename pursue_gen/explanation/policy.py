@@ -49,6 +49,11 @@ class Window:
             return replace(self, high=high, high_open=strict)
         return self
 
+    def both(self, other: Window) -> Window:
+        """The delays in this window and in the other one."""
+        common = self.at_least(other.low, other.low_open)
+        return common if other.high is None else common.at_most(other.high, other.high_open)
+
     def holds(self, delay: Fraction) -> bool:
         """True if the delay is in the window."""
         if delay < self.low or (delay == self.low and self.low_open):
@@ -122,7 +127,7 @@ class Controller:
                 if self._keys(move, named) != keys:
                     continue
                 for span in map(self._span(here), command.zones):
-                    delay = None if span is None else _both(span, open_).earliest()
+                    delay = None if span is None else span.both(open_).earliest()
                     if delay is not None:
                         choices.append((move, delay))
         return min(choices, key=lambda choice: choice[1], default=None)
@@ -150,11 +155,6 @@ class Controller:
         """When a zone holds, seen from here; None: time does not get there."""
         clocks = dict(zip(self._game.clocks, here.clocks))
         return lambda zone: span(zone, clocks)
-
-
-def _both(a: Window, b: Window) -> Window:
-    common = a.at_least(b.low, b.low_open)
-    return common if b.high is None else common.at_most(b.high, b.high_open)
 
 
 class _Planner(NamedTuple):

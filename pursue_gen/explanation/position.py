@@ -15,7 +15,7 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 from pursue_gen.language.numbers import Number
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
-from pursue_gen.synthesis.game import State
+from pursue_gen.synthesis.game import JointMove, State
 from pursue_gen.synthesis.limits import NO_LIMITS
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Network, Objective, Sync
 from pursue_gen.tga.pauses import acting_at_most
@@ -31,6 +31,15 @@ class Position:
 
     state: State
     clocks: Tuple[Fraction, ...]
+
+    def later(self, delay: Fraction) -> Position:
+        """The position when so much time has passed."""
+        return Position(self.state, tuple(value + delay for value in self.clocks))
+
+    def after(self, move: JointMove, delay: Fraction) -> Position:
+        """The position after a move that is made when so much time has passed."""
+        aged = enumerate(self.later(delay).clocks, 1)
+        return Position(move.target, tuple(Fraction(0) if clock in move.resets else value for clock, value in aged))
 
 
 class PositionSolver:

@@ -66,6 +66,8 @@ def _repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
         yield from _of_way(scenario, connection)
     controlled = [agent.name for agent in scenario.agents if agent.controllable]
     for part in (part for part in scenario.for_some if not all(map(part.admits, controlled))):
+        if isinstance(part, Connection) and scenario.is_lane(part):
+            continue  # who may take it as well would have two ways
         what = part.name if isinstance(part, Poi) else f"the way between {part.a} and {part.b}"
         freer = scenario.with_instead(part, replace(part, only_for=(), not_for=()))
         yield _switch("whom", what, f"{what} for all (without {part.whom_text})", part.whom_text, freer, part.span, 1)
@@ -143,8 +145,9 @@ def _of_limit(scenario: Scenario, objective: StatedObjective) -> Iterator[Repair
     if before is None or statement.objectives[0] is not objective:
         return
     together, _, change, about, label, begins, ends = statement
+    longer = whole_above(before, before + max(before, 2 * _all_time(scenario)))
     yield Repair(
-        change, about, label, before, whole_above(before, before + max(before, 2 * _all_time(scenario))),
+        change, about, label, before, objective.possible_limits(longer),
         lambda k: scenario.with_each(lambda each: each.with_limit(k) if each in together else each),
         lambda k: f"{begins} {instead(k, before)}{ends}", objective.span, 1,
     )  # fmt: skip
@@ -232,11 +235,12 @@ def _may_be_endless(scenario: Scenario, event: Event) -> bool:
 
 def _of_way(scenario: Scenario, way: Connection) -> Iterator[Repair]:
     ends = f"{scenario.shown(way.a)} and {scenario.shown(way.b)}"
+    ends += f" ({way.whom_words})" if scenario.is_lane(way) else ""
     if way.distance > 1:
         yield Repair(
             "distance", ends, f"a shorter way between {ends}", way.distance, whole_below(way.distance, 1),
-            lambda k: scenario.with_instead(way, replace(way, distance=k)),
-            lambda k: f"{ends} at distance {k} instead of {way.distance}", way.span,
+            lambda k: scenario.with_instead(way, replace(way, distance=like(k, way.distance))),
+            lambda k: f"{ends} at distance {instead(k, way.distance)}", way.span,
         )  # fmt: skip
     if way.one_way and not any((other.a, other.b) == (way.b, way.a) for other in scenario.connections):
         label = f"a way between {ends} in both directions"

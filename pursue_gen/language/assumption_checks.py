@@ -36,7 +36,8 @@ def setting_of(scenario: Scenario) -> Setting:
 def open_ways(scenario: Scenario, agent: Agent) -> Dict[Tuple[str, str], Number]:
     """The ways that are always open, and that no assumption keeps the agent from, with their longest times."""
     shunned = {place for each in scenario.assumptions if each.binds(agent) for place in each.shunned}
-    closed = {way for each in scenario.connections if each.only_if is not None for way in each.directions}
+    own = scenario.ways_of(agent.name)
+    closed = {way for each in own if each.only_if is not None for way in each.directions}
     ways = scenario.movements(agent).items()
     return {way: most for way, (_, most) in ways if way not in closed and way[1] not in shunned}
 

@@ -2,40 +2,88 @@
 
 What a movement or an action may use at most is taken off when it begins, so a battery never runs empty on the way; what
 is recharged at least is added when an action at the dock ends. The one is rounded up, the other down: levels are whole.
+Where ways use by their lengths, nothing is rounded: a unit of the capacity has as many levels as make all of it whole.
 """
 
 from __future__ import annotations
 
-from math import ceil, floor
+from fractions import Fraction
+from math import ceil, floor, gcd
 from typing import Dict, Iterator, List, Mapping, Tuple, Union
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
+from pursue_gen.language.numbers import decimal_text, exact
 from pursue_gen.language.scenario import Agent, Battery, Endurance, Event, Scenario
 from pursue_gen.language.times import like, written_time
+
+_LARGEST = 30_000
+"""The largest level: UPPAAL has variables of 16 bits."""
 
 MOST_LEVELS = 60
 """The most levels at which a battery can be: each multiplies the states of the game."""
 
 
+def levels_in(scenario: Scenario, battery: Battery) -> int:
+    """How many levels there are in a unit of the capacity: one, or as many as make all that is used by way of lengths
+    and at work, and recharged, whole."""
+    found, driven = 1, _driven(scenario, battery)
+    at_work = (*_used_at_work(scenario, battery).values(), *_recharged(scenario, battery).values())
+    for number in (*driven.values(), *at_work) if driven else ():
+        found *= number.denominator // gcd(found, number.denominator)
+    return found
+
+
+def full(scenario: Scenario, battery: Battery) -> int:
+    """The level of a full battery."""
+    return battery.capacity * levels_in(scenario, battery)
+
+
+def shown_level(scenario: Scenario, battery: Battery, level: int) -> str:
+    """A level, or so many levels, in units of the capacity."""
+    return decimal_text(exact(Fraction(level, levels_in(scenario, battery))))
+
+
+def _driven(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str], Fraction]:
+    """What each movement uses by its length, in units of the capacity; none where time counts."""
+    agent = _agent(scenario, battery)
+    if battery.driving is None or agent.mobile is None:
+        return {}
+    ways = ((way, each.distance) for each in scenario.ways_of(agent.name) for way in each.directions)
+    return {way: Fraction(battery.driving) * Fraction(distance) for way, distance in ways}
+
+
 def movements_use(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str], int]:
-    """From and to of each movement of the battery's robot, and what it uses at most."""
+    """From and to of each movement of the battery's robot, and how many levels it uses at most."""
+    if battery.driving is not None:
+        in_one = levels_in(scenario, battery)
+        return {way: int(use * in_one) for way, use in _driven(scenario, battery).items()}
     agent = _agent(scenario, battery)
     return {way: ceil(battery.uses * window[1]) for way, window in scenario.movements(agent).items()}
 
 
 def actions_use(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str], int]:
-    """Event and place of each of its robot's actions elsewhere than at the dock, and what that uses at most."""
+    """Event and place of each of its robot's actions elsewhere than at the dock, and the levels used at most."""
+    in_one = levels_in(scenario, battery)
+    return {action: ceil(use * in_one) for action, use in _used_at_work(scenario, battery).items()}
+
+
+def _used_at_work(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str], Fraction]:
     return {
-        (event.name, place): ceil(battery.uses * event.window[1])
+        (event.name, place): Fraction(battery.uses) * Fraction(event.window[1])
         for event, place in _actions(scenario, battery)
         if event.window is not None and not is_dock(battery, place)
     }
 
 
 def recharges(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str], int]:
-    """Event and place of each of its robot's actions at the dock, and what that recharges at least."""
+    """Event and place of each of its robot's actions at the dock, and how many levels that recharges at least."""
+    in_one = levels_in(scenario, battery)
+    return {action: floor(gain * in_one) for action, gain in _recharged(scenario, battery).items()}
+
+
+def _recharged(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str], Fraction]:
     return {
-        (event.name, place): floor(battery.recharges * event.duration)
+        (event.name, place): Fraction(battery.recharges) * Fraction(event.duration)
         for event, place in _actions(scenario, battery)
         if event.duration is not None and is_dock(battery, place)
     }
@@ -50,11 +98,12 @@ def levels(scenario: Scenario, battery: Battery) -> Tuple[int, ...]:
     """Every level at which the battery can be, the full one first."""
     uses = {*movements_use(scenario, battery).values(), *actions_use(scenario, battery).values()}
     gains = set(recharges(scenario, battery).values())
-    found, waiting = {battery.capacity}, [battery.capacity]
+    most = full(scenario, battery)
+    found, waiting = {most}, [most]
     while waiting:
         level = waiting.pop()
         following = {level - use for use in uses if use <= level}
-        following |= {min(battery.capacity, level + gain) for gain in gains}
+        following |= {min(most, level + gain) for gain in gains}
         waiting += following - found
         found |= following
     return tuple(sorted(found, reverse=True))
@@ -105,12 +154,17 @@ def _too_long(agent: Agent, endurance: Endurance, scenario: Scenario) -> Iterato
 
 
 def _levels(scenario: Scenario, battery: Battery) -> Iterator[Diagnostic]:
-    name, capacity = battery.agent.name, battery.capacity
+    name = battery.agent.name
     if battery.dock is not None and not recharges(scenario, battery):
         dock = battery.dock.name
         message = f"{name} never recharges: it can do nothing at {dock} that lasts"
         hint = f'let it: event "charge" location {dock} duration 10, and can_do charge'
         yield error("PML313", message, battery.dock.span, hint)
+        return
+    most = full(scenario, battery)
+    if most > _LARGEST:
+        message = f"what {name} uses on its ways has too many digits: the full battery would be level {most}"
+        yield error("PML315", message, battery.span, "round distances, or what it uses per metre")
         return
     count = len(levels(scenario, battery))
     if count > MOST_LEVELS:
@@ -118,14 +172,16 @@ def _levels(scenario: Scenario, battery: Battery) -> Iterator[Diagnostic]:
         hint = f"at most {MOST_LEVELS} are possible; " + _coarser(scenario, battery)
         yield error("PML315", message, battery.span, hint)
     for way, use in movements_use(scenario, battery).items():
-        if use > capacity:
-            message = f"a full battery does not last {name} from {way[0]} to {way[1]}: that uses up to {use}"
-            yield warning("PML316", message, battery.span, f"{name} never sets off on it; write capacity {use} or more")
+        if use > most:
+            enough, used = ceil(Fraction(use, most) * battery.capacity), shown_level(scenario, battery, use)
+            message = f"a full battery does not last {name} from {way[0]} to {way[1]}: that uses up to {used}"
+            hint = f"{name} never sets off on it; write capacity {enough} or more"
+            yield warning("PML316", message, battery.span, hint)
 
 
 def _coarser(scenario: Scenario, battery: Battery) -> str:
     """What would give the battery fewer levels."""
-    shown = ", ".join(str(use) for use in sorted(set(_uses(scenario, battery))))
+    shown = ", ".join(shown_level(scenario, battery, use) for use in sorted(set(_uses(scenario, battery))))
     return f"choose a larger unit, or times with a common divisor (movements and actions use, at most: {shown})"
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, Dict, FrozenSet, Iterable, Iterator, List, Optional, Set, Tuple, Union
+from typing import Any, Dict, FrozenSet, Iterable, Iterator, List, Optional, Sequence, Set, Tuple, Union
 
-from pursue_gen.diagnostics import Diagnostic, Severity, Span, error, in_order, warning
+from pursue_gen.diagnostics import Diagnostic, Severity, Span, error, in_order, listed, warning
 from pursue_gen.language.assumption_checks import check_assumptions
 from pursue_gen.language.batteries import check_batteries
 from pursue_gen.language.behaviour import check_events, check_rules, components
@@ -18,7 +18,7 @@ from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.numbers import MOST_DIGITS, exact, is_fine
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
-from pursue_gen.language.scenario import Agent, Poi, Scenario
+from pursue_gen.language.scenario import Agent, Connection, Poi, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
 from pursue_gen.language.times import in_units, written_time
 from pursue_gen.language.tokens import shown
@@ -218,15 +218,27 @@ def _travels(scenario: Scenario) -> Iterator[Diagnostic]:
 
 
 def _connections(scenario: Scenario) -> Iterator[Diagnostic]:
-    seen: Dict[Tuple[str, str], Span] = {}
+    """Places that are connected twice for an agent."""
+    seen: Dict[Tuple[str, str], List[Connection]] = {}
     for way in scenario.connections:
-        known = [seen[direction] for direction in way.directions if direction in seen]
-        if known and way.a != way.b:
-            message = f"{way.a} and {way.b} are connected twice; {known[0].in_words} does it already"
-            hint = "delete one: a connection goes both ways; or write one_way behind both"
-            yield error("PML146", message, way.span, hint)
+        known = [other for direction in way.directions for other in seen.get(direction, ()) if way.a != way.b]
+        for other in known:
+            both = [agent.name for agent in scenario.agents if way.admits(agent.name) and other.admits(agent.name)]
+            if both or not (way.whom_words or other.whom_words):
+                yield _twice(way, other, both)
+                break
         for direction in way.directions:
-            seen.setdefault(direction, way.span)
+            seen.setdefault(direction, []).append(way)
+
+
+def _twice(way: Connection, other: Connection, both: Sequence[str]) -> Diagnostic:
+    """The error on two ways between two places, which `both` may take."""
+    message, hint = f"{way.a} and {way.b} are connected twice", "write one_way behind both"
+    if way.whom_words or other.whom_words:
+        message += f" for {listed(both)}"
+        hint = f"write behind one for whom it is, and behind the other except {', '.join(both)}"
+    message += f"; {other.span.in_words} does it already"
+    return error("PML146", message, way.span, f"delete one: a connection goes both ways; or {hint}")
 
 
 def _missing(scenario: Scenario) -> Iterator[Diagnostic]:

@@ -69,12 +69,13 @@ class Carrier:
     def after(self, event: Event, load: Load) -> Optional[Load]:
         """What it carries and has mounted when the event has ended that it begins with a load; None: it cannot."""
         names, then, first = self.names, list(load), len(self.things)
-        if any(ref is not None and not dict(zip(names, load)).get(ref.name) for ref in (event.needs, event.gives)):
-            return None
+        for ref, count in ((event.needs, 1), (event.gives, event.given)):
+            if ref is not None and dict(zip(names, load)).get(ref.name, 0) < count:
+                return None
         if event.gives is not None:
-            then[names.index(event.gives.name)] -= 1
+            then[names.index(event.gives.name)] -= event.given
         if event.takes is not None:
-            then[names.index(event.takes.name)] += 1
+            then[names.index(event.takes.name)] += event.taken
         if event.mounts is not None:
             then[first:] = [int(tool == event.mounts.name) for tool in self.tools]
         return tuple(then) if sum(then[:first]) <= self.room else None
@@ -126,6 +127,10 @@ def check_loads(scenario: Scenario) -> Iterator[Diagnostic]:
 
 def _event(event: Event, taken: Container[str]) -> Iterator[Diagnostic]:
     """Things that one event both takes and gives, or of which one is carried and mounted."""
+    for word, count in (("takes", event.taken), ("gives", event.given)):
+        if count < 1:
+            hint = f"write a number from 1 on, or delete {word}"
+            yield error("PML340", f"{event.name} {word} {count} things: expected 1 or more", event.span, hint)
     if event.takes is not None and event.gives is not None and event.takes.name == event.gives.name:
         message = f"{event.name} takes {event.takes.name} and gives it: nothing would change"
         yield error("PML342", message, event.span, "write two events, one that takes it and one that gives it")
@@ -173,7 +178,12 @@ def _carrier(carrier: Carrier) -> Iterator[Diagnostic]:
             hint = f"add an event that {how} {thing} behind its can_do, or take {event.name} away from it"
             yield error("PML341", message, refs[event.name].span, hint)
     for event in carrier.events:
-        if event.takes is not None and event.takes.name not in given:
+        most = max(event.taken, event.given)
+        if most > carrier.room:
+            message = f"{name} can never do {event.name}: it {event.load_words}, and {name} has room for {carrier.room}"
+            hint = f"let {name} carry more: carries {most}; or take {event.name} away from it"
+            yield error("PML341", message, refs[event.name].span, hint)
+        elif event.takes is not None and event.takes.name not in given:
             thing, room = event.takes.name, carrier.room
             message = f"{name} never gives {thing} away: when it carries {room} it can do {event.name} no more"
             hint = f"add an event that gives {thing}, if it is to go on"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from itertools import takewhile
 from typing import FrozenSet, List, Optional, Sequence, Tuple
 
@@ -10,7 +11,7 @@ from lark import Token
 
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language.kinds import KEYWORDS, MAY_BE_NAMES, RESERVED, STATEMENTS
-from pursue_gen.language.numbers import MOST_DIGITS
+from pursue_gen.language.numbers import MOST_DIGITS, at_least, decimal_text, read_number
 from pursue_gen.language.similar import closest
 from pursue_gen.language.tokens import shown
 from pursue_gen.language.usable import proposal
@@ -82,7 +83,7 @@ def explain(chunk: Sequence[Token], index: int, expected: FrozenSet[str], span: 
     if unread is not None:
         return unread
     message = f"expected {_in_words(expected)} after {_shown(chunk[index - 1])}, found {_shown(token)}"
-    return error("PML010", message, span, _hint(chunk, index, expected) or _form(chunk))
+    return error("PML010", message, span, _hint(chunk, index, expected) or _form(chunk[: index + 1]))
 
 
 def of_a_comment(finding: Diagnostic, lines: Sequence[str]) -> Diagnostic:
@@ -164,7 +165,7 @@ def _hint(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     if token.type in ("TRUE_IF", "FALSE_IF") and "COMMA" in expected:
         return "put a comma behind true or false: " + STATEMENTS["STATE"].form()
     if token.type == "COLON" and "COLON" not in expected:
-        return f"delete the colon behind {chunk[index - 1]}; {_form(chunk)}"
+        return f"delete the colon behind {chunk[index - 1]}; {_form(chunk[: index + 1])}"
     return _meant(chunk, index, expected)
 
 
@@ -175,12 +176,23 @@ def _otherwise(chunk: Sequence[Token], index: int) -> str:
         if word.type == "WORD" and str(word).lower() in _SAID_OTHERWISE:
             return _SAID_OTHERWISE[str(word).lower()]
     if "PATROL" in kinds and (token.type == "TWICE" or kinds[index : index + 2] == ["NUMBER", "TIMES"]):
-        return "write the time between two visits: twice in 60 is every 30"
+        return _oftener(chunk, "2" if token.type == "TWICE" else str(token))
     if "BY" in kinds[:index] and token.type in ("COMMA", "AND") and {"PATROL", "ESCORT"} & {*kinds}:
         return f"put `or` between them: by {before} or {''.join(chunk[index + 1 : index + 2])}"
     if "ESCORT" in kinds and token.type == "WITHIN" and before.type == "WORD":
         return f"name the places: {_ESCORT}"
     return ""
+
+
+def _oftener(chunk: Sequence[Token], times: str) -> str:
+    """How it is written that somebody comes so many times in a period."""
+    found = next((number for word, number in zip(chunk, chunk[1:]) if word.type == "EVERY"), "60")
+    period, often = read_number(str(found)), read_number(times)
+    if not period or not often:
+        period, often = 60, 2
+    said = "twice" if often == 2 else f"{decimal_text(often)} times"
+    every = at_least(Fraction(period) / often)
+    return f"write the time between two visits: {said} in {decimal_text(period)} is every {every}"
 
 
 def _with_comma(whole: str, rest: str) -> str:
@@ -211,7 +223,7 @@ def _stray(chunk: Sequence[Token], index: int) -> str:
     if text == "." and before.type == "WORD" and index + 1 < len(chunk):
         return f"a name stands alone, without the agent it belongs to: write {shown(str(chunk[index + 1]))}"
     if text in (";", ".") and index + 1 == len(chunk):
-        return f"delete it: nothing stands behind a statement; {_form(chunk)}"
+        return f"delete it: nothing stands behind a statement; {_form(chunk[: index + 1])}"
     return ""
 
 
@@ -230,7 +242,7 @@ def _meant(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
         if close:
             return f"did you mean {close}?"
         if chunk[index - 1].type == "NUMBER":
-            return f"delete it: a number stands alone, in the unit of your choice; {_form(chunk)}"
+            return f"delete it: a number stands alone, in the unit of your choice; {_form(chunk[: index + 1])}"
         if "COMMA" in expected and chunk[index - 1].line == token.line:
             return "put a comma between two names"
     if statement == "REACH_OBJECTIVE" and token.type in ("IF", "AVOID"):
@@ -239,7 +251,9 @@ def _meant(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
 
 
 def _form(chunk: Sequence[Token]) -> str:
-    return "the form is: " + STATEMENTS[kind_of(chunk)].form() if kind_of(chunk) in STATEMENTS else "delete it"
+    """How the statement is written of which this is the right beginning."""
+    kind = STATEMENTS.get(kind_of(chunk))
+    return "delete it" if kind is None else f"the form is: {kind.form_behind(chunk)}"
 
 
 def _near(word: str, words: Tuple[str, ...]) -> str:

@@ -19,6 +19,10 @@ CHARGING, EMPTY = Role.CHARGING(), Role.EMPTY()
 """Locations of a battery's automaton, which is one of a safety objective: its robot is at the charger, and the battery
 not full yet; and it is too late to leave before it is."""
 
+left_with, came_with, came_too_late, charged_to = Role.LEFT, Role.CAME, Role.CAME_LATE, Role.CHARGED
+"""Locations of a battery's automaton where parts of it count: its robot is away since it left the charger with so many;
+it is back, and no part done yet; likewise, but too late to leave before one is; and so many are done."""
+
 START, UNLOCKED, WIN, LATE = Role.START(), Role.UNLOCKED(), Role.WIN(), Role.LATE()
 """Locations of a reach objective's automaton: it does not count yet, it does, it is reached, its time is over."""
 

@@ -9,6 +9,7 @@ from typing import Dict, Iterator, List, Optional, Tuple
 from pursue_gen.diagnostics import Diagnostic, Span, warning
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Connection, Pose, Scenario
+from pursue_gen.language.times import written_time
 
 _SAME = 0.1
 """Metres below which two poses are one: no robot is that small."""
@@ -118,7 +119,7 @@ def _distances(scenario: Scenario) -> Iterator[Diagnostic]:
 
 
 def _line(metres: float, way: Connection) -> str:
-    return f"{way.a} and {way.b} are {metres:.1f} m apart at distance {way.distance}"
+    return f"{way.a} and {way.b} are {metres:.1f} m apart at distance {written_time(way.distance)}"
 
 
 def _metres(a: Pose, b: Pose) -> float:

@@ -15,6 +15,7 @@ from lark import Token
 from pursue_gen.diagnostics import Span, error
 from pursue_gen.language.document import Document, Edit, behind, written
 from pursue_gen.language.kinds import KEYWORDS, STATEMENTS
+from pursue_gen.language.lengths import length_text
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.occurrences import are_names
 from pursue_gen.language.poses import end_of_poses, pose_text
@@ -87,8 +88,9 @@ class Rewriting:
         here = next(k for k in range(len(kinds)) if kinds[k : k + 2] == [word, "NUMBER"])
         last = here + 3 if kinds[here + 2 : here + 4] == ["TO", "NUMBER"] else here + 1
         place = start_of(statement.tokens[here + 1]), end_of(statement.tokens[last])
-        units = word != "DISTANCE" and has_unit(statement.tokens[here + 1])
-        edit = Edit(*place, self._times(*numbers, units=units))
+        units = has_unit(statement.tokens[here + 1])
+        length = units and word == "DISTANCE"
+        edit = Edit(*place, length_text(numbers[0]) if length else self._times(*numbers, units=units))
         return [edit, *self._remarked(statement, remark)]
 
     def _times(self, *numbers: Number, units: bool = True) -> str:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any, Callable, Collection, Dict, Iterator, Optional, Tuple, Union
+from typing import Any, Callable, Collection, Dict, FrozenSet, Iterator, Optional, Tuple, Union
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language import assumptions as kinds_of_assumptions
@@ -13,6 +14,7 @@ from pursue_gen.language.assumptions import *
 from pursue_gen.language.assumptions.base import Assumption
 from pursue_gen.language.assumptions.most_open import MostOpen
 from pursue_gen.language.conditions import AllOf, AnyOf, At, AtMostOf, Condition, Doing, Has, Holds, Not, OnWay, Who
+from pursue_gen.language.lengths import Length
 from pursue_gen.language.numbers import Number, Window, exact
 from pursue_gen.language.objectives import *
 from pursue_gen.language.objectives import Endurance, GivenUp, Patrol, Reach, Safety, StatedObjective, WhyGivenUp
@@ -34,6 +36,7 @@ from pursue_gen.language.statements.state import State
 from pursue_gen.language.statements.thing import Thing
 from pursue_gen.language.statements.travel import Travel
 from pursue_gen.language.statements.unit import Unit
+from pursue_gen.language.times import like
 
 __all__ = [
     "Agent", "AllOf", "AnyOf", "At", "AtMostOf", "Battery", "Both", "Choice", "Condition", "Connection", "Dependency",
@@ -84,6 +87,16 @@ class Scenario:
     def unit(self) -> Optional[Number]:
         """The seconds of a time unit; None: it does not say."""
         return self.units[0].seconds if self.units else None
+
+    @property
+    def in_metres(self) -> bool:
+        """True where distances are metres: one has a unit, or an agent a speed."""
+        lengths = any(isinstance(way.distance, Length) for way in self.connections)
+        return lengths or any(agent.speed is not None for agent in self.agents)
+
+    def as_distance(self, number: Number) -> Number:
+        """A distance as one would write it beside those that it has."""
+        return like(number, next((way.distance for way in self.connections if isinstance(way.distance, Length)), None))
 
     @property
     def rest(self) -> Number:
@@ -185,6 +198,16 @@ class Scenario:
         """The places and ways that are not for all agents."""
         parts: Tuple[Union[Poi, Connection], ...] = (*self.pois, *self.connections)
         return tuple(part for part in parts if part.only_for or part.not_for)
+
+    @cached_property
+    def _several(self) -> FrozenSet[Tuple[str, str]]:
+        """From and to of what has more than one way."""
+        ends = Counter(direction for way in self.connections for direction in way.directions)
+        return frozenset(direction for direction, number in ends.items() if number > 1)
+
+    def is_lane(self, way: Connection) -> bool:
+        """True for a way of some agents beside which others have one of their own."""
+        return not self._several.isdisjoint(way.directions)
 
     def closed_to(self, agent: str) -> Tuple[Union[Poi, Connection], ...]:
         """The places and ways that are not for the agent of this name."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Dict, List, Optional
 
 from pursue_gen.diagnostics import listed
+from pursue_gen.language.lengths import unit_of_distance
 from pursue_gen.language.numbers import Number, Window
 from pursue_gen.language.one_for_all import is_one_for_all
 from pursue_gen.language.scenario import Agent, Scenario, StatedObjective
@@ -64,7 +65,7 @@ def speed_words(agent: Agent, scenario: Scenario) -> str:
     also += [f"has {listed([ref.shown for ref in agent.has])}"] if agent.has else []
     if agent.mobile is None:
         return ", ".join(["stays there", *also])
-    pace = f"{words_for(agent.mobile, scenario.unit)} per unit of distance"
+    pace = f"{words_for(agent.mobile, scenario.unit)} per {unit_of_distance(scenario.in_metres)}"
     words = [pace if agent.speed is None else f"{agent.speed} m/s"]
     own = [travel for travel in scenario.travels if travel.agent.name == agent.name]
     words += [f"{travel.a.shown} to {travel.b.shown} in {window_words(travel.window, scenario.unit)}" for travel in own]

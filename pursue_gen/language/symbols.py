@@ -71,6 +71,10 @@ class Role(enum.Enum):
     AT_RISK = "atRisk", "a deadline is running"
     CHARGING = "atCharger", "a battery is being charged"
     EMPTY = "atChargerEmpty", "an empty battery is being charged"
+    LEFT = "atRisk_{}", "a deadline is running: the charger was left with so many parts of a battery: {}"
+    CAME = "atCharger_{}", "a battery is being charged, and no part of it done yet: {} before"
+    CAME_LATE = "atChargerEmpty_{}", "an empty battery is being charged, and no part of it done yet: {} before"
+    CHARGED = "charged_{}", "a battery is being charged, and has so many parts: {}"
     LOSE = "lose", "a promise is broken"
     REACH = "reachObj{}", "a part of an objective"
     REACH_CLOCK = "Creach{}", "a part of an objective"
@@ -153,9 +157,10 @@ def numbered(role: Role, number: int) -> Symbol:
     return Symbol(role.form.format(number + 1 if number else ""), role, (str(number + 1),))
 
 
+_COUNTED = Role.DONE_TIMES, Role.APART, Role.LEFT, Role.CAME, Role.CAME_LATE, Role.CHARGED
 _FURTHER = "([2-9]|[1-9][0-9]+)?"
 _READ = {role: "(.+)" for role in Role if "{" not in role.form or role in (*UNDER_WAY, Role.END, Role.BROKEN_OFF)}
-_READ.update(dict.fromkeys((Role.DONE_TIMES, Role.APART), "([1-9][0-9]*)"))
+_READ.update(dict.fromkeys(_COUNTED, "([1-9][0-9]*)"))
 _READ.update({Role.DID: "([1-9][0-9_]*)", Role.SAFETY: _FURTHER, Role.REACH: _FURTHER, Role.ASSUMPTION: "([0-9]+)"})
 _READ[Role.AWAITED] = _READ[Role.ASSUMPTION]
 _FORMS = {role: re.compile(role.form.replace("{}", part)) for role, part in _READ.items()}

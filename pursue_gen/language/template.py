@@ -19,6 +19,7 @@ from pursue_gen.language.tree_reader import TreeReader
 
 _PIECE = re.compile(r"\[([^\]]+)\]|([^\[]+)")
 _TOKEN = re.compile(r"\{([\w,]+)(?::([^}=]+))?(?:=([^}]*))?\}|(\w+)|[:,]")
+_WORDS = re.compile(r"\w+|[:,]")
 _TO_FILL_IN = re.compile(r'[\d.]+|(?<=")[^"]+')
 
 
@@ -85,6 +86,8 @@ FILLINGS: Mapping[str, Filling] = {
     ),
     "name": Filling("NAME", lambda _, token: bare(token), '"{}"'.format),
     "number": Filling("NUMBER", TreeReader.number),
+    "distance": Filling("NUMBER", TreeReader.distance, written_time),
+    "metres": Filling("NUMBER", TreeReader.metres, written_time),
     "time": Filling("NUMBER", TreeReader.time, written_time),
     "count": Filling("NUMBER", TreeReader.count),
     "window": Filling("window", TreeReader.window, window_text),
@@ -149,6 +152,12 @@ class Template:
     def _shown(self, text: Callable[[Hole], str]) -> str:
         pieces = (piece for piece in self.pieces if not piece.optional or all(hole.example for hole in piece.holes))
         return _joined(piece.text.format(*map(text, piece.holes)) for piece in pieces)
+
+    @property
+    def words(self) -> Tuple[str, ...]:
+        """Its words and signs, in order; "" where it begins with a hole."""
+        found = [word for piece in self.pieces for word in _WORDS.findall(piece.text)]
+        return (*[""] * self.pieces[0].text.startswith("{"), *found)
 
     @property
     def begins(self) -> Tuple[str, ...]:

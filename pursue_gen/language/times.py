@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from fractions import Fraction
-from typing import Any, List, NamedTuple, Optional
+from typing import ClassVar, List, Optional
 
 from pursue_gen.diagnostics import units
-from pursue_gen.language.numbers import Decimal, Number, decimal_text, exact, read_number, time_text
+from pursue_gen.language.measures import Measured, Units
+from pursue_gen.language.numbers import Number, decimal_text, exact, time_text
 
 SECONDS = {"s": 1, "min": 60, "h": 3600}
 """Seconds of each unit that may stand behind a number; the smallest first."""
@@ -18,85 +18,9 @@ _OTHERS = {
 }  # fmt: skip
 """Other words for them, which the reader answers with what to write."""
 
-_PART = re.compile(r"(\S+)\s+([a-z]+)")
-_GLUED = re.compile(rf"([0-9.]+)({'|'.join((*SECONDS, *_OTHERS))})")
 _NAMES = {Fraction(1): "seconds", Fraction(60): "minutes", Fraction(3600): "hours"}
 _SMALLEST = 2
 """So many of a unit are told in it: from 2 min on, 127 s are 2 min 7 s."""
-
-
-class Time(Decimal):
-    """A number of time units in a scenario that says how long one is. It is shown as any number; `written` is how its
-    author wrote it, with units or without. `unit`: the seconds of a time unit.
-
-    What is computed from it is a plain number, of which nothing is said but time units.
-    """
-
-    __slots__ = ("unit", "written")
-    unit: Number
-    written: str
-
-    def __new__(cls, number: Number, unit: Number, written: str) -> Time:
-        made: Any = super().__new__(cls, number)
-        made.unit, made.written = unit, written
-        return made  # type: ignore[no-any-return]
-
-    @property
-    def has_unit(self) -> bool:
-        """True where a unit stands behind it."""
-        return " " in self.written
-
-    @property
-    def in_words(self) -> str:
-        """It for people, always with its unit."""
-        return self.written if self.has_unit else words_for(self, self.unit)
-
-    @classmethod
-    def from_float(cls, number: float) -> Fraction:  # type: ignore[override]
-        """The fraction that a float is, as comparisons ask for it: it is no time."""
-        return Fraction.from_float(number)
-
-    def __reduce__(self) -> Any:
-        return Time, (exact(self), self.unit, self.written)
-
-    def __copy__(self) -> Time:
-        return self
-
-    def __deepcopy__(self, memo: Any) -> Time:
-        return self
-
-
-class Written(NamedTuple):
-    """A time with its unit as it stands in a text: its seconds; or what to write in its place, None: nothing known."""
-
-    seconds: Optional[Number]
-    instead: Optional[str] = None
-
-
-def has_unit(text: str) -> bool:
-    """True for a number with a unit behind it."""
-    return " " in text or "\t" in text
-
-
-def read_seconds(text: str) -> Written:
-    """The time that a number with a unit behind it says, or several of them, the largest first: `2 min 30 s`."""
-    parts = [(number, _OTHERS.get(unit, unit), unit) for number, unit in _PART.findall(text)]
-    numbers = [read_number(number) for number, _, _ in parts]
-    if not numbers or None in numbers:
-        return Written(None)
-    sizes = [SECONDS[unit] for _, unit, _ in parts]
-    seconds = exact(sum((Fraction(number or 0) * size for number, size in zip(numbers, sizes)), Fraction()))
-    if sizes != sorted(set(sizes), reverse=True):
-        return Written(None, duration_text(seconds))
-    if any(unit != word for _, unit, word in parts):
-        return Written(None, " ".join(f"{number} {unit}" for number, unit, _ in parts))
-    return Written(seconds)
-
-
-def apart(text: str) -> Optional[str]:
-    """What to write in place of a number to which its unit is glued, as in `2min`; None: it is something else."""
-    found = _GLUED.fullmatch(text)
-    return f"{found[1]} {_OTHERS.get(found[2], found[2])}" if found and read_number(found[1]) is not None else None
 
 
 def duration_text(seconds: Number) -> str:
@@ -111,6 +35,22 @@ def duration_text(seconds: Number) -> str:
     if left or not found:
         found.append(f"{decimal_text(exact(left))} s")
     return " ".join(found)
+
+
+TIMES = Units("a time", SECONDS, _OTHERS, duration_text, "30 s, 2 min, 1 h 30 min")
+"""What may stand behind a time."""
+
+
+class Time(Measured):
+    """A number of time units in a scenario that says how long one is. `unit`: the seconds of a time unit."""
+
+    __slots__ = ()
+    units: ClassVar[Units] = TIMES
+
+
+def has_unit(text: str) -> bool:
+    """True for a number with a unit behind it."""
+    return " " in text or "\t" in text
 
 
 def words_for(number: Number, unit: Optional[Number]) -> str:
@@ -152,16 +92,15 @@ def units_of_time(number: object) -> str:
 
 
 def written_time(number: object) -> str:
-    """A time as it is written."""
-    return number.written if isinstance(number, Time) else str(number)
+    """A time, or a length, as it is written."""
+    return number.written if isinstance(number, Measured) else str(number)
 
 
 def like(number: Number, other: object) -> Number:
-    """A number of time units as one would write it where `other` stands."""
-    if not isinstance(other, Time):
+    """A number as one would write it where `other` stands, which counts the same."""
+    if not isinstance(other, Measured):
         return number
-    text = duration_text(exact(Fraction(number) * other.unit)) if other.has_unit else decimal_text(number)
-    return Time(number, other.unit, text)
+    return type(other)(number, other.unit, other.told(number) if other.has_unit else decimal_text(number))
 
 
 def instead(new: Number, old: object) -> str:

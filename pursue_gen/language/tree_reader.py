@@ -25,13 +25,17 @@ from pursue_gen.language.conditions import (
     OnWay,
     Who,
 )
+from pursue_gen.language.lengths import LENGTHS, Length
+from pursue_gen.language.measures import Units
 from pursue_gen.language.numbers import MOST_DIGITS, Number, decimal_text, exact, is_fine, read_number
 from pursue_gen.language.refs import Ref
-from pursue_gen.language.times import Time, apart, has_unit, read_seconds
+from pursue_gen.language.times import TIMES, Time, has_unit
 from pursue_gen.language.tokens import bare, shown, span_of
 
 MOST = 1_000_000
 """The largest distance, duration, inverse speed or deadline: what comes of it must fit a machine's integers."""
+
+_OTHER_TIME = "another time, or a unit of which it is a whole number, as in unit second"
 
 _LARGEST_POWER = 6
 """The largest number has so many zeros."""
@@ -101,28 +105,58 @@ class TreeReader:
         if seconds is None:
             return 1
         if self.unit is None:
-            message = f"{_blanks(token)} is a time, and the scenario does not say what a unit of time is"
-            hint = "write a line above all others: unit second (then a number without a unit is one of seconds)"
-            self.findings.append(error("PML420", message, self.at(token), hint))
+            self._no_unit(token, "a time", "a number without a unit is one of seconds")
             return 1
         value = exact(Fraction(seconds) / Fraction(self.unit))
-        if value > MOST:
-            return self._too_large(token)
-        if not is_fine(value):
-            message = f"{_blanks(token)} is {decimal_text(value)} units of time: more than {MOST_DIGITS} digits"
-            message += " after the point"
-            hint = "nothing is rounded: write another time, or a unit of which it is a whole number, as in unit second"
-            self.findings.append(error("PML280", message, self.at(token), hint))
+        if not self._counts(token, value, "units of time", _OTHER_TIME):
             return 1
         return Time(value, self.unit, _blanks(token))
 
     def seconds(self, token: Token) -> Optional[Number]:
         """The seconds of a time with its unit; None after a complaint."""
-        seconds, instead = read_seconds(token)
-        if seconds is None:
-            hint = f"write {instead or 'a number and s, min or h behind it: 30 s, 2 min, 1 h 30 min'}"
-            self.findings.append(error("PML014", f"expected a time, found {shown(token)}", self.at(token), hint))
-        return seconds
+        return self._measured(token, TIMES)
+
+    def distance(self, token: Token) -> Number:
+        """The token's units of distance, as in `12`, or `12 m` where time has a unit; 1 after a complaint."""
+        if has_unit(token) and self.unit is None and LENGTHS.knows(token):
+            self._no_unit(token, "a length", "distances are metres")
+            return 1
+        return self.metres(token)
+
+    def metres(self, token: Token) -> Number:
+        """The token's metres, as in `0.3` or `30 cm`; 1 after a complaint."""
+        if not has_unit(token):
+            return self.number(token)
+        value = self._measured(token, LENGTHS)
+        if value is None or not self._counts(token, value, "metres", "it with fewer digits"):
+            return 1
+        return Length(value, 1, _blanks(token))
+
+    def _measured(self, token: Token, units: Units) -> Optional[Number]:
+        """The value of a number with a unit of this kind behind it; None after a complaint."""
+        value, instead = units.read(token)
+        if value is None:
+            instead = instead or f"a number with its unit, such as {units.examples}"
+            if units is TIMES and token.split()[1:] == ["m"]:
+                instead = f"{token.split()[0]} min where these are minutes: m is a metre"
+            message = f"expected {units.called}, found {shown(token)}"
+            self.findings.append(error("PML014", message, self.at(token), f"write {instead}"))
+        return value
+
+    def _no_unit(self, token: Token, called: str, then: str) -> None:
+        message = f"{_blanks(token)} is {called}, and the scenario does not say what a unit of time is"
+        hint = f"write a line above all others: unit second (then {then})"
+        self.findings.append(error("PML420", message, self.at(token), hint))
+
+    def _counts(self, token: Token, value: Number, units: str, other: str) -> bool:
+        """False after a complaint: it is too large, or no number of these units with few digits."""
+        if value > MOST:
+            self._too_large(token)
+        elif not is_fine(value):
+            message = f"{_blanks(token)} is {decimal_text(value)} {units}: more than {MOST_DIGITS} digits"
+            hint = f"nothing is rounded: write {other}"
+            self.findings.append(error("PML280", f"{message} after the point", self.at(token), hint))
+        return value <= MOST and is_fine(value)
 
     def count(self, token: Token) -> int:
         """The token's value, which says how often, or a rank; 1 after a complaint."""
@@ -208,11 +242,12 @@ def _instead(text: str) -> str:
     power = re.fullmatch(r"([1-9])[eE]([0-9])", text)
     if power and int(power.group(2)) <= _LARGEST_POWER:
         return f"write {power.group(1)}{'0' * int(power.group(2))}: all digits of it"
-    time = apart(text)
-    if time:
-        return f"write {time}, with a blank, where it is a time; else the number alone"
+    for units in (TIMES, LENGTHS):
+        measure = units.apart(text)
+        if measure:
+            return f"write {measure}, with a blank, where it is {units.called}; else the number alone"
     if has_unit(text):
-        return f"write {text.split()[0]}: a unit stands behind times only"
+        return f"write {text.split()[0]}: a unit stands behind times and lengths only"
     unit = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,9})?)[^\W\d]+", text)
     if unit:
         return f"write {unit.group(1)}: a number stands alone, in the unit of your choice"

@@ -11,10 +11,10 @@ from pursue_gen.diagnostics import NOWHERE, PursueError, Span, error
 from pursue_gen.language import scenario as pml
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.kinds import STATEMENTS
+from pursue_gen.language.measures import Measured
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import Patrol, Ref, Scenario
-from pursue_gen.language.times import Time
 
 
 def written(scenario: Scenario) -> Scenario:
@@ -47,7 +47,7 @@ def scenario_text(scenario: Scenario) -> str:
 
 def _plain(value: Any) -> Any:
     """A part with numbers that are exact, and tuples; a float is the number that it is shown as."""
-    if isinstance(value, Time):
+    if isinstance(value, Measured):
         return value
     if isinstance(value, (Fraction, float)):
         return exact(Fraction(str(value))) if math.isfinite(value) else value

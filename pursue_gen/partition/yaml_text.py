@@ -37,9 +37,7 @@ def inline(value: Union[Mapping[str, Any], Sequence[Any]]) -> Any:
     return _InlineMap(value) if isinstance(value, Mapping) else _InlineList(value)
 
 
-def yaml_text(
-    data: Union[Mapping[str, Any], Sequence[Any]], head: Sequence[str] = (), emitter: Any = EMITTER
-) -> str:
+def yaml_text(data: Union[Mapping[str, Any], Sequence[Any]], head: Sequence[str] = (), emitter: Any = EMITTER) -> str:
     """The data as a YAML document, one key or item a line in their order, below comments with the lines of `head`.
 
     `data` holds maps with texts as keys, lists, texts, numbers, Booleans and None; what is `inline` stands in one line.

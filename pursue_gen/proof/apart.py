@@ -24,7 +24,8 @@ from pursue_gen.tga.part import part_of
 
 def kept_apart(strategy: Strategy, share: int) -> Sequence[str]:
     """The automata that a share keeps and its blocks do not name, without those of objectives that watchers have in
-    their place."""
+    their place. Requires the number of a share that names what it avoids."""
+    assert strategy.shares[share]
     avoided = strategy.shares[share]
     named = {name for n in strategy.numbers_of(share, avoided[0]) for name in strategy.blocks[n].state.names[0]}
     kept = {name for name, _ in avoided} | named
@@ -33,7 +34,8 @@ def kept_apart(strategy: Strategy, share: int) -> Sequence[str]:
 
 
 def games_apart(share: StagePart, names: Sequence[str]) -> Iterator[StagePart]:
-    """A game for each of these automata, beside those that the share's blocks name."""
+    """A game for each of these automata, beside those that the share's blocks name. Requires automata of the share's
+    game; if the strategy wins all the games, and there is no fault, it wins that one."""
     fault = _why_not_apart(share.strategy.blocks, [share.game.automaton(name) for name in names])
     for name in names:
         others = set(names) - {name}

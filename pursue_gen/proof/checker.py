@@ -193,9 +193,10 @@ def _ranks_of(played: StagePart, ranks: Mapping[ZoneKey, int]) -> Dict[ZoneKey, 
 
 
 def pruned(strategy: Strategy, report: ProofReport) -> Strategy:
-    """The strategy without the blocks, commands and zones that no play reaches."""
+    """The strategy without the blocks, commands and zones that no play reaches. Requires a report on this strategy."""
     used = report.used
     counts = Counter(b for b, _, _ in used)
+    assert all(b < len(strategy.blocks) for b in counts)
 
     def kept(zones: Sequence[Zone], block: int, part: object) -> Tuple[Zone, ...]:
         return tuple([zone for n, zone in enumerate(zones) if (block, part, n) in used])
@@ -215,7 +216,10 @@ def pruned(strategy: Strategy, report: ProofReport) -> Strategy:
 
 
 def pruned_ranks(strategy: Strategy, report: ProofReport, ranks: Mapping[ZoneKey, int]) -> Dict[ZoneKey, int]:
-    """The ranks of the zones that are left in the pruned strategy, by where they stand there."""
+    """The ranks of the zones that are left in the pruned strategy, by where they stand there.
+
+    Requires report and ranks of the strategy as it was before.
+    """
     found: Dict[ZoneKey, int] = {}
     used = (key for b in range(len(strategy.blocks)) for key in strategy.keys_of(b) if key in report.used)
     for block, (_, own) in enumerate(groupby(used, key=lambda key: key[0])):
@@ -267,7 +271,7 @@ def _report(arena: Arena, found: Found) -> ProofReport:
 
 
 def sample(zone: Dbm) -> Tuple[Fraction, ...]:
-    """A valuation in the zone, small and with small denominators."""
+    """A valuation in the zone (that is ensured), small and with small denominators."""
     values: List[Fraction] = [Fraction(0)]
     for i in range(1, zone.dim):
         below = [(values[j], zone.m[j * zone.dim + i]) for j in range(i)]
@@ -277,4 +281,6 @@ def sample(zone: Dbm) -> Tuple[Fraction, ...]:
         if strict:
             low = (low + min(tops)) / 2 if tops and min(tops) < low + 2 else low + 1
         values.append(low)
-    return tuple(values[1:])
+    point = tuple(values[1:])
+    assert zone.contains(point)
+    return point

@@ -107,7 +107,8 @@ class ClosedLoop:
         ranks: Optional[Mapping[ZoneKey, int]],
         instant: Fraction = Fraction(0),
     ) -> None:
-        """`reaction` and `instant` are in time units; with an instant `latest` is of a prompt controller."""
+        """`reaction` and `instant` are in time units, 0 or more; with an instant `latest` is of a prompt controller."""
+        assert reaction >= 0 and instant >= 0
         scale = least_common_multiple([strategy.scale, common_denominator([reaction, *network.times])])
         scale = least_common_multiple((scale, instant.denominator)) if instant else scale * INSTANTS
         self.arena, self.strategy = Arena(network, scale), strategy
@@ -148,7 +149,8 @@ class ClosedLoop:
         start: Optional[Entry] = None,
     ) -> Latest:
         """When the goal is reached at the latest, or `left` is, with at most so many symbolic states; `many` as in
-        Depth. `start`: from there on."""
+        Depth. `start`: from there on. Requires the number of a clock of the network, from 1."""
+        assert 0 < clock < self.arena.dim
         depth = Depth(self.rules.instant > 0, False, limit, many)
         result = self._searched("latest", start or self.start, depth, monitor, clock, left)
         return Latest(result["number"], result["fault"] >= 0, result["states"])

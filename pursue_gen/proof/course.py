@@ -64,7 +64,11 @@ class Course:
         return all(any(self.now(test.variable) == test.value for test in clause) for clause in guard.integers)
 
     def add(self, event: Event, changed: Mapping[str, Value]) -> None:
-        """Adds an event that is possible now; `changed`: what begins with it, for each state that it ends."""
+        """Adds an event; `changed`: what begins with it, for each state that it ends.
+
+        Requires that it is possible now: no state that it needs, or ends, has ended.
+        """
+        assert all(self.last(name) == state for name, state in event.needs.items())
         number = len(self.events)
         down = 1 << number
         for stay in event.needs.items():
@@ -86,7 +90,7 @@ class Course:
         return self._begun[stay[0]][stay[1]]
 
     def end(self, stay: Stay) -> Optional[int]:
-        """The event that ends a state; None for the last one."""
+        """The event that ends a state; None for the last one. Requires a state of the course."""
         begun = self._begun[stay[0]]
         return begun[stay[1] + 1] if stay[1] + 1 < len(begun) else None
 

@@ -36,13 +36,16 @@ USUAL = 3_000
 
 @dataclass(frozen=True)
 class Margin:
-    """It wins with a delay of `wins`, and not with one of `fails` (time units).
+    """It wins with a delay of `wins`, and not with one of `fails`, which is longer (time units).
 
     `fails` None: no such delay is known; either `wins` is CAP, or the search was ended before it found one.
     """
 
     wins: Fraction
     fails: Optional[Fraction]
+
+    def __post_init__(self) -> None:
+        assert self.fails is None or 0 <= self.wins < self.fails
 
     def as_json(self) -> Dict[str, Any]:
         """For programs: numbers of time units, null where no failing delay is known."""
@@ -57,7 +60,7 @@ def strategy_margin(
     states: int = LIMIT,
     limits: Limits = NO_LIMITS,
 ) -> Margin:
-    """The margin of a strategy that is proven for the reaction.
+    """The margin of a strategy. Requires that it is proven for the reaction; ensures that the margin is no smaller.
 
     `states` is what all the looks together may cost, in symbolic states of the checker (not a time: the answer must not
     depend on the machine), within the limits. Where that is used up the margin is at least what was found, and
@@ -79,10 +82,9 @@ def strategy_margin(
     return _largest(wins, reaction)
 
 
-def game_margin(
-    network: Network, objective: Objective, reaction: Fraction, limits: Limits = NO_LIMITS
-) -> Margin:
-    """The margin of a game that is won with the reaction, as far as it is found within the limits."""
+def game_margin(network: Network, objective: Objective, reaction: Fraction, limits: Limits = NO_LIMITS) -> Margin:
+    """The margin of a game, as far as it is found within the limits. Requires that it is won with the reaction; ensures
+    that the margin is no smaller."""
     start = limits.now()
 
     def wins(delay: Fraction) -> bool:
@@ -93,6 +95,7 @@ def game_margin(
 
 def _largest(wins: Callable[[Fraction], Optional[bool]], known: Fraction) -> Margin:
     """The last point of the grid where `wins`, which is None where it is not known, and the first where not."""
+    assert known >= 0
     end = int(CAP / STEP)
 
     def fails(point: int) -> Optional[bool]:

@@ -123,9 +123,11 @@ class Arena:
         return found
 
     def limits(self, bounds: Iterable[ClockBound]) -> Iterable[Limit]:
-        """The bounds of a guard or an invariant as limits on differences, with scaled constants."""
+        """The bounds of a guard or an invariant as limits on differences, with scaled constants. Requires clocks of the
+        network, and that the constants are whole then."""
         for bound in bounds:
             x, c = self.clock[bound.clock], int(bound.bound * self.scale)
+            assert c == bound.bound * self.scale
             if bound.op in ("<", "<=", "=="):
                 yield x, 0, raw(c, bound.op == "<")
             if bound.op in (">", ">=", "=="):

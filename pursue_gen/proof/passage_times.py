@@ -22,8 +22,10 @@ INSTANT = Fraction(1, 1000)
 def latest(played: Played, strategy: Strategy, reaction: Fraction) -> Fraction:
     """The latest time at which the goal is reached, in time units.
 
-    Raises Fault where an event of the course need not come in time, or at all.
+    Requires the course of this strategy, see `passages.played`. Raises Fault where an event of the course need not come
+    in time, or at all.
     """
+    assert reaction >= 0
     _check_zones(strategy)
     course = played.course
     resets = _resets(course.events)

@@ -31,7 +31,9 @@ from pursue_gen.tga.watchers import Watcher
 
 def shares_of(network: Network, objective: Objective, strategy: Strategy) -> Iterator[StagePart]:
     """The shares as games of their own, in their order (`StagePart.stage` is the number of the share, from 0). After
-    one with a fault there are no more."""
+    one with a fault there are no more. Requires a strategy in shares; if it wins all the games, and there is no fault,
+    it wins in the network."""
+    assert strategy.shares
     for known, parts in _latest:
         if known[2] is strategy and known == (network, objective, strategy):
             yield from parts

@@ -35,11 +35,13 @@ def simplified(
     ranks: Optional[Mapping[ZoneKey, int]] = None,
     limits: Limits = NO_LIMITS,
 ) -> Strategy:
-    """The strategy, proven for the network and the reaction, in fewer zones and bounds (simplify.hpp).
+    """The strategy in fewer zones and bounds (simplify.hpp). Requires that it is proven for the network and the
+    reaction.
 
     `ranks` (see `verify`) allow more: a play may stay in a command's zone where that leads to no higher rank. Raises
     PursueError with exit status 5 at a limit, and where times or clocks are too large or too many.
     """
+    assert reaction >= 0
     tables = tables_of(network, strategy)
     if not tables.whole:
         return strategy

@@ -72,9 +72,7 @@ def at_start(network: Network) -> Known:
     owned: Dict[str, Tuple[str, ...]] = {
         a.name: tuple(name for name in first if network.setters[name] == {a.name}) for a in network.automata
     }
-    spots = {
-        a.name: frozenset([(a.initial, tuple(first[name] for name in owned[a.name]))]) for a in network.automata
-    }
+    spots = {a.name: frozenset([(a.initial, tuple(first[name] for name in owned[a.name]))]) for a in network.automata}
     every = {name for names in owned.values() for name in names}
     return Known(owned, spots, {name: frozenset([value]) for name, value in first.items() if name not in every})
 

@@ -43,7 +43,11 @@ class StagePart:
 
 
 def parts_of(network: Network, objective: Objective, strategy: Strategy) -> Iterator[StagePart]:
-    """The parts of all stages, in the order of the stages. After one with a fault there are no more."""
+    """The parts of all stages, in the order of the stages. After one with a fault there are no more.
+
+    Requires a strategy in stages; if it wins all the games, and there is no fault, it wins in the network.
+    """
+    assert strategy.stages
     fault = _misplaced(network, objective, strategy)
     known = at_start(network)
     for stage, milestones in enumerate(strategy.stages):
@@ -103,8 +107,10 @@ def is_sure(known: Known, milestone: Place) -> bool:
 def after_stage(network: Network, known: Known, blocks: Mapping[Place, Sequence[Block]]) -> Optional[Known]:
     """What is known after a stage with these blocks for each of its milestones, that began with what is `known`.
 
-    None where a part of it may begin in too many states.
+    None where a part of it may begin in too many states. Requires a block for each milestone, and that all of those for
+    one name the same.
     """
+    assert all(blocks.values())
     alive, extent = live(network, commanded(block for some in blocks.values() for block in some), known.extent)
     following = moved(known, alive)
     for place, own in blocks.items():

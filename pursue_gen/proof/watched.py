@@ -23,8 +23,10 @@ _MOST = 100_000
 def why_it_may_miss(network: Network, watcher: Watcher, automata: AbstractSet[str], variables: AbstractSet[str]) -> str:
     """Why the objective may be broken though the watcher is kept; "" if it cannot.
 
-    `automata` and `variables` are seen, the watcher's own among them; the others may be anywhere (see `tga.hidden`).
+    `automata` and `variables` are seen, the others may be anywhere (see `tga.hidden`). Requires that the watcher is one
+    of the network's automata, and seen.
     """
+    assert watcher.name in automata
     watched, narrower = network.automaton(watcher.objective), network.automaton(watcher.name)
     fault = _why_it_is_none(watched, narrower)
     if fault:

@@ -53,7 +53,7 @@ def _is_zero(clock: str) -> Constraint:
 
 
 def with_counter(network: Network) -> Network:
-    """The network, with a clock that counts from the start if it has none."""
+    """The network, with a clock that counts from the start if it has none. Ensures that `counting_clock` finds one."""
     if counting_clock(network) is not None:
         return network
     name = "elapsed"
@@ -66,10 +66,10 @@ def with_counter(network: Network) -> Network:
 def with_deadline(network: Network, objective: Objective, bound: int) -> Network:
     """The network in which the goal has to be reached while the counting clock is at most `bound` time units.
 
-    It must have such a clock (see `with_counter`).
+    Requires such a clock (see `with_counter`), and 0 time units or more.
     """
     clock = counting_clock(network)
-    assert clock is not None
+    assert clock is not None and bound >= 0
     return with_clock_limit(network, objective, clock, bound)
 
 
@@ -77,8 +77,9 @@ def with_clock_limit(network: Network, objective: Objective, clock: str, bound: 
     """The network in which the goal has to be reached while the clock is at most `bound` time units.
 
     Of several locations of the goal each bounds the clock: where one waits for another at the deadline, time is blocked
-    and nobody is obliged to move, which does not reach the goal.
+    and nobody is obliged to move, which does not reach the goal. Requires a clock of the network.
     """
+    assert clock in network.clocks
     limit = ClockBound(clock, "<=", bound)
 
     def limited(automaton: Automaton, location: Location) -> Location:

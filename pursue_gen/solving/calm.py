@@ -65,9 +65,7 @@ def calm(won: Solution, options: SolveOptions) -> Solution:
             if strategy is None:
                 continue
             whole = _with(won.strategy, game, strategy)
-            report = verify(
-                won.network, won.objective, whole, won.reaction, LIMIT, limits=options.limits.since(start)
-            )
+            report = verify(won.network, won.objective, whole, won.reaction, LIMIT, limits=options.limits.since(start))
             if report.ok:
                 won, game = won.with_strategy(whole), replace(game, strategy=strategy)
     return won

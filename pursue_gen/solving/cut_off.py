@@ -182,9 +182,7 @@ def _past(robot: Automaton, edge: Edge, location: str) -> Number:
     return arrival + min((each.guard.since for each in robot.edges if each.source == location), default=0)
 
 
-def _unanswered(
-    network: Network, duties: Sequence[Duty], robots: Sequence[str], closed: _Closed
-) -> Sequence[Duty]:
+def _unanswered(network: Network, duties: Sequence[Duty], robots: Sequence[str], closed: _Closed) -> Sequence[Duty]:
     """Duties that robots which do none of this cannot meet again and again, one or two where it is no more;
     () where they can meet all."""
     if not _can_be_answered(network, duties, robots, closed):

@@ -48,9 +48,7 @@ def little_work(network: Network) -> int:
     return max(1, _FIRST // (len(network.clocks) + 1) ** 2)
 
 
-def won_by_some(
-    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
-) -> Optional[Found]:
+def won_by_some(network: Network, objective: Objective, reaction: Fraction, options: SolveOptions) -> Optional[Found]:
     """A proven strategy for some of the robots, or one in stages; None where none is found with little work."""
     budget = Budget(replace(options.limits, work=WORK), options.progress, options.engine, whole=True)
     search = _StagesSearch(network, objective, reaction, options, budget)

@@ -39,9 +39,7 @@ class GroupGames:
         self._network, self._objective = network, objective
         self._robots, self._taken, self._setters = commanded_agents(network), network.taken_over, network.setters
 
-    def game(
-        self, group: Group, theirs: Commanded, shown: int = ALL, watchers: Tuple[Watcher, ...] = ()
-    ) -> Network:
+    def game(self, group: Group, theirs: Commanded, shown: int = ALL, watchers: Tuple[Watcher, ...] = ()) -> Network:
         """The group's game: what matters to its promises, where it may do what it likes, and others these commands.
 
         `shown`: how much of the others is in it; the rest is hidden (see `tga.hidden`). `watchers`: followed in place

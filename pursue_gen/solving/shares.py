@@ -184,9 +184,7 @@ class _SharesSearch:
                 yield from self._ways(rest, able, grown, turns - other)
                 other = 1
 
-    def _teams(
-        self, promise: Place, able: Sequence[str], groups: Sequence[Group]
-    ) -> Iterator[FrozenSet[str]]:
+    def _teams(self, promise: Place, able: Sequence[str], groups: Sequence[Group]) -> Iterator[FrozenSet[str]]:
         """Who may keep the promise: nobody, if that is an effort's way; one robot, those with least to do first, of
         these the nearest; two where no one can alone, or where an effort lets two."""
         timed = any(place.invariant for place in self._network.automaton(promise[0]).locations)

@@ -37,9 +37,7 @@ RESERVE = Fraction(1, 10)
 """The part of a period that a robot has to spare, where there is as much. Measured on patrols of 12 to 140 places."""
 
 
-def won_by_tours(
-    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
-) -> Optional[Found]:
+def won_by_tours(network: Network, objective: Objective, reaction: Fraction, options: SolveOptions) -> Optional[Found]:
     """A proven strategy with a tour for each robot, for an objective that asks for patrols alone; None where none is
     found."""
     start = options.limits.now()

@@ -42,9 +42,7 @@ def verdict_text(won: Solution, unit: Optional[Number] = None) -> str:
     return text if won.guarantee is None else f"{text}\n{won.guarantee.in_words(unit)}"
 
 
-def margin_text(
-    won: Solution, margin: Margin, game: Optional[Margin] = None, unit: Optional[Number] = None
-) -> str:
+def margin_text(won: Solution, margin: Margin, game: Optional[Margin] = None, unit: Optional[Number] = None) -> str:
     """Lines about how late commands may come; `game` is the game's margin, where it was computed. `unit` as above."""
     lines = [describe(margin, won.strategy, unit)]
     if game is not None:

@@ -75,9 +75,7 @@ def lost_to_few_calls(game: Network, objective: Objective, reaction: Fraction, o
     return verdict is not None and not verdict.won
 
 
-def verdict_of(
-    budget: Budget, game: Network, objective: Objective, reaction: Fraction, share: float = 1.0
-) -> Verdict:
+def verdict_of(budget: Budget, game: Network, objective: Objective, reaction: Fraction, share: float = 1.0) -> Verdict:
     """The verdict of `budget.verdict`; where agents rest between calls, of a game without rests, or with few calls,
     where that decides it sooner. Raises LimitHit where that share of what is left is too little."""
     if pauses(game):

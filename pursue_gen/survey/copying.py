@@ -12,6 +12,7 @@ from pursue_gen.language.numbers import Number, exact, is_fine
 from pursue_gen.language.rewriting import Movement, Rewriting
 from pursue_gen.language.scenario import Connection, Pose, Scenario
 from pursue_gen.language.statements.agent import SIZE
+from pursue_gen.language.times import written_time
 from pursue_gen.workspace.robot_size import Sizes, sizes_of
 
 SURVEY = "survey"
@@ -33,7 +34,8 @@ def rounded(metres: float, unit: float, speeds: Iterable[Number]) -> Number:
 
 def with_ways(scenario: Scenario, ways: Sequence[Tuple[str, str, Number, str]]) -> str:
     """The text with further ways: from, to, distance, remark."""
-    lines = [f"connect {a} and {b} distance {distance} // {remark}" for a, b, distance, remark in ways]
+    as_text = {distance: written_time(scenario.as_distance(distance)) for _, _, distance, _ in ways}
+    lines = [f"connect {a} and {b} distance {as_text[distance]} // {remark}" for a, b, distance, remark in ways]
     return edited(scenario.text, Rewriting(scenario).statements(("CONNECT", "POI"), lines))
 
 

@@ -106,7 +106,8 @@ def other_unit(
     ratio, span = ratios[len(ratios) // 2]
     if not 2 / 3 <= ratio <= 1.5:
         message = f"ways are {ratio:.1f} times as long as written, so with the same mobile {_listed(movers)} "
-        hint = f"say what a unit of distance is: --unit {ratio * unit:.2g}; or change mobile, or give robots a --speed"
+        other = "" if scenario.in_metres else f"say what a unit of distance is: --unit {ratio * unit:.2g}; or "
+        hint = f"{other}change mobile, or give robots a --speed"
         yield warning("MAP008", message + f"will take {ratio:.1f} times as long", span, hint)
 
 

@@ -170,7 +170,5 @@ def _seen_along(free: Array, a: Array, b: Array) -> Array:
         found[open_[is_free & (column == last)]] = True
         goes_on = is_free & (column < last)
         first = column + 1
-        open_, first, last, u, v, to_u, slope = (
-            one[goes_on] for one in (open_, first, last, u, v, to_u, slope)
-        )
+        open_, first, last, u, v, to_u, slope = (one[goes_on] for one in (open_, first, last, u, v, to_u, slope))
     return found

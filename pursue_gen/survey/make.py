@@ -285,8 +285,8 @@ class _Work:
         if frozenset((way.a, way.b)) in map(frozenset, self.options.keep):
             return "--keep"
         for other in self.scenario.connections:
-            if (other.a, other.b) == (way.b, way.a) and other.distance != way.distance:
-                return "each direction has its own"
+            if {other.a, other.b} == {way.a, way.b} and other.distance != way.distance:
+                return "each direction has its own" if way.one_way and other.one_way else "agents have their own"
         return ""
 
     def _windows(self, way: Connection) -> Iterator[Tuple[str, str, str, int, int]]:

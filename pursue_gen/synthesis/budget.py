@@ -48,7 +48,8 @@ class Budget:
         return self.work < 1 or late
 
     def part(self, share: float = 1.0) -> Limits:
-        """That share of what is left."""
+        """That share of what is left, of 0 to 1."""
+        assert 0 <= share <= 1
         work = max(1, int(self.work * share)) if self.work < math.inf else 0
         return replace(self._limits, seconds=self._limits.since(self._start).left * share, spent=0.0, work=work)
 
@@ -111,7 +112,8 @@ class Budget:
         return some
 
     def spend(self, work: float) -> None:
-        """Counts work that something else did."""
+        """Counts work that something else did, 0 or more."""
+        assert work >= 0
         self.work -= work
         if self._whole is not None:
             self._whole.spend(work)

@@ -41,6 +41,10 @@ class Outcome:
     ranks: Optional[Tuple[Tuple[int, ...], ...]]
     stats: Stats
 
+    def __post_init__(self) -> None:
+        assert self.won or not self.blocks
+        assert self.ranks is None or len(self.ranks) == len(self.blocks)
+
 
 class Engine(ABC):
     """A solver of compiled games. All engines give the same verdicts; their strategies may differ.

@@ -26,8 +26,9 @@ def without_overtaking(
 ) -> Tuple[Tuple[RawBlock, ...], Tuple[Ranks, ...]]:
     """The blocks of a reach game and their ranks, with later beginnings where commands may be overtaken.
 
-    The pieces of a block must be disjoint. A zone stays as it is where time takes none of its points to a part of it
-    that is out of reach, or to another zone that ranks no higher: the checker finds out whether such a strategy wins.
+    Requires disjoint pieces in each block, and a rank of each. A zone stays as it is where time takes none of its
+    points to a part of it that is out of reach, or to another zone that ranks no higher: the checker finds out whether
+    such a strategy wins.
     """
     new_blocks: List[RawBlock] = []
     new_ranks: List[Ranks] = []
@@ -45,7 +46,12 @@ def without_overtaking(
 
 
 def kept_apart(pieces: Sequence[Piece], ranks: Sequence[int], late: int) -> List[Tuple[Piece, int]]:
-    """The pieces of one discrete state with their ranks, when commands take effect up to `late` after they are due."""
+    """The pieces of one discrete state with their ranks, when commands take effect up to `late` after they are due.
+
+    Requires disjoint pieces; ensures the same, that together they hold the same points, and that each command's zone is
+    in one that it had.
+    """
+    assert len(pieces) == len(ranks) and late >= 0
     flights = [
         (rank, action, zone.up_within(late)) for (zone, action), rank in zip(pieces, ranks) if action is not None
     ]
@@ -75,9 +81,7 @@ def kept_apart(pieces: Sequence[Piece], ranks: Sequence[int], late: int) -> List
     return result
 
 
-def ended_earlier(
-    game: Game, blocks: Iterable[RawBlock], ranks: Iterable[Ranks]
-) -> Optional[Tuple[RawBlock, ...]]:
+def ended_earlier(game: Game, blocks: Iterable[RawBlock], ranks: Iterable[Ranks]) -> Optional[Tuple[RawBlock, ...]]:
     """The blocks in which no command is on its way where another one of a higher rank is decided; None: they are so.
 
     Each command's zone ends so early that it takes effect before; the points that are left out are waited in, up to the
@@ -94,7 +98,11 @@ def ended_earlier(
 
 
 def shortened(pieces: Sequence[Piece], ranks: Sequence[int], late: int) -> List[Piece]:
-    """The pieces of one discrete state: before a command of a higher rank, that of a lower one ends by `late`."""
+    """The pieces of one discrete state: before a command of a higher rank, that of a lower one ends by `late`.
+
+    Requires disjoint pieces; ensures that together they hold the same points.
+    """
+    assert len(pieces) == len(ranks) and late >= 0
     result: List[Piece] = []
     for (zone, action), rank in zip(pieces, ranks):
         flight = zone.up_within(late)

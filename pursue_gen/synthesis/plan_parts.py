@@ -35,9 +35,7 @@ from pursue_gen.tga.watchers import Watcher, watched_by
 Own = TypeVar("Own", Watcher, Passage, Tour)
 
 _STAGE = re.compile(r"^ -- Stage:(.*)$", re.MULTILINE)
-_OWN = {
-    what: re.compile(rf"^ -- {what.capitalize()}:(.*)$", re.MULTILINE) for what in ("watcher", "passage", "tour")
-}
+_OWN = {what: re.compile(rf"^ -- {what.capitalize()}:(.*)$", re.MULTILINE) for what in ("watcher", "passage", "tour")}
 _SHARE = re.compile(r"^ -- Share:(.*)$", re.MULTILINE)
 _LEFT_OUT_CLOCKS = re.compile(r"^ -- Left out clocks:(.*)$", re.MULTILINE)
 _LEFT_OUT = re.compile(r"^ -- Left out:(.*)$", re.MULTILINE)

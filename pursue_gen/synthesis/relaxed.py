@@ -84,9 +84,7 @@ class RelaxedPlanner:
         times = self.achieved(state, comes).times
         return max(times[goal] for goal in self._goals) if self._goals <= times.keys() else None
 
-    def achieved(
-        self, state: State, comes: Callable[[int, int, Mapping[Fact, int]], Optional[int]]
-    ) -> Achieved:
+    def achieved(self, state: State, comes: Callable[[int, int, Mapping[Fact, int]], Optional[int]]) -> Achieved:
         """What comes before the last location of the goal, or with it; `comes`: when the effects of an edge do of which
         the last precondition holds from a time on, given the times of all others; None: never.
 

@@ -30,7 +30,8 @@ def _none() -> None:
 
 @dataclass(frozen=True)
 class Verdict:
-    """`won`: the controller wins from the initial position; then `strategy` says how (not yet checked, see `verify`).
+    """`won`: the controller wins from the initial position; then, and only then, `strategy` says how (not yet checked,
+    see `verify`).
 
     `ranks` (where the engine knows them): per zone of the strategy a number that every step of a reach game lowers.
     `cautious` makes another strategy, in which no command can be overtaken by one of a higher rank, and which has no
@@ -42,6 +43,9 @@ class Verdict:
     stats: Stats
     ranks: Optional[Mapping[ZoneKey, int]] = None
     cautious: Callable[[], Optional[Strategy]] = _none
+
+    def __post_init__(self) -> None:
+        assert self.won == (self.strategy is not None)
 
 
 NATIVE = NativeEngine()

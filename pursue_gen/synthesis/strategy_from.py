@@ -47,9 +47,13 @@ def to_strategy(game: Game, blocks: Iterable[RawBlock], left_out_clocks: Sequenc
 
 
 def to_ranks(blocks: Iterable[RawBlock], ranks: Iterable[Sequence[int]]) -> Dict[ZoneKey, int]:
-    """The ranks of the pieces by where `to_strategy` puts them: (block, "wait" or number of the command, zone)."""
+    """The ranks of the pieces by where `to_strategy` puts them: (block, "wait" or number of the command, zone).
+
+    Requires a rank of each piece of each block.
+    """
     found: Dict[ZoneKey, int] = {}
     for b, ((_, _, pieces), numbers) in enumerate(zip(blocks, ranks)):
+        assert len(pieces) == len(numbers)
         counts: Dict[Action, int] = {}
         actions: List[Action] = []
         for (_, action), rank in zip(pieces, numbers):
@@ -105,6 +109,8 @@ def zone_text(game: Game, matrix: Matrix, known: Optional[_Known] = None) -> Zon
 
 
 def minimal(dim: int, matrix: Matrix) -> List[Bound]:
-    """The bounds (i, j, raw) of a canonical matrix that the others, and clocks being >= 0, do not imply."""
+    """The bounds (i, j, raw) of a matrix that the others, and clocks being >= 0, do not imply. Requires that it is
+    canonical, with so many rows."""
+    assert len(matrix) == dim * dim
     found: List[Bound] = core().minimal(dim, matrix)
     return found

@@ -40,6 +40,7 @@ def may_be_left(automaton: Automaton, location: str, network: Network, from_star
     """True if the environment can lead the automaton away at the bound of that location, whatever the variables are,
     and each new stay there may last a time unit; `from_start`: also where it has been there from the network's start,
     at which clocks may differ. Requires that the location has a bound."""
+    assert location in automaton.stays
     if len(automaton.stays[location]) != 1:
         return False
     (bound,) = automaton.stays[location]

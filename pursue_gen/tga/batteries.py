@@ -9,14 +9,14 @@ from __future__ import annotations
 from typing import Dict, List, Tuple
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.batteries import actions_use, levels, movements_use, recharges
+from pursue_gen.language.batteries import actions_use, full, levels, movements_use, recharges
 from pursue_gen.language.scenario import Battery, Scenario
 from pursue_gen.tga.network import Automaton, Edge, Test
 
 
 def battery_variables(scenario: Scenario) -> Tuple[Tuple[str, int], ...]:
     """The variables of the batteries, all full."""
-    return tuple((names.level(battery.agent.name), battery.capacity) for battery in scenario.batteries)
+    return tuple((names.level(battery.agent.name), full(scenario, battery)) for battery in scenario.batteries)
 
 
 def powered(automaton: Automaton, scenario: Scenario) -> Automaton:
@@ -31,7 +31,7 @@ def _with_battery(automaton: Automaton, scenario: Scenario, battery: Battery) ->
     uses: Dict[str, int] = {names.going(*way): use for way, use in movements_use(scenario, battery).items()}
     uses.update((names.doing(*action), use) for action, use in actions_use(scenario, battery).items())
     gains: Dict[str, int] = {names.doing(*action): gain for action, gain in recharges(scenario, battery).items()}
-    possible = levels(scenario, battery)
+    possible, most = levels(scenario, battery), full(scenario, battery)
 
     def edges(edge: Edge) -> List[Edge]:
         if edge.source == edge.target:
@@ -39,7 +39,7 @@ def _with_battery(automaton: Automaton, scenario: Scenario, battery: Battery) ->
         use, gain = uses.get(edge.target, 0), 0 if edge.breaks_off else gains.get(edge.source, 0)
         if not use and not gain:
             return [edge]
-        after = ((level, min(battery.capacity, level - use + gain)) for level in possible if level >= use)
+        after = ((level, min(most, level - use + gain)) for level in possible if level >= use)
         return [_at_level(edge, battery, before, then) for before, then in after]
 
     return automaton.with_each(edges)

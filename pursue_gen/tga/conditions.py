@@ -21,7 +21,7 @@ from pursue_gen.language.clauses import (
     simplified,
 )
 from pursue_gen.language.conditions import AllOf, AnyOf, AtMostOf, Condition, Doing, Not, atoms
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.scenario import Connection, Scenario
 from pursue_gen.tga.network import Clause as Tests
 from pursue_gen.tga.network import Test
 from pursue_gen.tga.positions import Positions
@@ -46,12 +46,12 @@ class Conditions:
         self._states = frozenset(state.name for state in scenario.states)
         self._controlled = frozenset(agent.name for agent in scenario.agents if agent.controllable)
         self._work = dict(self._numbers(scenario))
-        self._ways = {
-            way: clauses_of(connection.only_if, self.domains)
-            for connection in scenario.connections
-            if connection.only_if is not None
-            for way in connection.directions
-        }
+        self._ways: Dict[Tuple[str, str], List[Tuple[Connection, Clauses]]] = {}
+        for connection in scenario.connections:
+            only_if = connection.only_if
+            clauses = () if only_if is None else clauses_of(only_if, self.domains)
+            for way in connection.directions:
+                self._ways.setdefault(way, []).append((connection, clauses))
         self._events = {
             event.name: clauses_of(event.only_if, self.domains)
             for event in scenario.events
@@ -60,7 +60,8 @@ class Conditions:
 
     def setting_off(self, agent: str, a: str, b: str) -> Optional[Tuple[Tests, ...]]:
         """What has to hold when the agent sets off from a to b; None: that it cannot."""
-        return self._guard(self._for(agent, self._ways.get((a, b), ())), agent, Value("at", a))
+        clauses = next((those for way, those in self._ways.get((a, b), ()) if way.admits(agent)), ())
+        return self._guard(self._for(agent, clauses), agent, Value("at", a))
 
     def beginning(self, event: str, agent: str, where: Value) -> Optional[Tuple[Tests, ...]]:
         """What has to hold when the agent, which is there, does or begins the event; None: that it cannot."""

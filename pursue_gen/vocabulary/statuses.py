@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Iterator, List, Tuple
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.batteries import levels
+from pursue_gen.language.batteries import levels, shown_level
 from pursue_gen.language.loads import carriers, load_words
 from pursue_gen.language.scenario import Pause, Request, Scenario
 from pursue_gen.language.symbols import Role, Symbol
@@ -48,7 +48,8 @@ def courses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
             values = {"0": "false", "1": "true", **unknown}
             found.append(Status(names.state_value(state.name), state.name, values))
     for battery in scenario.batteries:
-        texts = {str(level): f"{level} of {battery.capacity}" for level in levels(scenario, battery)}
+        of = f"of {battery.capacity}"
+        texts = {str(level): f"{shown_level(scenario, battery, level)} {of}" for level in levels(scenario, battery)}
         found.append(Status(names.level(battery.agent.name), f"battery of {battery.agent.shown}", texts))
     for one in carriers(scenario):
         texts = {str(number): load_words(scenario, one, load) for number, load in enumerate(one.loads)}

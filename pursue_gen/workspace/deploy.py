@@ -159,10 +159,7 @@ def service_names(nodes: Sequence[str]) -> Dict[str, str]:
 def _mission(values: Mapping[str, Any], robots: bool) -> List[Service]:
     """The nodes of the mission; for `robots` nothing is simulated, and no mission starts by itself."""
     controllers = list(values["controllers"])
-    shared = (
-        Setting("received", _bool(robots), "PURSUE_RECEIVED"),
-        Setting("again", _bool(robots), "PURSUE_AGAIN"),
-    )
+    shared = (Setting("received", _bool(robots), "PURSUE_RECEIVED"), Setting("again", _bool(robots), "PURSUE_AGAIN"))
     unit = Setting("time_unit", repr(float(values["time_unit"])), "PURSUE_TIME_UNIT")
     mode = "random" if values["free_agents"] and not robots else "still"
     without = Setting("without", "simulator" if robots else "", "PURSUE_WITHOUT", text=True)

@@ -209,9 +209,7 @@ def _view(places: Sequence[Tuple[float, float]]) -> Dict[str, float]:
     return {"x": round(x, 3) + 0.0, "y": round(y, 3) + 0.0, "scale": round(_VIEW[0] / metres, 1)}
 
 
-def _expected(
-    network: Network, objective: Objective, scenario: Scenario, controllers: Sequence[SubStrategy]
-) -> bytes:
+def _expected(network: Network, objective: Objective, scenario: Scenario, controllers: Sequence[SubStrategy]) -> bytes:
     commands = {}
     for sub in controllers:
         moves = [command.moves[0] for _, block in sub.blocks for command in block]

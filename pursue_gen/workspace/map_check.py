@@ -28,11 +28,7 @@ _TOUCH = 1e-9
 _OF_WAYS = frozenset(("PML153", "PML154", "PML201", "PML230"))
 """Errors that a scenario has because ways are missing."""
 
-_SAYS = {
-    OUTSIDE: "is off the map",
-    OCCUPIED: "is in an obstacle of the map",
-    UNKNOWN: "is unknown to the map",
-}
+_SAYS = {OUTSIDE: "is off the map", OCCUPIED: "is in an obstacle of the map", UNKNOWN: "is unknown to the map"}
 """What a message says on ground that is not free."""
 
 

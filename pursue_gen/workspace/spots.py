@@ -49,9 +49,7 @@ def placing(scenario: Scenario, distance: float, fit: Optional[Fit] = None) -> P
     return Placing(places, spots(scenario, places, distance, fit), computed, distance)
 
 
-def spots(
-    scenario: Scenario, places: Table, distance: float, fit: Optional[Fit] = None
-) -> Dict[str, Dict[str, Pose]]:
+def spots(scenario: Scenario, places: Table, distance: float, fit: Optional[Fit] = None) -> Dict[str, Dict[str, Pose]]:
     """robot → place → the pose to which the robot is sent there; `places` has the places' own poses.
 
     A pose that the scenario gives for a robot stays as it is. Of the other robots that may be at a place, the first has

@@ -292,15 +292,6 @@ class Dbm:
                 m[at] += 2 * delay
         return Dbm(self.dim, tuple(m))
 
-    def up_after(self, delay: int) -> Dbm:
-        """The future by a time strictly longer than delay."""
-        assert delay >= 0
-        m = list(self.m)
-        for i in range(1, self.dim):
-            m[i * self.dim] = INF
-            m[i] = raw(constant(m[i]) - delay, strict=True)
-        return Dbm(self.dim, tuple(m))
-
     def down(self) -> Dbm:
         """The past: the valuations from which some time leads into the zone."""
         dim, m = self.dim, list(self.m)
@@ -360,9 +351,7 @@ class Dbm:
         """
         assert len(max_constants) == self.dim and max_constants[0] == 0
         highs, lows = _extrapolation(tuple(max_constants))
-        m = [
-            INF if bound > high else bound if bound >= low else low for bound, high, low in zip(self.m, highs, lows)
-        ]
+        m = [INF if bound > high else bound if bound >= low else low for bound, high, low in zip(self.m, highs, lows)]
         if tuple(m) == self.m:
             return self
         _close(m, self.dim)

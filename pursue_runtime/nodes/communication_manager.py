@@ -60,9 +60,7 @@ class CommunicationManager:
         self.background = Background(services, self.record.count)
         self.ending = Ending()
         self.orders = rospy.Publisher(str(rospy.get_param("~topicName", LOCAL_MISSION)), String, queue_size=2)
-        self.statuses = subscribe(
-            MISSION_STATUS, String, self.on_status, self.ending, queue_size=100, tcp_nodelay=True
-        )
+        self.statuses = subscribe(MISSION_STATUS, String, self.on_status, self.ending, queue_size=100, tcp_nodelay=True)
         self.forwarded = [
             subscribe(topic, String, self.on_message, self.ending, topic, queue_size=1000) for topic in topics
         ]

@@ -81,9 +81,7 @@ class Links:
     `lost(reason)` is called once, in a thread of the watch, when the master is given up.
     """
 
-    def __init__(
-        self, *pulses: rospy.Subscriber, ending: Ending, lost: Optional[Callable[[str], None]] = None
-    ) -> None:
+    def __init__(self, *pulses: rospy.Subscriber, ending: Ending, lost: Optional[Callable[[str], None]] = None) -> None:
         self._pulses = pulses
         self._lost = lost
         self._ending = ending

@@ -21,6 +21,7 @@ from std_msgs.msg import String
 
 from pursue_runtime.bounded import read_json
 from pursue_runtime.data import Package
+from pursue_runtime.event_words import event_in
 from pursue_runtime.model import places_of
 from pursue_runtime.nodes.node import init_node
 
@@ -93,11 +94,6 @@ def values_of(message: SystemState) -> Dict[str, str]:
     values = {automaton.name: automaton.location for automaton in message.automata}
     values.update((variable.name, str(variable.value)) for variable in message.variables)
     return values
-
-
-def event_of(word: str) -> str:
-    """`agent:event@seq` or `agent:event#seq` without agent and number."""
-    return word.split("@")[0].split("#")[0].split(":")[-1]
 
 
 def enabled(edge: Mapping[str, Any], before: Mapping[str, str]) -> bool:
@@ -185,15 +181,15 @@ class MissionTest(unittest.TestCase):
     def test_every_controller_commands_its_own(self) -> None:
         allowed = self.expected["commands"]
         for node, word in self.record.events:
-            if node in allowed and not event_of(word).startswith("_"):
-                self.assertIn(event_of(word), allowed[node], f"{node} published {word}")
+            if node in allowed and not event_in(word).startswith("_"):
+                self.assertIn(event_in(word), allowed[node], f"{node} published {word}")
         for node, robot in self.record.commands:
             self.assertEqual(node, self.expected["robots"][robot], f"{robot} was commanded by {node}")
 
     def test_no_controller_publishes_an_end(self) -> None:
         ends = set(self.expected["ends"])
         published = [(node, word) for node, word in self.record.events if node in self.expected["commands"]]
-        self.assertEqual([(node, word) for node, word in published if event_of(word) in ends], [])
+        self.assertEqual([(node, word) for node, word in published if event_in(word) in ends], [])
 
     def test_every_step_is_a_step_of_the_model(self) -> None:
         """So every rule is kept: an event that a rule names comes only in its turn."""

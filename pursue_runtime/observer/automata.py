@@ -30,9 +30,7 @@ def machines_of(model: Model) -> Dict[str, Machine]:
 
 
 def _machine(automaton: Automaton) -> Machine:
-    machine = Machine(
-        model=None, states=list(automaton.invariants), initial=automaton.initial, auto_transitions=False
-    )
+    machine = Machine(model=None, states=list(automaton.invariants), initial=automaton.initial, auto_transitions=False)
     for edge in automaton.edges:
         machine.add_transition(edge.word, edge.source, edge.target)
     return machine

@@ -64,9 +64,7 @@ class Journal:
     how far the mission has come at least, by the mark that was found.
     """
 
-    def __init__(
-        self, mission: Mission, path: str, header: Mapping[str, Any], log: Log, begun: bool = False
-    ) -> None:
+    def __init__(self, mission: Mission, path: str, header: Mapping[str, Any], log: Log, begun: bool = False) -> None:
         """Replay the journal at `path` ("": no journal) into a fresh mission.
 
         `header` tells missions apart: the journal of another `launch` is set aside. `begun`: a mission has been under

@@ -33,9 +33,7 @@ TRANSITIONS: List[Dict[str, Any]] = [
     ),
 ]
 
-_MACHINE = Machine(
-    model=None, states=list(STATUSES), transitions=TRANSITIONS, initial=WAITING, auto_transitions=False
-)
+_MACHINE = Machine(model=None, states=list(STATUSES), transitions=TRANSITIONS, initial=WAITING, auto_transitions=False)
 
 
 class Life:

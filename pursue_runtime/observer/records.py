@@ -87,12 +87,12 @@ def read_records(path: str) -> RecordsRead:
 class RecordFile:
     """Appends records to a file. Each is one write: it outlives the process at once, and a power cut once it is synced.
 
-    `count`: the records in it; `synced`: the bytes that a power cut does not take.
+    `count`: the records in it.
     """
 
     def __init__(self, descriptor: int, count: int, size: int) -> None:
         """Use `create` or `resume`."""
-        self.count, self.synced = count, size
+        self.count = count
         self._descriptor, self._size = descriptor, size
 
     @classmethod
@@ -138,9 +138,7 @@ class RecordFile:
 
     def sync(self) -> None:
         """Return when everything that was written is on the disk. Raises OSError."""
-        size = self._size
         os.fdatasync(self._descriptor)
-        self.synced = size
 
     def cut(self) -> None:
         """Cut off what was written of a record that could not be written completely. Raises OSError."""

@@ -17,9 +17,7 @@ SHOWN = 4
 """So many agents are named, or one more where that names them all."""
 
 
-def uncovered_reason(
-    model: Model, cover: Cover, position: Position, tolerance: float, late: AbstractSet[str]
-) -> str:
+def uncovered_reason(model: Model, cover: Cover, position: Position, tolerance: float, late: AbstractSet[str]) -> str:
     """Return why the plan has no decision at this position, for people: who is late, else where the agents are that
     matter to it. The sentence is the same while only time passes. `late`: the agents that are; `tolerance` as in
     `covers`."""

@@ -72,9 +72,7 @@ def read_spots(settings: Mapping[str, Any], plan: FloorPlan) -> Spots:
 class Picture:
     """What there is to show of one mission, by its states."""
 
-    def __init__(
-        self, model: Model, plan: FloorPlan, spots: Spots, strategies: Sequence[Strategy] = ()
-    ) -> None:
+    def __init__(self, model: Model, plan: FloorPlan, spots: Spots, strategies: Sequence[Strategy] = ()) -> None:
         """`strategies`: those of all controllers, where they are known."""
         self._model, self._plan, self._spots = model, plan, spots
         self._strategies: Dict[int, Sequence[Strategy]] = {0: strategies}

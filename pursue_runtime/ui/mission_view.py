@@ -14,6 +14,7 @@ from pursue_runtime.event_words import (
     START,
     RobotReport,
     Word,
+    event_in,
     format_report,
     format_word,
     one_line,
@@ -380,7 +381,7 @@ def read_line(
         if offer.opens > MARGIN:
             return "", f"{offer.word} is possible in {offer.opens:.1f} time units, not now"
         return offer.word, ""
-    event = text.partition("@")[0].partition("#")[0].rpartition(":")[2]
+    event = event_in(text)
     if event in words or event.startswith("_") or text == FINISH:
         return text, ""
     return text, f"{text} is not a word of this scenario; it was published anyway" if text else ""

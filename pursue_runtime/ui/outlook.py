@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
+from pursue_runtime.event_words import event_in
 from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Model, Position
 from pursue_runtime.state import SystemState
@@ -78,7 +79,7 @@ class Outlook:
             if offer.agent not in alone or is_under_way(state.locations[offer.agent]):
                 continue
             position = Position(state.locations, state.values, state.clocks).aged(offer.opens)
-            moves = self._model.joint_move(position, offer.word.rpartition(":")[2], offer.agent, timed=False)
+            moves = self._model.joint_move(position, event_in(offer.word), offer.agent, timed=False)
             if moves is None:
                 continue
             after = self._model.after(moves, position)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.data import reading
-from pursue_runtime.event_words import START
+from pursue_runtime.event_words import START, event_in
 from pursue_runtime.locations import FINDING_OUT, is_action, is_end, is_movement
 from pursue_runtime.model import Automaton, Model
 from pursue_runtime.poses import read_poses
@@ -280,7 +280,7 @@ class Page:
     def _label(self, agent: str, word: str) -> str:
         """What its agent does with a word, for a button."""
         automaton = self._model.automaton(agent)
-        event = word.rpartition(":")[2]
+        event = event_in(word)
         edges = (edge for edge in automaton.edges if edge.word == event and edge.source != edge.target)
         edge = next(edges, None)
         if edge is not None and edge.source == FINDING_OUT:
@@ -291,7 +291,7 @@ class Page:
     def _may(self, agent: str, word: str, state: SystemState) -> str:
         """What its agent may do with a word, behind the word may."""
         automaton = self._model.automaton(agent)
-        event = word.rpartition(":")[2]
+        event = event_in(word)
         edges = (edge for edge in automaton.edges_from(state.locations[agent]) if edge.word == event)
         edge = next(edges, None)
         return deed(self._model, automaton, edge).do if edge is not None else self._model.shown(event)

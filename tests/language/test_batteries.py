@@ -9,7 +9,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pursue_gen.language import parse
-from pursue_gen.language.batteries import MOST_LEVELS, actions_use, levels, movements_use, recharges
+from pursue_gen.language.batteries import (
+    MOST_LEVELS,
+    actions_use,
+    full,
+    levels,
+    levels_in,
+    movements_use,
+    recharges,
+    shown_level,
+)
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read
 from pursue_gen.language.sentences import speed_words
@@ -56,6 +65,38 @@ def test_levels_are_whole_where_numbers_are_not() -> None:
     assert "PML014" in codes("battery bot capacity 2.5 uses 1 per unit")
 
 
+BY_DISTANCE = "battery bot capacity 24 uses 0.5 per metre, 2 per unit recharges 4 per unit at dock"
+
+
+def test_ways_use_by_their_length_and_nothing_is_rounded() -> None:
+    scenario = parse(HOUSE.format(BY_DISTANCE), "x.pur", "x")
+    (battery,) = scenario.batteries
+    assert (levels_in(scenario, battery), full(scenario, battery)) == (2, 48)
+    assert movements_use(scenario, battery) == {("dock", "hall"): 3, ("hall", "dock"): 3}
+    assert actions_use(scenario, battery) == {("wipe", "hall"): 16, ("sing", "hall"): 24}
+    assert recharges(scenario, battery) == {("charge", "dock"): 64, ("sing", "dock"): 40}
+    assert shown_level(scenario, battery, 45) == "22.5" and codes(BY_DISTANCE) == []
+    assert battery.text == BY_DISTANCE.replace("bot", '"bot"')
+    assert speed_words(scenario.agents[0], scenario).endswith(
+        "battery of 24, uses 0.5 per metre on its way, 2 per unit at work, recharges 4 per unit at dock"
+    )
+    assert codes(BY_DISTANCE.replace("2 per unit", "0 per unit")) == []
+
+
+@pytest.mark.parametrize(
+    ("statement", "code"),
+    [
+        (BY_DISTANCE.replace("0.5 per", "0 per").replace("2 per", "0 per"), "PML312"),
+        (BY_DISTANCE.replace("0.5", "9"), "PML316"),
+        (BY_DISTANCE.replace("0.5", "0.001").replace("24", "1000"), "PML315"),
+        (BY_DISTANCE.replace("0.5", "0.3"), "PML315"),
+        (BY_DISTANCE.replace("metre,", "metre"), "PML010"),
+    ],
+)
+def test_what_is_wrong_with_those_by_distance(statement: str, code: str) -> None:
+    assert set(codes(statement)) == {code}
+
+
 def test_the_name_may_stand_in_quotes_and_the_rest_be_left_out() -> None:
     scenario = parse(HOUSE.format('battery "bot" capacity 8 uses 1 per unit'), "x.pur", "x")
     assert scenario.batteries[0].dock is None and levels(scenario, scenario.batteries[0]) == (8, 4, 2, 0)
@@ -96,7 +137,7 @@ def test_what_is_too_much_says_how_many_states_it_costs() -> None:
     assert str(MOST_LEVELS) in finding.hint and "at most: 4, 6, 8" in finding.hint
 
 
-@pytest.mark.parametrize("name", ["battery", "capacity", "uses", "per", "unit", "recharges"])
+@pytest.mark.parametrize("name", ["battery", "capacity", "uses", "per", "metre", "unit", "recharges"])
 def test_its_words_are_names_as_well(name: str) -> None:
     text = HOUSE.replace("ring", name).replace("dock", "unit" if name != "unit" else "dock")
     assert codes(FULL.replace("dock", "unit" if name != "unit" else "dock"), text) == []

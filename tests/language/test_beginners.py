@@ -136,7 +136,7 @@ event "knock" location door duration 2 s
 agent "bot" controllable mobile 0.5 location desk can_do knock
 reach_objective: do knock after 10 seconds
 """, [
-        ("PML014", 3, "write 3: a number stands alone, in the unit of your choice"),
+        ("PML014", 3, "write 3 m, with a blank, where it is a length"),
         ("PML420", 4, "write a line above all others: unit second"),
         ("PML014", 6, "write 10 s"),
     ]),

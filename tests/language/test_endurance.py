@@ -49,6 +49,19 @@ def test_it_is_a_promise_behind_the_objectives_wherever_it_stands() -> None:
     assert codes(FULL) == []
 
 
+def test_parts_that_cannot_be_written_say_which_can() -> None:
+    (found,) = check_reading(read(HOUSE.format(FULL.replace(" at", " in 3 parts at")), "x.pur", "x"))
+    assert found.message == "in 3 parts: one would be 20 of lasts 60, charged in 20/3"
+    assert "in 2, 4, 5, 8, 10, 16 or 20 parts" in found.hint
+
+
+def test_what_is_said_of_parts() -> None:
+    parts = battery(FULL.replace(" at", " in 4 parts at"))
+    assert (parts.parts, parts.part, parts.part_charge) == (4, 15, 5)
+    assert parts.sentence(str).endswith("is full after 20 units there; each of 4 equal parts of that counts.")
+    assert parts.in_words == "battery lasts 60, full after 20 in 4 parts at dock"
+
+
 def test_what_is_said_of_it() -> None:
     scenario = parse(HOUSE.format(FULL), "x.pur", "x")
     said = "The battery of bot lasts 60 units away from dock, and is full after 20 units there."
@@ -73,6 +86,11 @@ def test_what_is_said_of_it() -> None:
         (FULL.replace("dock", "cellar"), ["PML110"]),
         (FULL.replace("bot", "bat"), ["PML110"]),
         (f"optional 1 {FULL}", ["PML010"]),
+        (FULL.replace(" at", " in 4 parts at"), []),
+        (FULL.replace(" at", " in 1 parts at"), []),
+        (FULL.replace(" at", " in 0 parts at"), ["PML312"]),
+        (FULL.replace(" at", " in 21 parts at"), ["PML312"]),
+        (FULL.replace(" at", " in 3 parts at"), ["PML312"]),
     ],
 )
 def test_what_is_wrong_with_it(statement: str, found: List[str]) -> None:
@@ -85,7 +103,7 @@ def test_a_robot_that_others_keep_busy_may_have_one() -> None:
     assert codes("battery bot capacity 60 uses 1 per unit", text) == ["PML314"] and codes(FULL, text) == []
 
 
-@pytest.mark.parametrize("name", ["battery", "lasts", "charges"])
+@pytest.mark.parametrize("name", ["battery", "lasts", "charges", "parts"])
 def test_its_words_are_names_as_well(name: str) -> None:
     assert codes(FULL, HOUSE.replace("ring", name)) == []
     assert codes(FULL.replace("dock", name), HOUSE.replace("dock", name)) == []
@@ -96,9 +114,11 @@ def test_the_word_behind_the_comma_is_no_name() -> None:
     assert found == [("bot", "agent"), ("dock", "POI")]
 
 
-@given(st.integers(1, 10_000), st.integers(1, 10_000), st.booleans())
-def test_a_scenario_of_which_it_is_a_part_is_written_as_it_is_read(lasts: int, charge: int, quoted: bool) -> None:
-    statement = BATTERY.format(lasts, charge).replace("bot", '"bot"' if quoted else "bot")
+@given(st.integers(1, 10_000), st.integers(1, 10_000), st.sampled_from(("", " in 4 parts")), st.booleans())
+def test_a_scenario_of_which_it_is_a_part_is_written_as_it_is_read(
+    lasts: int, charge: int, parts: str, quoted: bool
+) -> None:
+    statement = BATTERY.format(lasts, f"{charge}{parts}").replace("bot", '"bot"' if quoted else "bot")
     scenario = parse(HOUSE.format(statement), "x.pur", "x")
     again = parse(scenario_text(scenario), "x.pur", "x")
     assert [each.full_text for each in again.objectives] == [each.full_text for each in scenario.objectives]

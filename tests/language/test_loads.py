@@ -134,6 +134,41 @@ def test_who_takes_away_the_things_of_another_one_has_nothing_to_give() -> None:
     assert ("PML341", "maid can never do unload: it gives box, and maid does nothing that takes box") in found(text)
 
 
+NEVER = "cart can never do"
+
+
+def several(carries: int = 3, taken: int = 2, given: int = 2) -> str:
+    text = shop(f" carries {carries}").replace("duration 2 takes box", f"duration 2 takes {taken} box")
+    text = text.replace("gives box at_most", f"gives {given} box at_most")
+    return text.replace("controllable mobile 1 location", f"controllable mobile 1 carries {carries} location")
+
+
+def test_several_are_taken_and_given_at_once() -> None:
+    story = scenario(several())
+    cart = next(carriers(story))
+    assert [event.load_words for event in story.events[:2]] == ["takes 2 of parcel", "gives 2 of parcel"]
+    assert scenario(scenario_text(story)).events[0].text == 'event "load" location store duration 2 takes 2 box'
+    load, unload = cart.events[0], cart.events[1]
+    assert [cart.after(load, held) for held in ((0, 0), (1, 0), (2, 0), (0, 1), (0, 2))] == [
+        (2, 0), (3, 0), None, (2, 1), None,
+    ]  # fmt: skip
+    assert [cart.after(unload, held) for held in ((1, 0), (2, 0), (3, 0), (2, 1))] == [None, (0, 0), (1, 0), (0, 1)]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (several(), []),
+        (several(carries=1, given=1), [("PML341", f"{NEVER} load: it takes 2 of parcel, and cart has room for 1")]),
+        (several(given=4), [("PML341", f"{NEVER} unload: it gives 4 of parcel, and cart has room for 3")]),
+        (several(taken=0), [("PML340", "load takes 0 things: expected 1 or more")]),
+    ],
+)
+def test_nobody_takes_or_gives_more_than_it_has_room_for(text: str, expected: List[Tuple[str, str]]) -> None:
+    said = [each for each in found(text.replace("can_do unload\n", "can_do load, unload\n")) if "maid" not in each[1]]
+    assert [each for each in said if "thief" not in each[1]] == expected
+
+
 def test_words_for_people() -> None:
     story = scenario(shop())
     cart, _ = carriers(story)

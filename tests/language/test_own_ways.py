@@ -133,7 +133,7 @@ def test_editors_complete_and_tell_it() -> None:
     assert "only for Porter, cart1 and cart2, not for cart2" in told('poi "li')
     assert "not for cart1 and cart2, only while" in told('poi "li')
     assert "never is at lift" in told('agent "ge') and "never goes" not in told('agent "ge')
-    assert "never goes between lift and attic" in told('agent "cart')
+    assert "never takes the way between lift and attic at distance 3" in told('agent "cart')
 
 
 def test_the_page_of_draw_shows_and_changes_it() -> None:

@@ -26,7 +26,7 @@ from pursue_gen.language.parser import read
 from pursue_gen.language.rewriting import Rewriting
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.sentences import objective_words
-from pursue_gen.language.times import SECONDS, Time, duration_text, in_unit, like, moment, read_seconds, unit_name
+from pursue_gen.language.times import SECONDS, TIMES, Time, duration_text, in_unit, like, moment, unit_name
 from pursue_gen.language.writer import scenario_text
 from pursue_gen.outcomes import Lost
 from pursue_gen.proof.checker import verify
@@ -68,7 +68,7 @@ seconds = st.builds(lambda number: exact(Fraction(number, 1000)), st.integers(0,
 
 @given(seconds)
 def test_a_time_that_is_shown_can_be_read(number: Number) -> None:
-    assert read_seconds(duration_text(number)).seconds == number
+    assert TIMES.read(duration_text(number)).value == number
 
 
 @pytest.mark.parametrize(
@@ -127,7 +127,9 @@ def wrong(text: str) -> Tuple[Tuple[str, int, str], ...]:
         ("duration 30 s", "duration 1.2.3 s", "PML014", 9, "30 s, 2 min"),
         ("duration 30 s", "duration 0.0001 s", "PML280", 9, "nothing is rounded"),
         ("every 8 h", "every 300 h", "PML014", 21, "larger unit"),
-        ("distance 4", "distance 4 min", "PML014", 6, "write 4: a unit stands behind times only"),
+        ("within 2 min", "within 2 m", "PML014", 20, "write 2 min where these are minutes"),
+        ("mobile 1 ", "mobile 1 s ", "PML014", 12, "write 1: a unit stands behind times and lengths only"),
+        ("distance 4", "distance 4 min", "PML014", 6, "12 m"),
         ("5 s to 8.5 s", "8 s to 5 s", "PML200", 15, "takes 5 s to 8 s"),
         ("5 s to 8.5 s", "2 min to 2 min", "PML200", 15, "takes 2 min to 2 min 1 s"),
         ("after 10 within 1 h", "after 2 min within 1 min", "PML223", 22, "within 2 min 1 s or more"),
@@ -148,16 +150,15 @@ def test_names_may_be_words_of_times() -> None:
 
 # What is computed ----------------------------------------------------------------------------------------------------
 
-TIMES = frozenset(("DURATION", "TAKES", "WITHIN", "EVERY", "AFTER", "WAITS", "STAYS", "BY", "TO"))
+TIMED = frozenset(("DURATION", "TAKES", "WITHIN", "EVERY", "AFTER", "WAITS", "STAYS", "BY", "TO"))
 
 
 def in_seconds(text: str, unit: int) -> str:
     """The text with `unit`, and each of its times with a unit behind it."""
     tokens = Document(text).tokens
-    pairs = ((word, number) for word, number in zip(tokens, tokens[1:]) if number.type == "NUMBER")
-    edits = [
-        written(number, duration_text(exact(Fraction(number) * unit))) for word, number in pairs if word.type in TIMES
-    ]
+    triples = zip(tokens, tokens[1:], [*tokens[2:], ""])
+    times = [two for one, two, three in triples if one.type in TIMED and two.type == "NUMBER" and three != "box"]
+    edits = [written(number, duration_text(exact(Fraction(number) * unit))) for number in times]
     return f"unit {unit} s\n{edited(text, edits)}"
 
 

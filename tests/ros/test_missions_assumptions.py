@@ -11,14 +11,19 @@ from ros_world import Ros, lay_over
 
 from pursue_gen.solving.rules import Rules
 from pursue_gen.workspace import Options, write_workspace
-from tests.assumptions import CAFE, COMES, ONCE, PLANT, scenario, solved
+from tests.assumptions import CAFE, COMES, IN_ALL, ONCE, PLANT, scenario, solved
 
 pytestmark = pytest.mark.ros
 
 
-def test_what_breaks_an_assumption_has_happened_and_another_plan_is_found(ros: Ros, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("assumed", "said"), [(ONCE, "guest does call at most once"), (IN_ALL, "others do call at most once in all")]
+)
+def test_what_breaks_an_assumption_has_happened_and_another_plan_is_found(
+    ros: Ros, tmp_path: Path, assumed: str, said: str
+) -> None:
     """The observer is killed after the second call: what is broken stays so."""
-    text = CAFE.format(ONCE)
+    text = CAFE.format(assumed)
     won, options = solved(text), Options(reaction=Rules().reaction)
     folder = write_workspace(scenario(text), won.network, won.objective, won.strategy, options, tmp_path / "ws")
     with launched(ros, lay_over(ros, folder), tmp_path, ("waiter",), mode="still", use_sim_time=True, speed=2) as run:
@@ -27,7 +32,7 @@ def test_what_breaks_an_assumption_has_happened_and_another_plan_is_found(ros: R
         assert run.until_step("call").status == "running"
         run.until(lambda: run.now()["clocks"]["Cguest"] > 1.1)
         run.publish("guest:call")
-        run.until(lambda: "guest does call at most once" in str(run.now()["reason"]))
+        run.until(lambda: said in str(run.now()["reason"]))
         run.until_back("observer", run.kill("observer"))
         run.until(lambda: int(run.now().get("plan", 0)) > 0 and run.now().status == "running")
         assert run.until_over() == "won", run.output()

@@ -1,16 +1,13 @@
-"""What a newcomer does first: `./run mission`, and the checkout in a catkin workspace."""
+"""What a newcomer does first: `./run mission`. The checkout in a catkin workspace: see test_install_space."""
 
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 from ros_world import Ros
-
-from pursue_gen import __version__
 
 pytestmark = pytest.mark.ros
 
@@ -18,26 +15,6 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 SCENARIO = ROOT / "scenarios" / "thesis" / "scenario_1.pur"
 STAMP = ROOT / ".venv" / ".pursue_gen_stamp"
 needs_setup = pytest.mark.skipif(not STAMP.is_file(), reason="./run setup has not been run in this checkout")
-
-
-def test_the_checkout_is_a_catkin_package(ros: Ros, tmp_path: Path) -> None:
-    place = tmp_path / "src" / "pursue_gen"
-    ignored = shutil.ignore_patterns("*.so", "__pycache__", ".*cache")
-    for name in ("pursue_gen", "pursue_runtime", "templates", "bin", "docs/diagnostics", "scenarios"):
-        shutil.copytree(str(ROOT / name), str(place / name), ignore=ignored)
-    for name in ("package.xml", "CMakeLists.txt"):
-        shutil.copy(str(ROOT / name), str(place / name))
-    quick = "-DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS='-O1 -DPURSUE_ONE_SIZE'"  # to build
-    done = ros.run(f"catkin_make install {quick}", tmp_path, 900)
-    assert done.returncode == 0, done.stdout
-    for space in ("devel", "install"):
-        program = f"source {space}/setup.bash && rosrun pursue_gen pursue-gen"
-        assert ros.run(f"{program} --version", tmp_path).stdout == f"pursue-gen {__version__}\n"
-        told = ros.run(f"{program} ws {SCENARIO} -o from_{space}", tmp_path)
-        assert told.returncode == 0, told.stdout
-        shutil.rmtree(str(place), ignore_errors=True)  # the installed one has to do without the source
-    same = ros.run("diff -r from_devel from_install", tmp_path)
-    assert same.returncode == 0, same.stdout
 
 
 def run_mission(*words: object, **environment: str) -> "subprocess.CompletedProcess[str]":

@@ -11,7 +11,7 @@ from typing import Dict, List, Mapping, Tuple
 
 import pytest
 from launched_mission import GOAL, LaunchedMission, launched, ready
-from ros_world import Ros, make
+from ros_world import Ros, lay_over
 
 from pursue_gen.language import load
 from pursue_gen.solving.solution import Rules, solve_scenario
@@ -130,7 +130,7 @@ class Day:
 def test_what_the_desk_sends_is_played_after_the_mission_before_and_by_everybody(ros: Ros, tmp_path: Path) -> None:
     files = workspace_of("first", FIRST, tmp_path)
     first = mission_of("first", files)[0].digest
-    workspace = make(ros, tmp_path / "ws")
+    workspace = lay_over(ros, tmp_path / "ws")
     store = Store(tmp_path / "run" / "home")
     second = store.put("second", workspace_of("second", SECOND, tmp_path))
     one, two = mission_id(first), mission_id(second)

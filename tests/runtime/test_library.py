@@ -17,6 +17,7 @@ from pursue_runtime.event_words import (
     FAILED,
     RobotReport,
     Word,
+    event_in,
     format_report,
     format_word,
     parse_report,
@@ -154,6 +155,7 @@ def test_words_come_back(agent: str, event: str, seq: object) -> None:
     word = Word(agent, event, seq)
     assert parse_word(format_word(word)) == word
     assert parse_word(format_word(word._replace(seq=None, as_of=seq))) == (agent, event, None, seq, None)
+    assert event_in(format_word(word)) == event_in(format_word(word._replace(seq=None, as_of=seq))) == event
 
 
 times = st.none() | st.integers(0, 10**16).map(lambda micros: micros / 10**6)

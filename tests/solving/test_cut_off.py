@@ -132,12 +132,12 @@ WATCH = """
 poi "dock"
 poi "aisle"
 poi "rack"
-connect dock and aisle distance 5
-connect aisle and rack distance 5
+connect dock and aisle distance 1
+connect aisle and rack distance 1
 agent "ada" controllable mobile 2 location dock
 agent "bob" controllable mobile 2 location dock
 agent "tech" mobile {pace} location dock
-objective: patrol rack every 90 by any robot
+objective: patrol rack every 20 by any robot
 objective: avoid any robot at rack and tech at rack
 assume: tech leaves rack within {stay}
 """
@@ -147,9 +147,9 @@ assume: tech leaves rack within {stay}
 @pytest.mark.parametrize(
     ("pace", "stay", "cut"),
     [
-        (1, 40, True),
-        (1, 4, False),  # a robot may set off before he has to leave
-        (2, 40, False),  # and is gone before he is back
+        (1, 8, True),
+        (1, 1, False),  # a robot may set off before he has to leave
+        (2, 8, False),  # and is gone before he is back
     ],
 )
 def test_who_has_driven_robots_out_may_keep_them_from_a_place_that_is_patrolled(

@@ -151,7 +151,7 @@ def test_the_controller_may_decide_when_robots_arrive(reaction: Fraction) -> Non
     assert verify(network, objective, found.strategy, reaction).ok
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
 @given(text=small_patrols())
 def test_what_tours_win_is_not_lost(text: str) -> None:
     network, objective = game_of(text)

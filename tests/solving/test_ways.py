@@ -67,7 +67,7 @@ def test_ends_are_drawn_from_the_whole_window() -> None:
     read = parse(WON[3], "x.pur", "x")
     case, _ = case_of(read, solve_scenario(read, DEFAULT), Options(), Settings("random"))
     lasted = []
-    for seed in range(20):
+    for seed in range(8):
         begun = 0.0
         for step in simulated(case, seed).steps:
             begun = step.at if step.event == "boil" else begun
@@ -79,7 +79,7 @@ def test_who_has_loaded_unloads() -> None:
     """In recorded missions each unload is of the cart that loaded last before it and has not unloaded since."""
     read = parse(text("airport/own_load").replace("within 6", "within 9"), "x.pur", "x")
     case, _ = case_of(read, solve_scenario(read, DEFAULT), Options(), Settings("random"))
-    for seed in range(10):
+    for seed in range(5):
         loaded = set()
         for step in simulated(case, seed).steps:
             if step.event == "load":

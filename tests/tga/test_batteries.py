@@ -104,6 +104,40 @@ def test_a_charger_makes_the_difference() -> None:
     assert solved(parse(patrol.format("battery bot capacity 400 uses 10 per unit"), "x.pur", "x")) is None
 
 
+BY_DISTANCE = "battery bot capacity {} uses 0.5 per metre, 1 per unit recharges 1 per unit at dock"
+
+
+def test_on_its_way_it_uses_by_the_length_whatever_that_takes() -> None:
+    network = translate(parse(HOUSE.format(BY_DISTANCE.format(4)), "x.pur", "x"))
+    assert dict(network.variables)["Lbot"] == 8
+    assert moves(network, "dock", "going_dock_to_hall") == {(level, level - 3) for level in (8, 5, 4)}
+    assert moves(network, "hall", "doing_wipe_in_hall") == {(8, 4), (5, 1), (4, 0)}
+    (known,) = (each for each in statuses(parse(HOUSE.format(BY_DISTANCE.format(4)), "x.pur", "x"), network)
+                if each.of == "Lbot")  # fmt: skip
+    assert known.texts["5"] == "2.5 of 4"
+
+
+@pytest.mark.parametrize(("capacity", "wins"), [(3, False), (4, True)])
+def test_what_it_uses_by_distance_decides(capacity: int, wins: bool) -> None:
+    assert (solved(parse(HOUSE.format(BY_DISTANCE.format(capacity)), "x.pur", "x")) is not None) == wins
+    assert solved(house(capacity)) is None, "by time it uses more"
+
+
+@settings(max_examples=5)
+@given(st.integers(6, 24), st.integers(1, 5), st.sampled_from([24, 32]))
+def test_missions_keep_batteries_that_are_used_by_distance(capacity: int, rate: int, every: int) -> None:
+    battery = BY_DISTANCE.format(capacity).replace("recharges 1", f"recharges {rate}")
+    text = HOUSE.replace(WANTED, f"objective: patrol hall, dock every {every} by bot")
+    scenario = parse(text.format(battery), "x.pur", "x")
+    won = solved(scenario)
+    if won is None:
+        return
+    runner = MissionRunner(case_of(scenario, won, Options(), Settings(until=100.0))[0])
+    for seed in range(2):
+        outcome = runner.run(seed)
+        assert outcome.end == SAFE, outcome.reason
+
+
 @settings(max_examples=5)
 @given(st.integers(6, 24), st.integers(1, 5), st.sampled_from([24, 32, 48]))
 def test_missions_of_strategies_keep_their_batteries_as_the_judge_counts_them(

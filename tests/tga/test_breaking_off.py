@@ -59,7 +59,7 @@ def test_who_may_break_off_keeps_what_is_due_sooner() -> None:
 
 
 @given(stories(small=True))
-@settings(max_examples=40)
+@settings(max_examples=20)
 def test_who_may_break_off_wins_what_is_won_without(drawn: Tuple[str, Scenario]) -> None:
     text, story = drawn
     assume(" may_stop" in text)

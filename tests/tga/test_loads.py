@@ -69,6 +69,13 @@ def test_all_things_share_the_room() -> None:
     assert labels["Hcart"].label == "load of cart" and len(labels["Hmaid"].texts) == 2
 
 
+def test_several_at_once_are_one_step() -> None:
+    text = SHOP.replace("takes box", "takes 2 box").replace("gives box", "gives 2 box")
+    text = text.replace("mobile 1 l", "carries 2 l")
+    assert (steps("cart", "load", text), steps("cart", "loadDONE", text)) == ([(0, 0)], [(0, 2)])
+    assert steps("cart", "unload", text) == [(2, 0)]
+
+
 def test_other_guards_stay() -> None:
     text = SHOP.replace("reach", 'rule "all": load before unload\nreach')
     (begin,) = edges("maid", "load", text)

@@ -55,7 +55,7 @@ agent "bot" controllable mobile 1 location dock can_do look, refill, report
 
 
 @given(CONDITIONS, st.sampled_from(["close", "open", "paint", "carry", "way"]), st.sampled_from(UNKNOWN))
-@settings(max_examples=40)
+@settings(max_examples=20)
 def test_robots_begin_what_is_allowed_in_any_case_and_others_what_may_be(
     condition: Condition, what: str, state: str
 ) -> None:
@@ -147,7 +147,7 @@ def won(story: Scenario) -> bool:
 
 
 @given(stories(small=True))
-@settings(max_examples=40)
+@settings(max_examples=20)
 def test_what_is_won_without_knowing_is_won_by_who_knows(drawn: Tuple[str, Scenario]) -> None:
     """Whatever a state is from the start, a play of who does not know it yet is one of the network."""
     text, story = drawn

@@ -66,13 +66,6 @@ def test_an_automaton_that_does_not_hear_what_concerns_it_is_found(judge: Any, a
     assert not judge.explained(automata, state(), state(rule1=WORKING["rule1"]))
 
 
-@pytest.mark.parametrize(
-    "word, event", [("catch", "catch"), ("polBot2:catch@7", "catch"), ("bot1_a2b@12", "bot1_a2b"), ("x:e", "e")]
-)
-def test_events_of_words(judge: Any, word: str, event: str) -> None:
-    assert judge.event_of(word) == event
-
-
 def test_locations_and_variables_of_a_state_are_read_as_text(judge: Any) -> None:
     automata = [SimpleNamespace(name="bot1", location="going_a_to_b")]
     message = SimpleNamespace(automata=automata, variables=[SimpleNamespace(name="Pbot1", value=-12)])

@@ -107,6 +107,15 @@ class StatedObjective(Written):
         assert self.limit is not None, "there is no limit, or it has to be found first"
         return self.limit
 
+    def limit_in(self, location: str) -> Optional[Number]:
+        """The time units within which what is due has to come, of one that waits for it in this location of its
+        automaton, since its clock was set; None: nothing is due there."""
+        return self.limit if location == Role.AT_RISK() else None
+
+    def possible_limits(self, limits: Sequence[int]) -> Sequence[int]:
+        """Those of these limits that can be written."""
+        return limits
+
     @property
     def limit_word(self) -> str:
         """The word before its limit."""

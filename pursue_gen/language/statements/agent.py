@@ -8,6 +8,7 @@ from math import ceil, floor
 from typing import Any, ClassVar, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, warning
+from pursue_gen.language.lengths import metres
 from pursue_gen.language.numbers import Number, Window, exact, is_fine, window_of
 from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.statements.base import Labelled
@@ -72,7 +73,7 @@ class Agent(Labelled):
     )
     template: ClassVar[Template] = Template(
         'agent {name="bot"} [label {label:name}] [human] [controllable] [mobile {mobile:number=3}]'
-        " [speed {speed:number}] [radius {radius:number}] [tolerance {tolerance:number}] [inflation {inflation:number}]"
+        " [speed {speed:number}] [radius {radius:metres}] [tolerance {tolerance:metres}] [inflation {inflation:metres}]"
         " [carries {carries:count}] [has {has:things}]"
         " location {location:POI=a} [can_do {can_do:events=e1, e2}] [reacts_to {reacts_to:events=e3}]"
     )
@@ -139,7 +140,7 @@ class Agent(Labelled):
     def size_words(self) -> str:
         """What is said of its size; "": nothing."""
         size = {"radius": self.radius, "goal tolerance": self.tolerance, "inflation radius": self.inflation}
-        return ", ".join(f"{what} {metres} m" for what, metres in size.items() if metres is not None)
+        return ", ".join(f"{what} {metres(number)}" for what, number in size.items() if number is not None)
 
     def check(self) -> Iterator[Diagnostic]:
         yield from self._check_size()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, ClassVar, Dict, Iterator, Optional, Tuple
+from typing import Any, Callable, ClassVar, Dict, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, listed
 from pursue_gen.language.conditions import Condition, names_in
@@ -100,6 +100,11 @@ class StatementKind(Written):
     def rule(cls) -> str:
         """The name of its rule in the grammar, which its trees have."""
         return cls.__name__.lower()
+
+    @classmethod
+    def form_behind(cls, words: Sequence[str]) -> str:
+        """What it looks like, for a message on a statement that is right as far as these words of it."""
+        return cls.form()
 
     @classmethod
     def grammar(cls) -> str:

@@ -11,6 +11,7 @@ from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import ForSome
 from pursue_gen.language.template import Template
+from pursue_gen.language.times import written_time
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word
 
@@ -43,11 +44,11 @@ class Connection(ForSome):
             "The other end of the way; in a rule: both of the two, in any order; in a condition: both hold.",
             may_break=True,
         ),
-        Word("distance", "How long the way is, in the unit of distance that you chose."),
+        Word("distance", "How long the way is, in the unit of distance that you chose, or with its unit: 12 m."),
         Word("one_way", "From the first place to the second only. Without it, the way goes in both directions.", True),
     )
     template: ClassVar[Template] = Template(
-        "connect {a:POI=a} and {b:POI=b} distance {distance:number=3} [one_way] "
+        "connect {a:POI=a} and {b:POI=b} distance {distance=3} [one_way] "
         + ForSome.for_whom
         + " [only_if {only_if:condition=open is_true}]"
     )
@@ -79,7 +80,7 @@ class Connection(ForSome):
         if kind == "state" and self.only_if is not None and self.speaks_of(kind, name):
             yield f"between {self.a} and {self.b} only while {shown(condition_words(self.only_if))}"
         if kind == "agent" and not self.admits(name):
-            yield f"never goes between {self.a} and {self.b}"
+            yield f"never takes the way between {self.a} and {self.b} at distance {written_time(self.distance)}"
 
     def check(self) -> Iterator[Diagnostic]:
         if self.distance <= 0:

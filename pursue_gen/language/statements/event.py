@@ -3,18 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, ClassVar, Iterator, Optional, Tuple
+from typing import Any, Callable, ClassVar, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.conditions import Condition, condition_words
 from pursue_gen.language.numbers import Number, Window, window_of
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import Labelled, check_window
-from pursue_gen.language.template import Template
+from pursue_gen.language.template import Filling, Template
+from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Numbers, Word
 
 MOST_TIMES = 100
 """How often an event can happen at most that is counted: each count is a location of an automaton."""
+
+
+def _read_counted(reader: TreeReader, tree: Any) -> Tuple[Ref, int]:
+    number, name = tree.children
+    return reader.ref(name), 1 if number is None else reader.count(number)
+
+
+def counted_text(thing: Optional[Ref], count: int) -> str:
+    """So many of a thing as they are written; "" for none."""
+    if thing is None:
+        return ""
+    return thing.name if count == 1 else f"{count} {thing.name}"
 
 
 @dataclass(frozen=True)
@@ -26,7 +39,8 @@ class Event(Labelled):
     `together`: whoever takes part in a collaborative event is busy until it ends; else only the one who does it.
     `only_if`: what has to hold when it begins; None: nothing. `label`: what people read; None: the name.
     `may_stop`: who does it may break it off; it has not happened then.
-    `takes`, `gives`: the thing that whoever does it carries from its end on, and the one that is given away then.
+    `takes`, `gives`: the thing that whoever does it carries from its end on, and the one that is given away then; so
+    many of it (`taken`, `given`) at once.
     `mounts`: the tool that is mounted from its end on, in place of another one; `needs`: what is carried or mounted.
     """
 
@@ -42,7 +56,9 @@ class Event(Labelled):
     label: Optional[str] = None
     may_stop: bool = False
     takes: Optional[Ref] = None
+    taken: int = 1
     gives: Optional[Ref] = None
+    given: int = 1
     mounts: Optional[Ref] = None
     needs: Optional[Ref] = None
 
@@ -68,13 +84,14 @@ class Event(Labelled):
     )
     template: ClassVar[Template] = Template(
         'event {name="work"} [label {label:name}] [collaborative] [together] [location {location:POI=a}]'
-        " [duration {duration,latest:window=6}] [may_stop] [takes {takes:thing}] [gives {gives:thing}]"
+        " [duration {duration,latest:window=6}] [may_stop] [takes {takes,taken:counted}] [gives {gives,given:counted}]"
         " [mounts {mounts:thing}] [needs {needs:thing}] [at_most {at_most:count=2} times]"
-        " [only_if {only_if:condition=open is_true}]"
+        " [only_if {only_if:condition=open is_true}]",
+        counted=Filling("counted", _read_counted, counted_text, "thing", rules="counted: [NUMBER] ref"),
     )
     note: ClassVar[str] = (
         'all but the name is optional; or: duration 6 to 9; behind the name: label "do the work"; behind the duration: '
-        "takes box, gives box, mounts brush, needs brush"
+        "takes box, takes 2 box, gives box, mounts brush, needs brush"
     )
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("something that can happen at a place", 'event "{=work}" location {POI} duration {=1}'),
@@ -115,19 +132,21 @@ class Event(Labelled):
     @property
     def load_words(self) -> str:
         """What it takes, gives, mounts and needs, in words; "": nothing."""
-        return ", ".join(f"{word} {ref.shown}" for word, ref in self._moves)
+        return ", ".join(f"{words} {ref.shown}" for words, ref in self._moves)
 
     @property
-    def _moves(self) -> Tuple[Tuple[str, Ref], ...]:
-        """The things that it names, behind their words."""
-        named = (("takes", self.takes), ("gives", self.gives), ("mounts", self.mounts), ("needs", self.needs))
-        return tuple((word, ref) for word, ref in named if ref is not None)
+    def _moves(self) -> Iterator[Tuple[str, Ref]]:
+        """The things that it names, behind the words for what it does with them."""
+        named = (("takes", self.takes, self.taken), ("gives", self.gives, self.given))
+        for word, ref, count in (*named, ("mounts", self.mounts, 1), ("needs", self.needs, 1)):
+            if ref is not None:
+                yield word if count == 1 else f"{word} {count} of", ref
 
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         own = (kind, name) == ("event", self.name)
         if own and self.may_stop:
             yield "may be broken off, and has not happened then"
-        yield from (f"{self.name} {word} it" for word, ref in self._moves if (kind, name) == ("thing", ref.name))
+        yield from (f"{self.name} {words} it" for words, ref in self._moves if (kind, name) == ("thing", ref.name))
         if self.only_if is not None and (own or (kind == "state" and self.speaks_of(kind, name))):
             yield f"{'' if own else f'{self.name} '}only while {shown(condition_words(self.only_if))}"
 

@@ -3,7 +3,7 @@ them, and batteries."""
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Dict, Mapping, Tuple, Type
+from typing import Any, ClassVar, Dict, Mapping, Sequence, Tuple, Type
 
 from pursue_gen.language.assumptions import KINDS as ASSUMPTIONS
 from pursue_gen.language.numbers import Number
@@ -34,6 +34,16 @@ class Headed(StatementKind):
     @classmethod
     def form(cls) -> str:
         return " · ".join(f"{cls.head.text}{cls.colon} {kind.form()}" for kind in cls.kinds.values())
+
+    @classmethod
+    def form_behind(cls, words: Sequence[str]) -> str:
+        own = words[words.index(cls.head.text) + 1 + len(cls.colon) :]
+        kinds = [kind for kind in cls.kinds.values() if kind.template.words[0] in own[:1]]
+        kinds = kinds or [kind for kind in cls.kinds.values() if own and not kind.template.words[0]]
+        said = [sum(word in kind.template.words for word in own) for kind in kinds]
+        fitting = [kind for kind, number in zip(kinds, said) if number == max(said)]
+        whole = [f"{cls.head.text}{cls.colon} {kind.form()}" for kind in fitting]
+        return " · ".join(whole) or cls.form()
 
     @classmethod
     def grammar(cls) -> str:

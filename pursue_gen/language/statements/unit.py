@@ -11,7 +11,7 @@ from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.template import Filling, Template
-from pursue_gen.language.times import SECONDS, has_unit, read_seconds
+from pursue_gen.language.times import SECONDS, TIMES, has_unit
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word
 
@@ -21,7 +21,7 @@ _LEAST, _MOST = 0.001, 86_400  # seconds
 
 def seconds_in(text: str) -> Optional[Number]:
     """The seconds of `second`, `minute`, `hour` or a time with its unit; None: it is none of these."""
-    return _NAMED.get(text) or (read_seconds(text).seconds if has_unit(text) else None)
+    return _NAMED.get(text) or (TIMES.read(text).value if has_unit(text) else None)
 
 
 def _read(reader: TreeReader, token: Token) -> Tuple[Number, str]:

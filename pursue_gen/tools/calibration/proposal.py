@@ -185,9 +185,7 @@ def propose(scenario: Scenario, samples: Samples, options: Options) -> Proposal:
     findings = [_finding(scenario, what, measured[what], window, options) for what, window in present.items()
                 if what in measured]  # fmt: skip
     robots = {agent.name for agent in scenario.agents if agent.is_robot}
-    missing = tuple(
-        what for what in present if isinstance(what, Way) and what.agent in robots and what not in measured
-    )
+    missing = tuple(what for what in present if isinstance(what, Way) and what.agent in robots and what not in measured)
     events = tuple(what for what in present if isinstance(what, Work) and what not in measured)
     of_others = tuple(event for event in events if not _is_of_robots(scenario, event))
     return Proposal(

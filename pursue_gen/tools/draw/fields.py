@@ -8,8 +8,10 @@ from typing import Any, List, Mapping
 
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.language.labels import why_no_label
+from pursue_gen.language.lengths import LENGTHS
+from pursue_gen.language.measures import Units
 from pursue_gen.language.numbers import read_number
-from pursue_gen.language.times import has_unit, read_seconds
+from pursue_gen.language.times import TIMES, has_unit
 
 Values = Mapping[str, Any]
 
@@ -60,10 +62,26 @@ def number_of(values: Values, field: str) -> str:
     return value
 
 
+def _measured(values: Values, field: str, *kinds: Units) -> str:
+    """A number as it is written in a scenario, with a unit of one of these kinds or without."""
+    value = " ".join(text_of(values, field).split())
+    known = has_unit(value) and any(kind.read(value).value is not None for kind in kinds)
+    return value if known else number_of(values, field)
+
+
+def measure_of(values: Values, field: str) -> str:
+    """A number as it is written in a scenario, with its unit or without."""
+    return _measured(values, field, TIMES, LENGTHS)
+
+
 def time_of(values: Values, field: str) -> str:
     """A time as it is written in a scenario, with its unit or without."""
-    value = " ".join(text_of(values, field).split())
-    return value if has_unit(value) and read_seconds(value).seconds is not None else number_of(values, field)
+    return _measured(values, field, TIMES)
+
+
+def length_of(values: Values, field: str) -> str:
+    """A length as it is written in a scenario, with its unit or without."""
+    return _measured(values, field, LENGTHS)
 
 
 def window_of(values: Values, field: str) -> str:

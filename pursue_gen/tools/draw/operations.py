@@ -15,10 +15,13 @@ from pursue_gen.language.formatter import format_text, formatted
 from pursue_gen.language.kinds import DECLARED, RESERVED, STATEMENTS
 from pursue_gen.language.names import KINDS
 from pursue_gen.language.navigation import rename
+from pursue_gen.language.numbers import read_number
 from pursue_gen.language.occurrences import GROUP
 from pursue_gen.language.poses import read_poses
 from pursue_gen.language.rewriting import parts_in, parts_of
+from pursue_gen.language.statements.agent import SIZE
 from pursue_gen.language.syntax import Statement
+from pursue_gen.language.times import written_time
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.usable import reserved
 from pursue_gen.language.word import HOLE, Form
@@ -119,7 +122,7 @@ def _connect(document: Draft, values: Values) -> Done:
     for way in document.scenario.connections:
         if way.span.member and ((a, b) in way.directions and (one_way or not way.one_way)):
             return document, number_at(document, way.span)
-    distance = fields.number_of(values, "distance") if values.get("distance") else _length(document, a, b)
+    distance = fields.length_of(values, "distance") if values.get("distance") else _length(document, a, b)
     return added(document, f"connect {a} and {b} distance {distance}{' one_way' if one_way else ''}")
 
 
@@ -137,7 +140,8 @@ def _length(document: Draft, a: str, b: str) -> str:
     where, _ = positions(document.scenario)
     (ax, ay), (bx, by) = ((where[name].x, where[name].y) for name in (a, b))
     length = ((ax - bx) ** 2 + (ay - by) ** 2) ** 0.5 * lengths_per_metre(document.scenario)
-    return metres(max(round(length, 1), 0.1))
+    rounded = read_number(metres(max(round(length, 1), 0.1)))
+    return written_time(document.scenario.as_distance(rounded or 1))
 
 
 # Agents and events ----------------------------------------------------------------------------------------------------
@@ -230,7 +234,7 @@ _WHOM = {"only_for": _text("FOR", fields.text_of), "not_for": _text("EXCEPT", fi
 _FIELDS: Mapping[str, Mapping[str, Callable[[Values, str], Parts]]] = {
     "POI": {"label": _text("LABEL", fields.label_of), **_WHOM},
     "CONNECT": {
-        "distance": _needed("DISTANCE", fields.number_of),
+        "distance": _needed("DISTANCE", fields.length_of),
         "one_way": _tick("ONE_WAY"),
         **_WHOM,
         "only_if": _text("ONLY_IF", fields.text_of),
@@ -254,6 +258,7 @@ _FIELDS: Mapping[str, Mapping[str, Callable[[Values, str], Parts]]] = {
         "kind": _kind,
         "mobile": _pace("MOBILE", "SPEED"),
         "speed": _pace("SPEED", "MOBILE"),
+        **{word: _text(word.upper(), fields.length_of) for word in SIZE},
         "carries": _text("CARRIES", fields.number_of),
         "has": _text("HAS", fields.text_of),
         "location": _needed("LOCATION", fields.name_of),
@@ -287,7 +292,7 @@ def filled(form: Form, given: Any) -> str:
         field = {"value": value}
         is_number = bool(example) and what.replace(".", "").isdigit()
         if is_number:
-            text = fields.time_of(field, "value")
+            text = fields.measure_of(field, "value")
         elif what == "agent" and value in ANYBODY:
             text = str(value)
         else:

@@ -11,14 +11,18 @@ from pursue_gen.drawing.look import agent_looks, mark
 from pursue_gen.language.conditions import Condition, condition_text
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.kinds import STATEMENTS
+from pursue_gen.language.lengths import unit_of_distance
 from pursue_gen.language.names import KINDS
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.occurrences import GROUP
 from pursue_gen.language.rewriting import parts_in, parts_of
 from pursue_gen.language.scenario import Connection, Poi
 from pursue_gen.language.sentences import end_words, objective_words
+from pursue_gen.language.statements.agent import SIZE
+from pursue_gen.language.statements.event import counted_text
 from pursue_gen.language.syntax import Statement
 from pursue_gen.language.template import names_text
-from pursue_gen.language.times import window_text
+from pursue_gen.language.times import unit_name, window_text, written_time
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.word import HOLE
 from pursue_gen.solving.inputs import findings_of
@@ -43,7 +47,8 @@ def view(
 
     Distances and times are texts as they are written, positions metres, headings degrees; `statement` is the number by
     which `operations.change` knows a part, `from` and `to` are its first and last line, counted from 1. Of what comes
-    of a statement that is for each of a group, `made` is the member; it is changed in its statement only.
+    of a statement that is for each of a group, `made` is the member; it is changed in its statement only. `pace`: what
+    `mobile` counts.
     """
     document = Draft.of(text, file)
     found = _findings(document, ground, told)
@@ -60,6 +65,7 @@ def view(
         "errors": sum(one.severity is Severity.ERROR for one in found),
         "warnings": sum(one.severity is Severity.WARNING for one in found),
         "wanted": _wanted(document, found),
+        "pace": f"{unit_name(document.scenario.unit)} per {unit_of_distance(document.scenario.in_metres)}",
     }
 
 
@@ -176,7 +182,7 @@ def _ways(document: Draft, known: Collection[str]) -> List[Dict[str, Any]]:
             found.append({**way, "one_way": statement.first("ONE_WAY") is not None, **_placed(document, number)})
     for one in document.scenario.connections:
         if one.span.member and {one.a, one.b} <= {*known} and one.a != one.b:
-            way = {"a": one.a, "b": one.b, "distance": str(one.distance), "only_if": _condition(one.only_if)}
+            way = {"a": one.a, "b": one.b, "distance": written_time(one.distance), "only_if": _condition(one.only_if)}
             way.update(_whom_made(one))
             found.append({**way, "one_way": one.one_way, **_made(document, one.span)})
     return found
@@ -193,7 +199,7 @@ def _agents(document: Draft) -> List[Dict[str, Any]]:
         kind = "free" if "CONTROLLABLE" not in parts else "person" if "HUMAN" in parts else "robot"
         agent = {"name": name, "label": words_behind(one, "LABEL")[1:-1], "kind": kind}
         agent.update(mobile=words_behind(one, "MOBILE"), speed=words_behind(one, "SPEED"))
-        agent.update({key: words_behind(one, key.upper()) for key in ("carries", "has", "location")})
+        agent.update({key: words_behind(one, key.upper()) for key in (*SIZE, "carries", "has", "location")})
         agent["mark"] = mark(looks[name], 0, 0, 6.0)
         lists = {key: names_behind(one, key.upper()) for key in ("can_do", "reacts_to")}
         if name in known:  # groups are lists of their members
@@ -203,11 +209,17 @@ def _agents(document: Draft) -> List[Dict[str, Any]]:
         kind = "free" if not each.controllable else "person" if each.human else "robot"
         agent = {"name": each.name, "label": each.label or "", "kind": kind, "location": each.location.name}
         agent.update(mobile="" if each.speed else str(each.mobile or ""), speed=str(each.speed or ""))
+        agent.update({word: _length(getattr(each, word)) for word in SIZE})
         agent.update(carries=str(each.carries or ""), has=names_text(each.has))
         agent.update(mark=mark(looks[each.name], 0, 0, 6.0))
         lists = {key: [ref.name for ref in getattr(each, key)] for key in ("can_do", "reacts_to")}
         found.append({**agent, **lists, **_made(document, each.span)})
     return found
+
+
+def _length(number: Optional[Number]) -> str:
+    """A length as it is written; "" where there is none."""
+    return "" if number is None else written_time(number)
 
 
 _TICKS = ("collaborative", "together", "may_stop")
@@ -230,7 +242,8 @@ def _events(document: Draft) -> List[Dict[str, Any]]:
             event = {"name": each.name, "label": each.label or "", "at_most": str(each.at_most or "")}
             event.update(location=each.location.name if each.location else "", only_if=_condition(each.only_if))
             event["duration"] = "" if each.duration is None else window_text(each.duration, each.latest)
-            event.update({key: getattr(getattr(each, key), "name", "") for key in _MOVES})
+            counts = {"takes": each.taken, "gives": each.given}
+            event.update({key: counted_text(getattr(each, key), counts.get(key, 1)) for key in _MOVES})
             ticks = {key: getattr(each, key) for key in _TICKS}
             found.append({**event, **ticks, **_made(document, each.span)})
     return found

@@ -25,17 +25,26 @@ _WORD_BEFORE = re.compile(r"[\w-]*\Z")
 _BEHIND_POSE = re.compile(r"\][ \t]*,?[ \t]*(\w*)\Z")
 _WORD_AFTER = re.compile(r"\w*")
 _SPECIAL = re.compile(r"[$},|\\]")
-_UNITS = {"s": "seconds", "min": "minutes", "h": "hours"}
+_UNITS_OF_TIME = {"s": "seconds", "min": "minutes", "h": "hours"}
+_UNITS_OF_LENGTH = {"m": "metres", "cm": "centimetres"}
 _MOST_CHOICES = 50
 _DECLARING = {GROUP: STATEMENTS["GROUP"], **{kind.declares: kind for kind in STATEMENTS.values() if kind.declares}}
-_TIMED = frozenset(
-    hole.behind.upper()
-    for statement in STATEMENTS.values()
-    for kind in getattr(statement, "kinds", {"": statement}).values()
-    for hole in getattr(kind, "template", Template("")).holes
-    if hole.filling in (FILLINGS["time"], FILLINGS["window"])
-) | {"TO"}
-"""The words behind which a time stands."""
+
+
+def _words_before(*fillings: str) -> FrozenSet[str]:
+    """The words behind which one of these stands."""
+    return frozenset(
+        hole.behind.upper()
+        for statement in STATEMENTS.values()
+        for kind in getattr(statement, "kinds", {"": statement}).values()
+        for hole in getattr(kind, "template", Template("")).holes
+        if hole.filling in [FILLINGS[filling] for filling in fillings]
+    )
+
+
+_TIMED = _words_before("time", "window") | {"TO"}
+_LONG = _words_before("distance")
+_IN_METRES = _words_before("metres")
 _EXAMPLES = {thing: kind.form().split('"')[1] for thing, kind in _DECLARING.items()}
 
 
@@ -69,8 +78,7 @@ def complete(document: Draft, offset: int) -> Tuple[Completion, ...]:
     expected = accepts(place.behind)
     grouped = bool(document.syntax.groups)
     items = [*_names(document, place, expected), *_words(place, expected, grouped)]
-    if document.scenario.unit is not None:
-        items += _units(place)
+    items += _units(place, with_times=document.scenario.unit is not None)
     if not place.behind or "$END" in expected or place.opens_line:
         items += _statements(document, place)
     return tuple(items)
@@ -257,12 +265,15 @@ def _words(place: _Place, expected: FrozenSet[str], grouped: bool) -> Iterator[C
             yield Completion(sign, sign, token, "sign", *span)
 
 
-def _units(place: _Place) -> Iterator[Completion]:
-    """What may stand behind the number of a time."""
+def _units(place: _Place, with_times: bool) -> Iterator[Completion]:
+    """What may stand behind the number of a time or a length. `with_times`: the scenario has a `unit`."""
     *_, word, number = (None, None, *place.behind)
-    if word is not None and number is not None and word.type in _TIMED and number.type == "NUMBER":
-        for unit, about in () if has_unit(number) else _UNITS.items():
-            yield Completion(unit, unit, "NUMBER", "value", place.start, place.end, about)
+    if word is None or number is None or number.type != "NUMBER" or has_unit(number):
+        return
+    long = word.type in _IN_METRES or (with_times and word.type in _LONG)
+    timed = _UNITS_OF_TIME if with_times and word.type in _TIMED else {}
+    for unit, about in (_UNITS_OF_LENGTH if long else timed).items():
+        yield Completion(unit, unit, "NUMBER", "value", place.start, place.end, about)
 
 
 def _statements(document: Draft, place: _Place) -> List[Completion]:

@@ -285,7 +285,7 @@ def one_of_two_things(document: Draft, finding: Diagnostic, part: Statement, at:
     """An event that takes a thing, or gives it, where it does both."""
     for word in map(part.first, ("GIVES", "TAKES")):
         if word is not None and part.first("MOUNTS") is None:
-            thing = part.tokens[part.tokens.index(word) + 1]
+            thing = next(token for token in part.tokens[part.tokens.index(word) + 1 :] if token.type != "NUMBER")
             yield f"Delete {word} {thing}", (document.cut(word, thing),)
 
 
@@ -299,6 +299,7 @@ def take_or_give(document: Draft, finding: Diagnostic, part: Statement, at: int)
     wanted = [ref.name for ref in ((event.gives, event.needs) if first else (event.takes,)) if ref is not None]
     for other in document.scenario.events:
         given = (other.takes, other.mounts) if first else (other.gives,)
-        if other is not event and any(ref is not None and ref.name in wanted for ref in given):
+        can_give = any(ref is not None and ref.name in wanted for ref in given)
+        if can_give and other is not event and other.name not in part.tokens:
             yield f"Let {bare(part.name)} do {other.name}", (_listed(part, "CAN_DO", other.name),)
     yield from delete_listed(document, finding, part, at)

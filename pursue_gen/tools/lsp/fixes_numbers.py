@@ -6,10 +6,11 @@ from pursue_gen.diagnostics import Diagnostic
 from pursue_gen.language.assumptions import NUMBERED
 from pursue_gen.language.document import Edit, behind, written
 from pursue_gen.language.draft import Draft
+from pursue_gen.language.lengths import LENGTHS
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.statements.event import MOST_TIMES
 from pursue_gen.language.syntax import Statement
-from pursue_gen.language.times import apart, has_unit, like, read_seconds, written_time
+from pursue_gen.language.times import TIMES, has_unit, like, written_time
 from pursue_gen.language.tokens import bare, start_of
 from pursue_gen.tools.lsp.fixes_syntax import Proposals
 from pursue_gen.tools.lsp.hover import read_time
@@ -137,9 +138,10 @@ def say_unit(document: Draft, finding: Diagnostic, part: Statement, at: int) -> 
 
 
 def time_with_unit(document: Draft, finding: Diagnostic, part: Statement, at: int) -> Proposals:
-    """A time as it is written here, where the number is another one."""
+    """A time, or a length, as it is written here, where the number is another one."""
     token = next((token for token in part.tokens if token.start_pos == at), None)
     if token is not None and token.type == "NUMBER":
-        text = read_seconds(token).instead if has_unit(token) else apart(token)
+        texts = (units.read(token).instead if has_unit(token) else units.apart(token) for units in (TIMES, LENGTHS))
+        text = next(filter(None, texts), None)
         if text:
             yield f"Write {text}", (written(token, text),)

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
+from itertools import takewhile
 from typing import Callable, Dict, List, Optional, Tuple
 
 from lark import Token
 
-from pursue_gen.diagnostics import listed, units
-from pursue_gen.language.batteries import levels
+from pursue_gen.diagnostics import listed
+from pursue_gen.language.batteries import full, levels
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.for_each import ranges_of
 from pursue_gen.language.kinds import KEYWORDS, MEANINGS, STATEMENTS
 from pursue_gen.language.labels import in_markdown, markdown
+from pursue_gen.language.lengths import unit_of_distance, units_of_distance
 from pursue_gen.language.numbers import Number, exact, window_of
 from pursue_gen.language.occurrences import GROUP, MEMBERS, VARIABLE, Occurrence
 from pursue_gen.language.scenario import (
@@ -67,7 +69,7 @@ def hover(document: Draft, offset: int) -> Optional[Hover]:
     if token.type in KEYWORDS:
         form = f"\n\n```pursue\n{STATEMENTS[token.type].form()}\n```" if token.type in STATEMENTS else ""
         return Hover(f"**{token}**: {MEANINGS[token.type]}{form}", start, start + len(token))
-    number = read_time(document, token) if token.type == "NUMBER" else None
+    number = _read(document, part, token) if part is not None and token.type == "NUMBER" else None
     if number is not None and part is not None:
         text = _number(document, part.body, start, number)
         return Hover(text, start, start + len(token)) if text else None
@@ -78,6 +80,15 @@ def read_time(document: Draft, token: Token) -> Optional[Number]:
     """The number of a token, as a time; None where it cannot be read."""
     reader = TreeReader(document.file, {}, document.scenario.unit)
     number = reader.time(token)
+    return None if reader.findings else number
+
+
+def _read(document: Draft, part: Statement, token: Token) -> Optional[Number]:
+    """The number of a token of a statement, as what it counts there; None where it cannot be read."""
+    if part.pair("DISTANCE") is None:
+        return read_time(document, token)
+    reader = TreeReader(document.file, {}, document.scenario.unit)
+    number = reader.distance(token)
     return None if reader.findings else number
 
 
@@ -133,11 +144,13 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
         other = way.b if way.a == poi.name else way.a
         there = (poi.name, other) in way.directions
         words, direction = (f"to {other}", (poi.name, other)) if there else (f"from {other} only", (other, poi.name))
-        movers = [(agent.name, scenario.movements(agent).get(direction)) for agent in scenario.agents]
+        able = [agent for agent in scenario.agents if way in scenario.ways_of(agent.name)]
+        movers = [(agent.name, scenario.movements(agent).get(direction)) for agent in able]
         times = ", ".join(f"{name} {lasts(window, scenario.unit)}" for name, window in movers if window is not None)
         only = f", only while {in_markdown(scenario, condition_words(way.only_if))}" if way.only_if is not None else ""
         whom = f", {in_markdown(scenario, way.whom_words)}" if way.whom_words else ""
-        lines.append(f"- {words}: distance {way.distance}" + (f" ({times})" if times else "") + whom + only)
+        words += f": distance {written_time(way.distance)}"
+        lines.append(f"- {words}" + (f" ({times})" if times else "") + whom + only)
     lines = [*lines[:2], *_listed(lines[2:])]
     if not ways:
         lines.append("- no way leads here")
@@ -228,7 +241,8 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
     if agent.mobile is None:
         lines.append("- stays there")
     else:
-        pace = f"needs {units_of_time(in_units(agent.mobile, scenario.unit))} for a unit of distance"
+        needs = units_of_time(in_units(agent.mobile, scenario.unit))
+        pace = f"needs {needs} for a {unit_of_distance(scenario.in_metres)}"
         lines.append(f"- {pace}" if agent.speed is None else f"- moves {agent.speed} metres in a second")
         own = {travel.way for travel in scenario.travels if travel.agent.name == agent.name}
         known = {(way.a, way.b) for way in scenario.connections} | own  # the other direction takes as long
@@ -244,34 +258,38 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
 
 
 def _number(document: Draft, part: Statement, start: int, time: Number) -> str:
-    """What the number at an offset of a statement means; `time`: it, where it is one."""
+    """What the number at an offset of a statement means; `time`: it, as it was written."""
     scenario, number = document.scenario, exact(time)
     words = [t.type for t in part.tokens if start_of(t) < start and t.type in KEYWORDS]
     word = words[-1] if words else ""
     movers = [agent for agent in scenario.agents if agent.mobile is not None]
     if word == "DISTANCE":
-        metres = any(agent.speed is not None for agent in movers)
-        lines = [f"A way of {number} metres." if metres else f"A way of {units(number)} of distance.", ""]
-        needs = [f"- {agent.name} needs {lasts(agent.window_on(number), scenario.unit)}" for agent in movers]
+        lines = [f"A way of {units_of_distance(time, scenario.in_metres)}.", ""]
+        of_it = [way for way in scenario.connections if way.span.line == part.tokens[0].line]
+        able = [agent for agent in movers if not of_it or any(way.admits(agent.name) for way in of_it)]
+        needs = [f"- {agent.name} needs {lasts(agent.window_on(number), scenario.unit)}" for agent in able]
         return "\n".join(lines + _listed(needs))
+    if part.kind == "EVENT" and word in ("TAKES", "GIVES"):
+        return f"So many at one time: {number}."
     if word in ("DURATION", "TAKES", "TO"):
-        begins = next(start_of(t) for t in part.tokens if t.type in ("DURATION", "TAKES"))
-        written = (t for t in part.tokens if t.type == "NUMBER" and start_of(t) > begins)
-        numbers = [value for value in (read_time(document, token) for token in written) if value is not None]
+        begins = next(k for k, t in enumerate(part.tokens) if t.type in ("DURATION", "TAKES"))
+        written = takewhile(lambda token: token.type in ("NUMBER", "TO"), part.tokens[begins + 1 :])
+        read = (read_time(document, token) for token in written if token.type == "NUMBER")
+        numbers = [value for value in read if value is not None]
         return f"It takes {lasts(window_of(numbers[0], numbers[1] if len(numbers) > 1 else None), scenario.unit)}."
     behind = next((t.type for t in part.tokens if start_of(t) > start), "")
     if word in ("AT_MOST", "HOLDS") and behind != "TIMES":
         return f"No more than {number} at one time."
     if word == "MOBILE":
         pace = units_of_time(in_units(number, scenario.unit))
-        lines = [f"It needs {pace} for a unit of distance; a larger number is slower.", ""]
+        lines = [f"It needs {pace} for a {unit_of_distance(scenario.in_metres)}; a larger number is slower.", ""]
         times = [(f"{way.a} to {way.b}", exact(way.distance * number)) for way in scenario.connections]
         ways = [f"- {name}: {lasts((time, exact(time + 1)), scenario.unit)}" for name, time in times]
         return "\n".join(lines + _listed(ways))
     if word == "SPEED":
         here = [agent for agent in movers if agent.span.line == part.tokens[0].line and agent.speed is not None]
         lines = [f"It moves {number} metres in a second.", ""]
-        windows = [(way, agent.window_on(way.distance)) for agent in here for way in scenario.connections]
+        windows = [(way, agent.window_on(way.distance)) for agent in here for way in scenario.ways_of(agent.name)]
         ways = [f"- {way.a} to {way.b}: {lasts(window, scenario.unit)}" for way, window in windows]
         return "\n".join(lines + _listed(ways))
     if part.kind == "BATTERY":
@@ -289,7 +307,7 @@ def _battery(scenario: Scenario, part: Statement) -> str:
     agents = {agent.name for agent in scenario.agents}
     for battery in scenario.batteries:
         here = battery.span.line == part.tokens[0].line and battery.agent.name in agents
-        if here and battery.capacity <= MOST_CAPACITY:
+        if here and full(scenario, battery) <= MOST_CAPACITY:
             count = len(levels(scenario, battery))
             return f"The battery can be at {count} levels; the game has up to {count} times as many states."
     return ""

@@ -12,7 +12,7 @@ from pursue_gen.synthesis.game import JointMove, joint_moves
 from pursue_gen.synthesis.lookup import blocks_of, facts_of
 from pursue_gen.synthesis.strategy import Block, Command, Strategy, Zone
 from pursue_gen.tga.network import Edge
-from pursue_gen.tools.play.state import GRAIN, PlayState, Setup, StandingDecision, later
+from pursue_gen.tools.play.state import GRAIN, PlayState, Setup, StandingDecision
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Advisor:
         """What had been decided before a move, and stands after it: the same block holds, and no clock of an automaton
         that it names was reset, but those that the strategy leaves out."""
         game = self._setup.game
-        aged = later(before.entry, play.since - before.since)
+        aged = before.entry.later(play.since - before.since)
         reset = {c for c, was, now in zip(game.clocks, aged.clocks, play.entry.clocks) if was != now}
         reset -= self._left_out_clocks
         states = facts_of(game, before.entry.state), facts_of(game, play.entry.state)
@@ -98,14 +98,14 @@ class Advisor:
             open_ = window(game, entry, move)
             for zone in command.zones:
                 within = span(zone, clocks)
-                delay = None if within is None else _both(within, open_).earliest(GRAIN)
+                delay = None if within is None else within.both(open_).earliest(GRAIN)
                 if delay is not None and (best is None or play.since + delay < best.at):
                     best = Decision(move, play.since + delay, number, command)
         return best
 
     def _says(self, number: int, block: Block, play: PlayState) -> Holding:
         moment = next((known.at for known in play.standing if known.number == number), play.now)
-        clocks = dict(zip(self._setup.game.clocks, later(play.entry, moment - play.since).clocks))
+        clocks = dict(zip(self._setup.game.clocks, play.entry.later(moment - play.since).clocks))
         zones: List[Tuple[Optional[Command], Zone]] = [(None, zone) for zone in block.wait]
         zones += [(command, zone) for command in block.commands for zone in command.zones]
         for command, zone in zones:
@@ -135,8 +135,3 @@ def span(zone: Zone, clocks: Mapping[str, Fraction]) -> Optional[Window]:
     """The delays after which clocks that have these values now are in a zone; None: time does not get there."""
     reached = delays(zone, clocks)
     return None if reached is None or reached.earliest(GRAIN) is None else reached
-
-
-def _both(a: Window, b: Window) -> Window:
-    common = a.at_least(b.low, b.low_open)
-    return common if b.high is None else common.at_most(b.high, b.high_open)

@@ -17,7 +17,7 @@ from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.game import JointMove, is_bad, is_goal
 from pursue_gen.synthesis.limits import EXPLAINING, Limits, Listener
 from pursue_gen.thresholds import narrowed
-from pursue_gen.tools.play.state import CHANCE, GRAIN, LOST, OTHERS, ROBOTS, PlannedMove, PlayState, Setup, after, later
+from pursue_gen.tools.play.state import CHANCE, GRAIN, LOST, OTHERS, ROBOTS, PlannedMove, PlayState, Setup
 from pursue_gen.tools.play.world import Offer
 
 _FARTHEST = 32
@@ -196,7 +196,7 @@ class CounterPlay:
     # What the solver finds --------------------------------------------------------------------------------------------
 
     def _leaves_lost(self, play: PlayState, move: JointMove, delay: Fraction) -> bool:
-        there = after(play.position, move, delay)
+        there = play.position.after(move, delay)
         if is_goal(self.setup.game, there.state):
             return False
         return is_bad(self.setup.game, there.state) or self._lost(there, play.now + delay)
@@ -205,7 +205,7 @@ class CounterPlay:
         room = longest(self.setup.game, play.position)
         if room is not None and delay > room:
             return False
-        return self._lost(later(play.position, delay), play.now + delay)
+        return self._lost(play.position.later(delay), play.now + delay)
 
     def _lost(self, position: Position, at: Fraction) -> bool:
         # Past the horizon the others could still win ties, and would put off their work for ever.
@@ -213,7 +213,7 @@ class CounterPlay:
 
     def _in_vain(self, play: PlayState, move: JointMove, delay: Fraction) -> bool:
         """True if the move only leads to where the game has been at the same time."""
-        at, there = play.now + delay, self.oracle.same(after(play.position, move, delay))
+        at, there = play.now + delay, self.oracle.same(play.position.after(move, delay))
         met: Set[Position] = {self.oracle.same(deed.after) for deed in play.deeds if deed.at == at}
         return there in met or (delay == 0 and there == self.oracle.same(play.position))
 

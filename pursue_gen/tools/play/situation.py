@@ -71,8 +71,9 @@ def _objective(setup: Setup, play: PlayState, where: Mapping[str, int]) -> Itera
     for automaton, objective in stated(setup.scenario).items():
         number = where[automaton]
         place = setup.game.automata[number].locations[play.position.state.locations[number]]
-        if place == names.AT_RISK and objective.limit is not None:
-            due = play.now - clocks[clock_of(automaton)] + objective.limit
+        limit = objective.limit_in(place)
+        if limit is not None:
+            due = play.now - clocks[clock_of(automaton)] + limit
             yield f"deadline: {objective.words.due_by or objective.words.due} by {time_text(due)} at the latest"
     for k, reach in enumerate(setup.scenario.reach):
         number = where[names.reach_objective(k)]
@@ -133,7 +134,7 @@ def overview(setup: Setup, words: Words, play: PlayState) -> Iterator[str]:
     widest = max((len(poi.shown) for poi in setup.scenario.pois), default=0)
     for poi in setup.scenario.pois:
         ways = [
-            f"{shown(to)} ({c.distance}{_only(c)})"
+            f"{shown(to)} ({written_time(c.distance)}{_only(c)})"
             for c in setup.scenario.connections
             for a, to in c.directions
             if a == poi.name

@@ -108,7 +108,7 @@ class Setup:
 
         Where the objective can be lost by nobody's doing then, as where two meet that must not, it is lost at once.
         """
-        there = after(play.entry, move, moment - play.since)
+        there = play.entry.after(move, moment - play.since)
         status = WON if is_goal(self.game, there.state) else LOST if is_bad(self.game, there.state) else RUNNING
         deed = PlayedMove(moment, self.owner(move), self.word(move), by, there, move.edges)
         fresh = PlayState(there, moment, moment, status, (*play.deeds, deed))
@@ -208,7 +208,7 @@ class PlayState:
     @property
     def position(self) -> Position:
         """The position now."""
-        return later(self.entry, self.now - self.since)
+        return self.entry.later(self.now - self.since)
 
     @property
     def over(self) -> bool:
@@ -228,16 +228,3 @@ def setup_of(scenario: Scenario, rules: Rules, strategy: Optional[Strategy] = No
     network, objective = played(translate(scenario), rules), scenario_objective(scenario)
     network = network if strategy is None else with_automata_of(network, strategy)
     return Setup(scenario, rules, network, objective, compile_game(network, objective))
-
-
-def later(position: Position, delay: Fraction) -> Position:
-    """The position when so much time has passed."""
-    return replace(position, clocks=tuple(value + delay for value in position.clocks))
-
-
-def after(here: Position, move: JointMove, delay: Fraction) -> Position:
-    """The position after a move that is made when so much time has passed."""
-    clocks = [value + delay for value in here.clocks]
-    for clock in move.resets:
-        clocks[clock - 1] = Fraction(0)
-    return Position(move.target, tuple(clocks))

@@ -66,9 +66,7 @@ def passed_bounds(automaton: Automaton, here: str, clocks: Mapping[str, Fraction
     return tuple(bound for bound in bounds if not _holds(bound, clocks))
 
 
-def region(
-    clocks: Mapping[str, Fraction], beyond: Mapping[str, Fraction], grid: int
-) -> Tuple[Constraint, ...]:
+def region(clocks: Mapping[str, Fraction], beyond: Mapping[str, Fraction], grid: int) -> Tuple[Constraint, ...]:
     """The clock values that no bound on the grid (parts of a time unit) distinguishes from these; above `beyond`
     all are equal.
 
@@ -122,9 +120,7 @@ def _unbounded(automaton: Automaton, here: str) -> Automaton:
     return replace(automaton, locations=tuple(locations))
 
 
-def _awaited(
-    automaton: Automaton, here: str, clocks: Mapping[str, Fraction], request: Request
-) -> Optional[Automaton]:
+def _awaited(automaton: Automaton, here: str, clocks: Mapping[str, Fraction], request: Request) -> Optional[Automaton]:
     """It may stay where it is for as long as it is awaited; None where it is not any more when the plan begins."""
     left = request.awaited.get(automaton.name, Fraction(-1)) - request.ahead
     if left < 0:

@@ -29,9 +29,7 @@ _STATES = 20_000
 """The symbolic states of each look of the checker. Not measured."""
 
 
-def sooner(
-    strategy: Strategy, network: Network, objective: Objective, reaction: Fraction, limits: Limits
-) -> Strategy:
+def sooner(strategy: Strategy, network: Network, objective: Objective, reaction: Fraction, limits: Limits) -> Strategy:
     """The strategy, or a proven one that comes to the goal sooner at worst: as soon as can be guaranteed in whole time
     units, as far as little work finds that. Only clocks that the network has are looked at."""
     clock = _counter(network)

@@ -208,9 +208,7 @@ def _places(scenario: Scenario, robot: str) -> Dict[str, Point]:
     return {**found, **{name: (pose.x, pose.y, pose.z) for name, pose in own.items()}}
 
 
-def _elsewhere(
-    goal: Point, poi: str, again: bool, places: Dict[str, Point], where: Mapping[str, Point]
-) -> str:
+def _elsewhere(goal: Point, poi: str, again: bool, places: Dict[str, Point], where: Mapping[str, Point]) -> str:
     """Where a goal leads that should lead to the POI; "" where it may be right: poses are the workspace's. One that is
     sent `again` may be for the robot's spare pose, near its own one."""
     known = places.setdefault(poi, goal)

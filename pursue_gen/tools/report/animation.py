@@ -64,9 +64,7 @@ def write(recording: Recording, file: Path) -> None:
     write_texts({file: page(title, [section(recording.scenario, recording), timeline.section(recording)])})
 
 
-def section(
-    scenario: Scenario, recording: Recording, floor: Optional[Floor] = None, ident: str = _ID
-) -> Section:
+def section(scenario: Scenario, recording: Recording, floor: Optional[Floor] = None, ident: str = _ID) -> Section:
     """The animation as a part of a page; `floor` lies under the map, and everybody moves along its paths."""
     unit = unit_name(scenario.unit)
     content = {"end": recording.end, "agents": _tracks(scenario, recording, floor), "steps": _steps(recording)}

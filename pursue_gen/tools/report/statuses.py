@@ -6,6 +6,8 @@ from typing import Dict, List, Tuple
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import Condition, condition_text
+from pursue_gen.language.network_names import has_happened
+from pursue_gen.language.objectives.base import Breaks
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.tools.report.recording import Recording, Stay, Step, lasting
 from pursue_gen.tools.simulation.meaning import holds
@@ -24,6 +26,24 @@ def holding(recording: Recording, condition: Condition) -> Tuple[Stay, ...]:
     """When a condition held."""
     changes = ((step.at, str(_holds(recording, condition, step))) for step in recording.steps)
     return tuple(stay for stay in lasting(recording, changes) if stay.what == "True")
+
+
+def pauses(scenario: Scenario) -> Dict[str, Breaks]:
+    """The objectives that want a pause, by the name of a lane."""
+    found = [(how, how.last, how.too_soon) for how in (each.breaks for each in scenario.safety)]
+    return {f"pause: {last.shown} → {then.shown}": how for how, last, then in found if last and then}
+
+
+def paused(recording: Recording, how: Breaks) -> Tuple[Tuple[Stay, float], ...]:
+    """When an event had to wait until its pause was over, each with the end of the pause."""
+    ended = next(has_happened(each) for each in recording.scenario.events if how.last and each.name == how.last.name)
+    starts = [step.at for step in recording.steps if step.event == ended]
+    found: List[Tuple[Stay, float]] = []
+    for start, later in zip(starts, [*starts[1:], float("inf")]):
+        until = start + float(how.pause)
+        end = min(until, later, recording.end)
+        found.append((Stay(start, end, ended, end < recording.end), until))
+    return tuple(found)
 
 
 def broken(recording: Recording) -> Tuple[Tuple[str, Stay], ...]:

@@ -339,9 +339,7 @@ class _Builder:
                 edge = self.game.origins[move.edges[0]]
                 text = self.words.move(self.game.automata[move.owner].name, edge)
                 others.append(Transition(move.owner, text, (), number(move.target)))
-        return Situation(
-            state.locations, values, self.numbered(block.wait), tuple(commands), tuple(others), goal=False
-        )
+        return Situation(state.locations, values, self.numbered(block.wait), tuple(commands), tuple(others), goal=False)
 
     def numbered(self, zones: Tuple[Zone, ...]) -> Tuple[int, ...]:
         for zone in zones:

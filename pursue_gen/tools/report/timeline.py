@@ -15,7 +15,7 @@ from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tools.report.html import Section, table
 from pursue_gen.tools.report.recording import Recording, Stay, Step, ending_text, lasting, status_text, stays
-from pursue_gen.tools.report.statuses import broken, changes, conditions, holding
+from pursue_gen.tools.report.statuses import broken, changes, conditions, holding, paused, pauses
 from pursue_gen.vocabulary.statuses import courses
 from pursue_gen.vocabulary.words import Words, words_of
 from pursue_runtime.state import HOLDING
@@ -135,7 +135,7 @@ def _bar_label(recording: Recording, location: str) -> str:
 def _names(recording: Recording) -> List[str]:
     scenario = recording.scenario
     lanes = [*map(scenario.shown, recording.agents), *(each.label for each in courses(scenario, recording.network))]
-    return [*lanes, *conditions(scenario), *_due(scenario).values()]
+    return [*lanes, *conditions(scenario), *_due(scenario).values(), *pauses(scenario)]
 
 
 def _axis(scale: Scale, bottom: float) -> Iterator[str]:
@@ -173,12 +173,16 @@ def _lanes(recording: Recording, looks: Mapping[str, AgentLook], scale: Scale, i
         texts = ((step.at, status.text(step.locations, step.values) or "") for step in recording.steps)
         found = lasting(recording, texts)
         is_state = "true" in status.texts.values()
-        trues = tuple(_box(scale, stay, "true") for stay in found if stay.what == "true")
-        lanes.append(Lane(status.label, trues if is_state else tuple(_line(scale, stay, stay.what) for stay in found)))
+        shown = [stay for stay in found if not is_state or stay.what in ("true", "unknown")]
+        how = (_box(scale, stay, "true") if stay.what == "true" else _line(scale, stay, stay.what) for stay in shown)
+        lanes.append(Lane(status.label, tuple(how)))
     for words_of_it, condition in conditions(recording.scenario).items():
         parts = [_box(scale, stay, "holds", f"{words_of_it} holds") for stay in holding(recording, condition)]
         lanes.append(Lane(words_of_it, tuple(parts)))
     lanes += _deadlines(recording, scale)
+    for name, pause in pauses(recording.scenario).items():
+        due = [(stay, f"not before {_time(until)}") for stay, until in paused(recording, pause)]
+        lanes.append(Lane(name, tuple(_box(scale, stay, says, f"{name} {says}") for stay, says in due)))
     lanes += [Lane("broken", (_box(scale, stay, says, f"broken: {says}"),)) for says, stay in broken(recording)]
     lanes += _course(recording, scale)
     return lanes
@@ -235,9 +239,7 @@ def _due(scenario: Scenario) -> Dict[str, str]:
     return found if len(found) > 1 else dict.fromkeys(found, "deadline")
 
 
-def _deadline(
-    recording: Recording, scale: Scale, risks: Sequence[Tuple[Stay, float]], what: str
-) -> Tuple[str, ...]:
+def _deadline(recording: Recording, scale: Scale, risks: Sequence[Tuple[Stay, float]], what: str) -> Tuple[str, ...]:
     """How long something was due, and by when."""
     parts: List[str] = []
     for stay, due in risks:

@@ -82,9 +82,7 @@ class ObserverNode:
 
     def _mission(self) -> Mission:
         stage = self._stage
-        return Mission(
-            stage.model, stage.cover, self._log, on_uncovered="plan", controllers=tuple(stage.strategies)
-        )
+        return Mission(stage.model, stage.cover, self._log, on_uncovered="plan", controllers=tuple(stage.strategies))
 
     @property
     def is_returning(self) -> bool:

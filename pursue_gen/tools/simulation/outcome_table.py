@@ -55,7 +55,8 @@ def _notes(summary: Summary, guaranteed: Optional[str]) -> List[str]:
 def driven_words(summary: Summary) -> List[str]:
     """How far each robot drove, as a sentence; none where no robot can."""
     units = ", ".join(f"{name} {driven:.1f}" for name, driven in summary.driven.items())
-    return [f"Driven in a mission, on average, in units of distance: {units}."] if units else []
+    counts = "metres" if summary.case.scenario.in_metres else "units of distance"
+    return [f"Driven in a mission, on average, in {counts}: {units}."] if units else []
 
 
 def failure(outcome: Outcome, again: str) -> List[str]:

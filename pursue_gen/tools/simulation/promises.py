@@ -39,6 +39,8 @@ class Promises:
         self._scenario, self._exact = scenario, exact
         self._events: Dict[str, str] = {has_happened(event): event.name for event in scenario.events}
         ends = (way for connection in scenario.connections for way in connection.directions)
+        lengths = {way: float(each.distance) for each in scenario.connections for way in each.directions}
+        self._lengths: Dict[str, float] = {going(*way): length for way, length in lengths.items()}
         self._ways: Dict[str, FrozenSet[str]] = {going(*way): frozenset(way) for way in ends}
         self._places = [poi.name for poi in scenario.pois]
         self._done: List[List[str]] = [[] for _ in scenario.reach]
@@ -84,7 +86,7 @@ class Promises:
         event = self._events.get(word, "")
         self._seq = max(self._seq, state.seq)
         visited = self._visited(state)
-        late = [number for number, safety in enumerate(self._scenario.safety) if self._is_empty(number, safety, latest)]
+        late = [number for number in range(len(self._scenario.safety)) if self._is_empty(number, latest)]
         late += self._open.on_event(event, at, latest)
         self._charges.on_state(state.locations, at)
         for number, safety in enumerate(self._scenario.safety):
@@ -127,11 +129,13 @@ class Promises:
             self._seen[name] = (at, here)
             if not is_under_way(was):
                 continue
-            rate = -float(battery.uses)
+            rate = -float(battery.uses if battery.driving is None or is_action(was) else 0)
             if battery.dock is not None and is_action(was) and place_of(was, self._places) == battery.dock.name:
                 rate = float(battery.recharges)
             level = min(float(battery.capacity), self._levels[name] + rate * (at - before))
-            if self._levels[name] >= 0 > level + EPSILON * float(battery.uses):
+            if here != was and battery.driving is not None:
+                level -= float(battery.driving) * self._lengths.get(was, 0.0)
+            if self._levels[name] >= 0 > level + EPSILON * float(battery.uses + (battery.driving or 1)):
                 self.problems.append(f"the battery of {name} has run empty")
             self._levels[name] = level
 
@@ -160,10 +164,10 @@ class Promises:
             self._since.setdefault(number, latest)
         return since is not None and latest - since > safety.limit
 
-    def _is_empty(self, number: int, safety: Safety, latest: float) -> bool:
+    def _is_empty(self, number: int, latest: float) -> bool:
         """True if a battery by time was needed for too long until now."""
         since = self._charges.since(number)
-        return since is not None and safety.limit is not None and latest - since > safety.limit
+        return since is not None and latest - since > self._charges.limit(number)
 
     def _is_too_soon(self, breaks: Breaks, word: str, at: float, latest: float) -> bool:
         """True if an event begins before the pause after another one is over."""

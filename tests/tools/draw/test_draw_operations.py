@@ -300,6 +300,23 @@ def test_any_changes_leave_a_text_as_fmt_writes_it_with_all_comments(text: str, 
         assert comments(text) == before
 
 
+def test_the_size_of_a_robot_and_lengths_have_fields() -> None:
+    text = 'unit second\n\npoi "a"\npoi "b"\n\nconnect a and b distance 3 m\n\nagent "bot" controllable location a\n'
+    at = number(text, "agent")
+    after = done(text, "set", statement=at, fields={"inflation": "0.5", "radius": "20  cm"})
+    assert 'agent "bot" controllable radius 20 cm inflation 0.5 location a' in after
+    (shown,) = view(after)["agents"]
+    assert view(after)["pace"] == "seconds per metre" and view("")["pace"] == "time units per unit of distance"
+    assert (shown["radius"], shown["tolerance"], shown["inflation"]) == ("20 cm", "", "0.5")
+    assert " radius " not in done(after, "set", statement=at, fields={"radius": ""})
+    assert refusal(text, "set", statement=at, fields={"radius": "20 s"}).startswith("DRW001 radius is '20 s'")
+    assert "distance 80 cm" in done(text, "set", statement=number(text, "connect"), fields={"distance": "80 cm"})
+    third = done(text, "add place", x=0, y=4, name="c")
+    assert re.search(r"connect a and c distance [0-9.]+ m\n", done(third, "connect", a="a", b="c"))
+    filled = {"kind": "CONNECT", "form": 0, "values": ["b", "c", "1.5 m"]}
+    assert "connect b and c distance 1.5 m\n" in done(third, "add form", **filled)
+
+
 def test_the_size_of_a_robot_stays_when_something_else_of_it_changes() -> None:
     size = "radius 0.2 tolerance 0.1 inflation 0.5"
     text = f'poi "a"\n\nagent "bot" controllable mobile 1 {size} location a\n'

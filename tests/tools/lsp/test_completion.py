@@ -143,7 +143,9 @@ def test_units_stand_behind_times_where_the_scenario_has_a_unit() -> None:
     for words in ('event "e" duration 5 ', "travel b from a to c takes 5 to 8 ", "objective: if e then f within 2 "):
         assert [label for label in labels(f"{timed}{words}|", "value") if label in "s min h"] == ["s", "min", "h"]
     assert not {"s", "min"} & {*labels('poi "a"\nevent "e" duration 5 |')}
-    assert not {"s", "min"} & {*labels(f"{timed}connect a and b distance 5 |")}
+    assert labels(f"{timed}connect a and b distance 5 |", "value") == ["m", "cm"]
+    assert not {"m", "cm"} & {*labels('poi "a"\nconnect a and b distance 5 |')}
+    assert {"m", "cm"} <= {*labels('poi "a"\nagent "b" controllable mobile 1 radius 20 |')}
     assert not {"s", "min"} & {*labels(timed + 'event "e" duration 5 min |')}
     assert labels("unit |", "word") == ["second", "minute", "hour"]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import subprocess
 import sys
 from typing import Tuple
@@ -16,6 +17,7 @@ from pursue_gen.language.draft import Draft
 from pursue_gen.language.navigation import definition, rename, same_name
 from pursue_gen.tools.lsp.completion import complete
 from pursue_gen.tools.lsp.fixes import fixes
+from pursue_gen.tools.lsp.framing import BoundedInput
 from pursue_gen.tools.lsp.hover import hover
 from pursue_gen.tools.lsp.map_preview import picture
 from pursue_gen.tools.lsp.outline import folds, symbols
@@ -137,14 +139,20 @@ HEADS = {
 
 @pytest.mark.parametrize("name", HEADS)
 def test_a_message_whose_head_says_no_good_length_is_refused(name: str) -> None:
+    stream = io.BytesIO(HEADS[name])
+    bounded = BoundedInput(stream)
+    assert bounded.readline() == b"" == bounded.readline()
+    assert bounded.refusal is not None and bounded.refusal.code == "LSP005"
+    assert "is refused" in bounded.refusal.message
+    assert stream.tell() <= len(HEADS[name].partition(b"\n")[0]) + 1, "nothing is read because of it"
+
+
+def test_who_is_refused_is_told_and_the_server_ends() -> None:
     words = [sys.executable, "-m", "pursue_gen", "lsp"]
     with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as server:
         assert server.stdin is not None and server.stderr is not None
-        try:
-            server.stdin.write(HEADS[name])
-            server.stdin.flush()  # and stays open: it is the head that ends the server
-        except BrokenPipeError:
-            pass
+        server.stdin.write(HEADS["a length of many digits"])
+        server.stdin.flush()  # and stays open: it is the head that ends the server
         assert server.wait(PATIENCE) == 2
         told = server.stderr.read().decode()
     assert "LSP005" in told and "is refused" in told and "Traceback" not in told

@@ -95,6 +95,12 @@ def test_windows_and_travel_times() -> None:
     assert "a robot" in told("travel b", more) and "a place" in told("from ", more)
 
 
+def test_how_many_things_are_no_time() -> None:
+    more = SMALL.replace("duration 3", "duration 3 takes 2 box at_most 4 times") + 'thing "box"\n'
+    assert "3 to 4 units" in told("duration ", more) and "So many at one time: 2" in told("takes ", more)
+    assert "work takes 2 of it" in told("takes 2 b", more)
+
+
 def test_when_events_and_ways_are_open() -> None:
     limited = SMALL.replace('event "work" location b duration 3', 'event "work" location b duration 3 only_if man at b')
     limited = limited.replace("distance 3", "distance 3 only_if no robot on_way and tired is_false")
@@ -178,5 +184,5 @@ def test_times_have_their_units_where_the_scenario_says_what_one_is() -> None:
     assert "bot 6 s to 7 s" in told('poi "', timed)
     fast = timed.replace("mobile 2", "speed 0.5")
     assert "It moves 0.5 metres in a second." in told("speed ", fast) and "- a to b: 6 s to 7 s" in told("speed ", fast)
-    assert "A way of 3 metres." in told("distance ", fast) and "moves 0.5 metres in a second" in told('agent "b', fast)
+    assert "A way of 3 m." in told("distance ", fast) and "moves 0.5 metres in a second" in told('agent "b', fast)
     assert told("within 2", timed.replace("unit second\n", "")) == ""

@@ -92,6 +92,20 @@ def test_rules_tell_whose_turn_it_is() -> None:
         "next: bot1_inb", "bot1_inb goes on", "next: bot2_ina", "bot2_ina goes on", "next: bot1_inb"]
 
 
+def test_what_is_not_known_yet_is_told() -> None:
+    lane = lanes(draw(mission("warehouse/which_shelf")))["onA"]
+    (unknown,) = tooltips(lane, "turn")
+    assert unknown.startswith("unknown, 0 to ")
+
+
+def test_a_pause_lasts_from_the_end_of_one_event() -> None:
+    made = mission("work_cell/glue")
+    boxes = tooltips(lanes(draw(made))["pause: glue → pack"], "box")
+    ends = [step.at for step in made.steps if step.event == "glueDONE"]
+    until = [float(box.partition("not before ")[2].partition(",")[0]) for box in boxes]
+    assert ends and until == [pytest.approx(end + 20, abs=0.01) for end in ends]
+
+
 def test_the_end_is_marked() -> None:
     made = mission("thesis/scenario_1")
     assert any(word.startswith("goal reached, ") for word in words(draw(made)))

@@ -31,5 +31,11 @@ def test_the_ways_that_each_robot_takes_are_added_up(tmp_path: Path) -> None:
     assert 0 < driven["bot"] <= 6.5 and driven["idler"] == 0
 
 
+def test_what_is_driven_is_told_in_metres_where_distances_are(tmp_path: Path) -> None:
+    file = tmp_path / "trip.pur"
+    file.write_text("unit second\n" + TRIP.replace("2.5", "2.5 m"))
+    assert "Driven in a mission, on average, in metres: bot 6.5" in pursue("sim", file, "--runs", 2).out
+
+
 def test_nobody_has_driven_at_the_start() -> None:
     assert Driven(parse(TRIP, "trip.pur")).units == {"bot": 0.0, "idler": 0.0}

@@ -127,7 +127,7 @@ def test_a_report_that_comes_late_does_not_end_what_was_begun_after_it(seed: int
 
 
 def test_robots_off_their_model_are_no_wrong_commands() -> None:
-    outcomes = missions(THIEF, 20, Settings("random", ("late",)))
+    outcomes = missions(THIEF, 10, Settings("random", ("late",)))  # played already, above
     assert sum(outcome.off_model for outcome in outcomes) > 0
     assert not any(outcome.problems for outcome in outcomes)
 
@@ -138,7 +138,7 @@ def test_a_robot_that_fails_is_replaced_by_a_new_plan() -> None:
 
 def test_a_mission_is_the_same_again_with_and_without_its_record() -> None:
     settings = Settings("mixed", tuple(kind for kind in FAULTS if kind not in ("failed", "silent")))
-    for seed in range(3):
+    for seed in range(2):  # the second one gets a new plan
         first = simulate_mission(stage(THIEF), settings, seed, remaining(THIEF))
         again = simulate_mission(stage(THIEF), settings, seed, remaining(THIEF), record=True)
         assert again.play and not first.play

@@ -27,7 +27,7 @@ from tests.course import Course
 from tests.oracle import ENGINES
 from tests.whole_stories import stories
 
-TIMES = re.compile(r"\b(?:distance|mobile|duration|takes|\d to|within|every|after|waits) [1-9]\d*")
+TIMES = re.compile(r"\b(?:distance|mobile|duration|takes|\d to|within|every|after|waits) [1-9]\d*\b(?! box)")
 """Numbers that may have decimals, with the words before them."""
 
 LOST = 4

@@ -3,6 +3,11 @@ import { button, byId, field, html, shown, tick } from "./elements.js";
 import { atStatement, change, fixed, select, selected, state } from "./state.js";
 
 const KINDS = [["robot", "a robot"], ["person", "a person who follows instructions"], ["free", "does as it likes"]];
+const SIZE = [
+  ["radius", "radius in metres (0.2, or 20 cm)"],
+  ["tolerance", "stops so far from its goal, in metres"],
+  ["inflation", "its planners keep so far from obstacles, in metres"],
+];
 const form = byId("inspector");
 const NOUNS = { place: "POI", agent: "agent", event: "event" };
 
@@ -73,7 +78,7 @@ function place(thing) {
 
 function way(thing) {
   const fields = [
-    field("field-distance", "distance", thing.distance, set(thing, "distance"), { inputmode: "decimal" }),
+    field("field-distance", "distance", thing.distance, set(thing, "distance")),
     tick("field-one_way", `from ${thing.a} to ${thing.b} only`, thing.one_way, set(thing, "one_way")),
     ...whom(thing),
     field("field-only_if", "only while (a condition)", thing.only_if, set(thing, "only_if"), { wide: true, spellcheck: "false" }),
@@ -102,9 +107,10 @@ function agent(thing) {
     ...named("agent", thing),
     field("field-kind", "is", thing.kind, set(thing, "kind"), { options: KINDS }),
     field("field-location", "starts at", thing.location, set(thing, "location"), { options: places() }),
-    field("field-mobile", "time units per unit of distance (empty: stays)", thing.mobile, set(thing, "mobile"), { inputmode: "decimal" }),
+    field("field-mobile", `${state.view.pace} (empty: stays)`, thing.mobile, set(thing, "mobile"), { inputmode: "decimal" }),
     field("field-speed", "or its speed in metres per second", thing.speed, set(thing, "speed"), { inputmode: "decimal" }),
     ...(things.length ? [field("field-carries", "carries so many things at a time (empty: one)", thing.carries, set(thing, "carries"), { inputmode: "numeric" }), field("field-has", "has at the start (box, box)", thing.has, set(thing, "has"), { spellcheck: "false" })] : []),
+    ...(thing.kind === "robot" ? SIZE.map(([name, words]) => field(`field-${name}`, words, thing[name], set(thing, name))) : []),
     ...list(thing, "can_do", "can do", state.view.events),
     ...list(thing, "reacts_to", "reacts to", state.view.events.filter((one) => one.collaborative || thing.reacts_to.includes(one.name))),
   ];
@@ -118,7 +124,7 @@ function event(thing) {
     field("field-location", "happens", thing.location, set(thing, "location"), { options: [["", "anywhere"], ...places()] }),
     field("field-duration", "duration (3, 3 to 5, or 30 s to 1 min; empty: none)", thing.duration, set(thing, "duration"), { spellcheck: "false" }),
     tick("field-may_stop", "may be broken off before it ends", thing.may_stop, set(thing, "may_stop")),
-    ...["takes", "gives", "mounts", "needs"].filter(() => things.length).map((word) => field(`field-${word}`, word, thing[word], set(thing, word), { options: [["", "nothing"], ...things.map((one) => [one, one])] })),
+    ...["takes", "gives", "mounts", "needs"].filter(() => things.length).map((word) => field(`field-${word}`, word, thing[word], set(thing, word), { options: [["", "nothing"], ...[...new Set([...things, thing[word]])].filter(Boolean).map((one) => [one, one])] })),
     field("field-at_most", "at most so many times", thing.at_most, set(thing, "at_most"), { inputmode: "numeric" }),
     tick("field-collaborative", "needs a partner who reacts", thing.collaborative, set(thing, "collaborative")),
     tick("field-together", "keeps both busy until it ends", thing.together, set(thing, "together")),

@@ -2,7 +2,7 @@
 import { camera, corners, fit, size, toMap, toScreen } from "./camera.js";
 import { byId, shown, svg } from "./elements.js";
 import { Taken, width } from "./labels.js";
-import { isSelected, state } from "./state.js";
+import { isSelected, state, wayKey } from "./state.js";
 
 const ROW = 17;
 const plan = byId("plan");
@@ -121,7 +121,7 @@ function longest(line) {
 }
 
 function drawnWay(way, line) {
-  const key = `${way.a} ${way.b} ${way.one_way}`;
+  const key = wayKey(way);
   const points = line.map((one) => `${one.x},${one.y}`).join(" ");
   const words = `way from ${way.a} to ${way.b}, ${way.distance} long${way.one_way ? ", one way" : ""}`;
   const group = svg(

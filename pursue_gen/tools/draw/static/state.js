@@ -42,11 +42,13 @@ export function refusal(answer) {
 
 // What can be selected ---------------------------------------------------------------------------------------------
 
+export const wayKey = (way) => `${way.a} ${way.b} ${way.one_way} ${way.only_for} ${way.not_for}`;
+
 export function all(view) {
   const some = (kind, list, key) => list.map((one) => ({ kind, key: key(one), thing: one }));
   return [
     ...some("place", view.places, (one) => one.name),
-    ...some("way", view.ways, (one) => `${one.a} ${one.b} ${one.one_way}`),
+    ...some("way", view.ways, wayKey),
     ...some("agent", view.agents, (one) => one.name),
     ...some("event", view.events, (one) => one.name),
     ...some("other", view.others, (one) => one.words),
