@@ -30,6 +30,7 @@ DOES = Deed("does {}", "do {}")
 FOUND = Deed("is found to be {}", "be found to be {}")
 BREAKS_OFF = Deed("breaks off {}", "break off {}")
 BEGINS, FINISHES = Deed("begins {}", "begin {}"), Deed("finishes {}", "finish {}")  # what takes time
+FINISHES_PART = Deed("finishes a part of {}", "finish a part of {}")
 
 AT, ON_WAY, AT_WORK = "at {}", "on its way from {} to {}", "doing {} at {}"
 """Where an agent is, behind `is`."""
@@ -44,6 +45,8 @@ def deed(model: Names, automaton: Automaton, edge: Edge) -> Deed:
         return DOES.of(word)
     if edge.breaks_off:
         return BREAKS_OFF.of(model.shown(action_of(edge.source)))
+    if edge.ends_part:
+        return FINISHES_PART.of(model.shown(action_of(edge.source)))
     if edge.is_end:
         begin = begin_of(automaton, edge.source)
         arrives = is_movement(edge.source)

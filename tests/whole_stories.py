@@ -91,9 +91,11 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
         for x, y in zip(places, places[1:])
     ]
     lines += [f'thing "{thing}"' for thing in things]
+    parts = maybe(f" in {draw(st.integers(2, 4))} parts", 2)
     limit = f" at_most {draw(st.integers(1, 3))} times"
     lines += [
-        f'event "load" location {place()} duration {window()}{maybe(" may_stop", 1)}{takes}{maybe(limit)}{only_if()}',
+        f'event "load" location {place()} duration {window()}{maybe(" may_stop", 1)}{parts}{takes}{maybe(limit)}'
+        f"{only_if()}",
         f'event "drop"{maybe(f" location {place()}", 1)}{gives}{maybe(limit)}{only_if()}',
         f'event "ride" collaborative{maybe(" together", 0 if draw(st.booleans()) else 9)} location {place()}'
         f" duration {window()}{mounts and ' mounts saw'}{only_if()}",

@@ -232,7 +232,8 @@ def _lasts(event: Event, unit: Optional[Number]) -> str:
     happen."""
     times = "" if event.at_most is None else f" at most {event.at_most}"
     moves = f" {event.load_words}" if event.load_words else ""
-    return ("" if event.window is None else f" ({window_words(event.window, unit)})") + moves + times
+    parts = f" in {event.split} parts" if event.split else ""
+    return ("" if event.window is None else f" ({window_words(event.window, unit)}{parts})") + moves + times
 
 
 def _conditions(scenario: Scenario) -> Iterator[str]:

@@ -26,18 +26,18 @@ def movements_use(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str],
 def actions_use(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str], int]:
     """Event and place of each of its robot's actions elsewhere than at the dock, and what that uses at most."""
     return {
-        (event.name, place): ceil(battery.uses * event.window[1])
+        (event.name, place): ceil(battery.uses * event.part_window[1])
         for event, place in _actions(scenario, battery)
-        if event.window is not None and not is_dock(battery, place)
+        if event.part_window is not None and not is_dock(battery, place)
     }
 
 
 def recharges(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str], int]:
     """Event and place of each of its robot's actions at the dock, and what that recharges at least."""
     return {
-        (event.name, place): floor(battery.recharges * event.duration)
+        (event.name, place): floor(battery.recharges * event.part_window[0])
         for event, place in _actions(scenario, battery)
-        if event.duration is not None and is_dock(battery, place)
+        if event.part_window is not None and is_dock(battery, place)
     }
 
 

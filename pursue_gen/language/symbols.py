@@ -44,6 +44,9 @@ class Role(enum.Enum):
     EVENT = "{}", "the event {}"
     END = "{}DONE", "the end of {}"
     BROKEN_OFF = "{}STOP", "that {} is broken off"
+    PART_END = "{}PART", "the end of a part of {}"
+    PARTS = "{}_parts", "the parts of {}"
+    PARTS_DONE = "P{}_parts", "how many parts of {} are done"
     BUSY = "B{}", "that {} goes on"
     COUNT = "{}_count", "the count of {}"
     TIMES = "P{}_count", "how often {} has happened"
@@ -154,7 +157,8 @@ def numbered(role: Role, number: int) -> Symbol:
 
 
 _FURTHER = "([2-9]|[1-9][0-9]+)?"
-_READ = {role: "(.+)" for role in Role if "{" not in role.form or role in (*UNDER_WAY, Role.END, Role.BROKEN_OFF)}
+_ENDS = (Role.END, Role.BROKEN_OFF, Role.PART_END)
+_READ = {role: "(.+)" for role in Role if "{" not in role.form or role in (*UNDER_WAY, *_ENDS)}
 _READ.update(dict.fromkeys((Role.DONE_TIMES, Role.APART), "([1-9][0-9]*)"))
 _READ.update({Role.DID: "([1-9][0-9_]*)", Role.SAFETY: _FURTHER, Role.REACH: _FURTHER, Role.ASSUMPTION: "([0-9]+)"})
 _READ[Role.AWAITED] = _READ[Role.ASSUMPTION]

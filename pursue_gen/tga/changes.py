@@ -75,9 +75,14 @@ def happening(channel: str, scenario: Scenario, domains: Domains) -> Change:
         for work in domains.of(agent.name):
             if work.is_work and channel == work.what:
                 becomes[agent.name, Value("at", work.where)] = work
-            elif work.is_work and channel in (names.done(work.what), names.broken_off(work.what)):
+            elif work.is_work and channel in _ends(work.what):
                 becomes[agent.name, work] = Value("at", work.where)
     return Change(becomes)
+
+
+def _ends(event: str) -> Tuple[str, ...]:
+    """The channels on which an event may end, or be left."""
+    return names.done(event), names.broken_off(event), names.part_done(event)
 
 
 def beginning(agent: str, event: str, place: str, scenario: Scenario, domains: Domains) -> Change:

@@ -94,8 +94,7 @@ def _moves(what: Union[Ref, Condition], scenario: Scenario, domains: Domains) ->
                 found[names.found(state.name, value)] = found_out(state.name, value)
         elif isinstance(atom, Doing):
             name = atom.event.name
-            stops = (names.broken_off(name),) if events[name].may_stop else ()
-            for channel in (names.event(name), names.done(name), *stops):
+            for channel in (names.event(name), names.done(name), *names.leaves_off(events[name])):
                 found[channel] = happening(channel, scenario, domains)
     return found
 

@@ -16,6 +16,7 @@ from pursue_runtime.vocabulary import (
     BREAKS_OFF,
     DOES,
     FINISHES,
+    FINISHES_PART,
     FOUND,
     ON_WAY,
     SETS_OFF,
@@ -25,6 +26,7 @@ from pursue_runtime.vocabulary import (
 _DEEDS = {
     Role.SETTING_OFF: SETS_OFF, Role.ARRIVAL: ARRIVES, Role.WAY: ARRIVES,
     Role.EVENT: DOES, Role.WORK: BEGINS, Role.END: FINISHES, Role.BROKEN_OFF: BREAKS_OFF,
+    Role.PART_END: FINISHES_PART,
 }  # fmt: skip
 """What an agent does, by the role of its channel; of the location that it leaves or enters where that says more."""
 

@@ -82,7 +82,7 @@ def end_window(model: Model, automaton: Automaton, location: str) -> Optional[En
 def end_words(automaton: Automaton, location: str) -> List[str]:
     """Return the words with one of which the agent ends what it does at this location, if it ends that itself."""
     own = (edge for edge in automaton.edges_from(location) if edge.sync != "receive")
-    return list(dict.fromkeys(edge.word for edge in own if edge.is_end))
+    return list(dict.fromkeys(edge.word for edge in own if edge.is_end and not edge.ends_part))
 
 
 def _shared_window(model: Model, ending: Edge) -> Optional[EndWindow]:

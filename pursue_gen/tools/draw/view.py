@@ -224,11 +224,13 @@ def _events(document: Draft) -> List[Dict[str, Any]]:
         texts = {key: words_behind(one, key.upper()) for key in ("location", "duration", *_MOVES, "only_if")}
         at_most = words_behind(one, "AT_MOST").partition(" ")[0]
         ticks = {key: key.upper() in parts for key in _TICKS}
+        event["parts"] = words_behind(one, "IN").partition(" ")[0]
         found.append({**event, **texts, "at_most": at_most, **ticks, **_placed(document, number)})
     for each in document.scenario.events:
         if each.span.member:
             event = {"name": each.name, "label": each.label or "", "at_most": str(each.at_most or "")}
             event.update(location=each.location.name if each.location else "", only_if=_condition(each.only_if))
+            event["parts"] = str(each.split or "")
             event["duration"] = "" if each.duration is None else window_text(each.duration, each.latest)
             event.update({key: getattr(getattr(each, key), "name", "") for key in _MOVES})
             ticks = {key: getattr(each, key) for key in _TICKS}

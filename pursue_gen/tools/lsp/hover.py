@@ -156,6 +156,8 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
     where = f"at {event.location.name}" if event.location else "wherever the agent is"
     lines = [f"**{event.name}**: an event{_read_as(event.label)}", "", f"- happens {where}"]
     lines.append(f"- takes {lasts(event.window, scenario.unit)}" if event.window is not None else "- takes no time")
+    if event.split is not None:
+        lines.append(f"- is done in {event.split} parts, each of which stays done")
     if event.at_most is not None:
         lines.append(f"- happens at most {event.at_most} times")
     lines += [f"- {in_markdown(scenario, event.load_words)}"] if event.load_words else []

@@ -109,9 +109,9 @@ def test_a_robots_pose_begins_with_that_of_the_place() -> None:
     ("line", "words"),
     [
         ("connect a |", ["and"]),
-        ('event "new" |', ["label", "collaborative", "location", "duration", *MOVES, "at_most", "only_if"]),
-        ('event "new" collaborative loc|', ["together", "location", "duration", *MOVES, "at_most", "only_if"]),
-        ('event "new" collaborative together |', ["location", "duration", *MOVES, "at_most", "only_if"]),
+        ('event "new" |', ["label", "collaborative", "location", "duration", *MOVES, "at_most", "in", "only_if"]),
+        ('event "new" collaborative loc|', ["together", "location", "duration", *MOVES, "at_most", "in", "only_if"]),
+        ('event "new" collaborative together |', ["location", "duration", *MOVES, "at_most", "in", "only_if"]),
         ('agent "new" |', ["label", "location", "human", "controllable", "mobile", *SIZE]),
         ('agent "new" label "a" |', ["location", "human", "controllable", "mobile", *SIZE]),
         ('agent "new" label |', []),
