@@ -16,6 +16,12 @@ _DONE, _STOP, _PART = "DONE", "STOP", "PART"
 FINDING_OUT = _ACTION + "finding_out"
 """The location of a state that has been shown, until it is known what it is."""
 
+SOMEWHERE = _ACTION + "being_somewhere"
+"""The location of an agent of whom it is not known yet where it starts."""
+
+TO_BE_SAID = (FINDING_OUT, SOMEWHERE)
+"""The locations that are left with one of several words, which somebody has to say."""
+
 
 def movement(origin: str, destination: str) -> str:
     """Return the location of an agent that moves from one POI to another."""
@@ -34,12 +40,12 @@ def is_movement(location: str) -> bool:
 
 def is_action(location: str) -> bool:
     """Return True for the location of an agent in an action with a duration."""
-    return location.startswith(_ACTION) and location != FINDING_OUT
+    return location.startswith(_ACTION) and location not in TO_BE_SAID
 
 
 def is_under_way(location: str) -> bool:
-    """Return True for the location of a movement or an action, and for what is being found out."""
-    return is_movement(location) or is_action(location) or location == FINDING_OUT
+    """Return True for the location of a movement or an action, and for what somebody has to say."""
+    return is_movement(location) or is_action(location) or location in TO_BE_SAID
 
 
 def is_end(source: str, target: str) -> bool:

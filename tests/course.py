@@ -35,7 +35,7 @@ from pursue_gen.language.scenario import (
     Waits,
 )
 from pursue_gen.tools.simulation.meaning import holds
-from pursue_runtime.locations import is_movement
+from pursue_runtime.locations import SOMEWHERE, is_movement
 from tests.rounds import Rest, after, events_in, whole
 
 NEVER = -1e9
@@ -57,17 +57,21 @@ class Stay:
     """The moment from which it rests before it may begin something: the end of its last action or movement."""
     came: float = 0.0
     """When it came to the place; whoever has taken part in something there counts as having come with its end."""
+    unplaced: bool = False
+    """Nobody has said yet where it starts."""
 
     @property
     def location(self) -> str:
         """The name that the location has everywhere in a mission."""
+        if self.unplaced:
+            return SOMEWHERE
         if self.to:
             return f"going_{self.place}_to_{self.to}"
         return f"doing_{self.event}_in_{self.place}" if self.event else self.place
 
     @property
     def is_idle(self) -> bool:
-        return not self.to and not self.event
+        return not self.to and not self.event and not self.unplaced
 
 
 def is_for(part: Union[Poi, Connection], agent: str) -> bool:
@@ -103,7 +107,7 @@ class Course:
     def __post_init__(self) -> None:
         self.events = {event.name: event for event in self.scenario.events}
         self.agents = {agent.name: agent for agent in self.scenario.agents}
-        self.stays = {agent.name: Stay(agent.location.name, 0.0) for agent in self.scenario.agents}
+        self.stays = {a.name: Stay(a.location.name, 0.0, unplaced=bool(a.or_at)) for a in self.scenario.agents}
         self.states = {state.name: state.initially for state in self.scenario.states}
         tools = {event.mounts.name for event in self.scenario.events if event.mounts is not None}
         for agent in self.scenario.agents:
@@ -357,7 +361,9 @@ class Course:
             self.find(agent, word.endswith("_is_true"))
             return
         stay = self.stays[agent]
-        if stay.to and target == stay.to:
+        if stay.unplaced:
+            self.place(agent, target)
+        elif stay.to and target == stay.to:
             self.arrive(agent)
         elif stay.event and word == f"{stay.event}STOP":
             self.stop(agent)
@@ -367,6 +373,12 @@ class Course:
             self.set_off(agent, stay.place, target.rpartition("_to_")[2])
         else:
             self.begin(agent, word)
+
+    def place(self, agent: str, poi: str) -> None:
+        """It is said where the agent starts."""
+        assert poi in [ref.name for ref in self.agents[agent].starts]
+        assert self.now <= float(self.scenario.rest) / 2 + 1e-9, "it is to be said sooner"
+        self.stays[agent] = Stay(poi, self.now, rested=self.now, came=self.now)
 
     def find(self, state: str, value: bool) -> None:
         """It is found out what a state is."""

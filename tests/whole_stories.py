@@ -145,7 +145,10 @@ def _agents(draw: st.DrawFn, names: Sequence[str], place: object, carry: bool, m
         mobile = f"mobile {draw(st.integers(1, 2))}{carries}"
         lines.append(f'agent "{name}" {kind} {mobile} location {place()}{can_do}{reacts_to}')  # type: ignore[operator]
     moves = " mobile 2" if draw(st.booleans()) else ""
-    lines.append(f'agent "guest"{moves} location {place()} can_do call reacts_to ride, wave')  # type: ignore[operator]
+    first = place()  # type: ignore[operator]
+    other = draw(st.sampled_from(("", "", " or a", " or b")))
+    first += other if other != f" or {first}" else ""
+    lines.append(f'agent "guest"{moves} location {first} can_do call reacts_to ride, wave')
     return lines
 
 

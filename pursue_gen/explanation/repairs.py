@@ -277,7 +277,12 @@ def _of_orders(scenario: Scenario) -> Iterator[Repair]:
 
 
 def _of_knowledge(scenario: Scenario) -> Iterator[Repair]:
-    """What is not known at first known from the start: as if a robot saw it there."""
+    """What is not known at first known from the start: as if a robot saw it there; where somebody starts."""
+    for agent in (each for each in scenario.agents if each.is_somewhere):
+        for ref in agent.starts:
+            known = scenario.with_instead(agent, replace(agent, location=ref, or_at=()))
+            label = f"{agent.shown} starting at {ref.shown} (location {ref.name})"
+            yield _switch("start", agent.name, label, agent.starts_text, known, agent.location.span)
     robots = [agent for agent in scenario.agents if agent.is_robot]
     for state in (each for each in scenario.states if each.is_found_out):
         for robot in robots[:1]:

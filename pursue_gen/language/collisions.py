@@ -55,6 +55,8 @@ def _in_network(scenario: Scenario) -> Iterator[_Stated]:
         yield state.span, [names.state_value(state.name)]
     for agent in scenario.agents:
         yield agent.span, [names.agent(agent.name), names.agent_position(agent.name), names.agent_clock(agent.name)]
+        starts = [names.starts(agent.name, ref.name) for ref in agent.starts] if agent.is_somewhere else []
+        yield agent.span, starts
         yield agent.span, [names.busy_with(agent.name)] if any(scenario.conditions()) else []
     yield from ((battery.span, [names.level(battery.agent.name)]) for battery in scenario.batteries)
     yield from ((carrier.agent.span, [names.load(carrier.agent.name)]) for carrier in carriers(scenario))

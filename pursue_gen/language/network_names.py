@@ -33,6 +33,13 @@ busy_with, level, load = Role.BUSY_WITH, Role.LEVEL, Role.LOAD
 """The variables of an agent with which event it is busy, and where; of the level of its battery; of what it
 carries."""
 
+SOMEWHERE, starts = Role.SOMEWHERE(), Role.STARTS
+"""The location of an agent of whom it is not known yet where it starts, and the channels that say that, by agent and
+POI."""
+
+NOWHERE = 0
+"""The value of its position then: no place has this number, and no way."""
+
 movement, arrival = Role.SETTING_OFF, Role.ARRIVAL
 """The channels on which an agent sets off from one POI to another, and arrives there, where somebody listens to that;
 else that edge has none. It is the word that the edge has in any case."""

@@ -38,6 +38,8 @@ class Role(enum.Enum):
     AT = "{}", "the POI {}"
     WAY = locations.movement("{}", "{}"), "the way from {} to {}"
     WORK = locations.action("{}", "{}"), "{} in {}"
+    SOMEWHERE = locations.SOMEWHERE, "it is not known where it starts"
+    STARTS = "{}_starts_at_{}", "that {} starts at {}"
     SETTING_OFF = "{}_{}2{}", "{} leaving {} for {}"
     ARRIVAL = f"{{0}}_{locations.movement('{1}', '{2}')}2{{2}}", "{0} arriving at {2} from {1}"
 
@@ -105,9 +107,9 @@ class Role(enum.Enum):
     BRINGUP = "{}_bringup", "the package that starts the mission"
 
 
-UNDER_WAY = (Role.WAY, Role.WORK, Role.FINDING)
-"""The locations that are left by the end of a movement or an action, or once it is known what is being found out: it
-takes time to come."""
+UNDER_WAY = (Role.WAY, Role.WORK, Role.FINDING, Role.SOMEWHERE)
+"""The locations that are left by the end of a movement or an action, or once it is known what is being found out, or
+where an agent starts: it takes time to come."""
 
 
 class Symbol(str):

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import FrozenSet, Iterable, Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Value
-from pursue_gen.language.numbers import Number
+from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.scenario import Agent, Event, Scenario, Window
 from pursue_gen.language.symbols import Symbol
 from pursue_gen.tga.conditions import Conditions
@@ -83,7 +84,7 @@ class Surroundings:
     def pois(self, agent: Agent) -> Tuple[Symbol, ...]:
         """The locations at the POIs at which an agent can ever be, as far as being mobile goes."""
         if agent.mobile is None:
-            return (names.at(agent.location.name),)
+            return tuple(names.at(ref.name) for ref in agent.starts)
         return tuple(names.at(poi.name) for poi in self.scenario.pois if poi.admits(agent.name))
 
 
@@ -109,7 +110,12 @@ def agent_automaton(agent: Agent, around: Surroundings) -> Automaton:
         places = shape.shared_places(event) if event.is_shared else ()
         locations += [Location(names.doing(name, poi)) for poi in places]
         edges += [edge for poi in places for edge in shape.sharing(event, poi)]
-    return Automaton(names.agent(agent.name), tuple(locations), names.at(agent.location.name), tuple(edges))
+    first = names.at(agent.location.name)
+    if agent.is_somewhere:
+        first = names.SOMEWHERE
+        locations.append(Location(first, (ClockBound(shape.clock, "<=", exact(Fraction(shape.rest) / 2)),)))
+        edges += [shape.start(names.at(ref.name)) for ref in agent.starts]
+    return Automaton(names.agent(agent.name), tuple(locations), first, tuple(edges))
 
 
 @dataclass(frozen=True)
@@ -149,6 +155,12 @@ class _Shape:
     def within(self, window: Window) -> ClockBound:
         """The invariant of something that ends in that window."""
         return ClockBound(self.clock, "<=", window[1])
+
+    def start(self, poi: Symbol) -> Edge:
+        """It is said that it starts at a POI: before anybody has rested, so that nothing has begun."""
+        sync = Sync(names.starts(self.agent.name, poi), sends=True)
+        assign = ((names.agent_position(self.agent.name), self.around.positions.at(poi)),)
+        return Edge(names.SOMEWHERE, poi, Guard(), sync, assign, (self.clock,), controllable=False)
 
     def movement(self, a: str, b: str, window: Window) -> Tuple[Edge, ...]:
         """Setting off from a, as far as it ever can, and arriving at b."""

@@ -183,7 +183,7 @@ def _departs(automaton: Automaton, number: int, assumption: Departure, scenario:
         return replace(location, invariant=(*location.invariant, latest)) if location.name in places else location
 
     def edges(edge: Edge) -> List[Edge]:
-        if edge.target in places and edge.leaves is Role.WAY:
+        if edge.target in places and edge.leaves in (Role.WAY, Role.SOMEWHERE):
             return [edge.plus(resets=(clock,))]
         if edge.received is not None:
             # Whoever takes part in what another agent does is kept until that ends; its time begins anew then.

@@ -38,6 +38,11 @@ class Change:
         return clauses if self.known is None else given(clauses, *self.known)
 
 
+def placed(agent: str, poi: str) -> Change:
+    """It is said where an agent starts."""
+    return Change({(agent, UNKNOWN): Value("at", poi)}, (agent, UNKNOWN))
+
+
 def setting_off(agent: str, a: str, b: str) -> Change:
     """An agent sets off from a to b."""
     origin = Value("at", a)

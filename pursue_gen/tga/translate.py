@@ -86,7 +86,9 @@ def _clocks(scenario: Scenario) -> Tuple[str, ...]:
 
 def _variables(scenario: Scenario, pois: Mapping[str, int]) -> Tuple[Tuple[str, int], ...]:
     variables = [(names.rule_turn(rule.name), 0) for rule in scenario.rules if not rule.each]
-    variables += [(names.agent_position(agent.name), pois[agent.location.name]) for agent in scenario.agents]
+    for agent in scenario.agents:
+        here = names.NOWHERE if agent.is_somewhere else pois[agent.location.name]
+        variables.append((names.agent_position(agent.name), here))
     variables += [(names.state_value(state.name), first_value(state)) for state in scenario.states]
     variables += [(names.times(event.name), 0) for event, _ in counted(scenario)]
     variables += [(names.parts_done(event.name), 0) for event, _ in split(scenario)]
@@ -106,6 +108,8 @@ def _channels(scenario: Scenario) -> Tuple[str, ...]:
         for connection in scenario.ways_of(agent.name)
         for a, b in connection.directions
     ]
+    somewhere = [agent for agent in scenario.agents if agent.is_somewhere]
+    channels += [names.starts(agent.name, ref.name) for agent in somewhere for ref in agent.starts]
     for event in scenario.events:
         channels += [names.event(event.name), *([names.done(event.name)] if event.duration is not None else [])]
         channels += names.leaves_off(event)

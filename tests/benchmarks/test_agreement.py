@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from dataclasses import replace
 from fractions import Fraction
@@ -77,6 +78,7 @@ def test_every_kind_of_statement_is_drawn_in_a_varied_scenario() -> None:
     more = ("in all", "leaves", "stays", "by", "reaches", "never at", "stateDependency", "for each", "doing", "on_way")
     more += ("unknown", "may_stop", "parts", "takes", "open")
     assert not [word for word in (*words, *more) if f" {word} " not in drawn]
+    assert re.search(r"location \w+ or ", drawn)
 
 
 @pytest.mark.parametrize(

@@ -218,8 +218,8 @@ class _Stays:
                 self.unused.append(Unused(what, last.stamp - stay.start, why, self._file))
 
     def _begin(self, agent: str, location: str, state: SystemState) -> Optional[_Stay]:
-        if agent_clock(agent) not in state.clocks:
-            return None  # no agent
+        if agent_clock(agent) not in state.clocks or role_of(location) is Role.SOMEWHERE:
+            return None  # no agent, or one of whom it is to be said where it starts
         start, what = _start(agent, state), self._names.what(agent, location)
         if what is None:
             self.strangers.add(f"{agent} {place(self._names.scenario, location)}")

@@ -201,7 +201,7 @@ def _agents(document: Draft) -> List[Dict[str, Any]]:
         found.append({**agent, **lists, **_placed(document, number)})
     for each in made:
         kind = "free" if not each.controllable else "person" if each.human else "robot"
-        agent = {"name": each.name, "label": each.label or "", "kind": kind, "location": each.location.name}
+        agent = {"name": each.name, "label": each.label or "", "kind": kind, "location": each.starts_text}
         agent.update(mobile="" if each.speed else str(each.mobile or ""), speed=str(each.speed or ""))
         agent.update(carries=str(each.carries or ""), has=names_text(each.has))
         agent.update(mark=mark(looks[each.name], 0, 0, 6.0))

@@ -142,7 +142,7 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
     if not ways:
         lines.append("- no way leads here")
     lines += [f"- {in_markdown(scenario, poi.whom_words)}"] if poi.whom_words else []
-    lines += _if_any("starts here", [a.name for a in scenario.agents if a.location.name == poi.name])
+    lines += _if_any("starts here", [a.name for a in scenario.agents if any(ref.name == poi.name for ref in a.starts)])
     here = [e.name for e in scenario.events if e.location is not None and e.location.name == poi.name]
     lines += _if_any("happens here", here)
     if poi.pose is not None:
@@ -226,7 +226,7 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
     what = "a robot: the program decides what it does" if agent.is_robot else "nobody controls it"
     if agent.human and agent.controllable:
         what = "a person who follows instructions"
-    lines = [f"**{agent.name}**: {what}{_read_as(agent.label)}", "", f"- starts at {agent.location.name}"]
+    lines = [f"**{agent.name}**: {what}{_read_as(agent.label)}", "", f"- starts at {agent.starts_text}"]
     if agent.mobile is None:
         lines.append("- stays there")
     else:

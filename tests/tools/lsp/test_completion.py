@@ -115,7 +115,7 @@ def test_a_robots_pose_begins_with_that_of_the_place() -> None:
         ('agent "new" |', ["label", "location", "human", "controllable", "mobile", *SIZE]),
         ('agent "new" label "a" |', ["location", "human", "controllable", "mobile", *SIZE]),
         ('agent "new" label |', []),
-        ('agent "new" location a |', ["can_do", "reacts_to"]),
+        ('agent "new" location a |', ["or", "can_do", "reacts_to"]),
         ('state "new": initially |', ["true", "false", "unknown"]),
         ("objective: |", ["if", "avoid", "always", "patrol", "place", "way", "at_least", "escort"]),
         ("objective: patrol a, b |", ["in", "every", "by"]),
