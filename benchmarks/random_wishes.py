@@ -15,14 +15,19 @@ MOST = 3
 
 def random_wishes(seed: int, size: Size) -> str:
     """The PuRSUE-ML of a lab scenario of this size, with one to three statements of the kinds that lab scenarios do
-    not have; in some, what takes time may be broken off, or what is delivered is a thing. Some of them have errors."""
+    not have; in some, what takes time may be broken off, or done in parts, what is delivered is a thing, or it is not
+    known where somebody starts. Some have errors."""
     cast, text = lab_scenario_with(seed, size)
     draw = Random(f"wishes {seed} {size}")
     told = {**_drawn(draw, cast, text), **{f"t{time}": draw.randint(time // 2, time * 2) for time in _TIMES}}
     forms = [form for form in _FORMS if all(name in told for _, name, _, _ in Formatter().parse(form) if name)]
     kinds = draw.sample(forms, draw.randint(1, MOST))
-    if draw.randint(0, 4) == 0:  # what takes time may be broken off
-        text = re.sub(r"(duration \d+)$", r"\1 may_stop", text, flags=re.MULTILINE)
+    if draw.randint(0, 4) == 0:  # what takes time may be broken off, perhaps part by part
+        parts = draw.choice(("", " in 2 parts", " in 3 parts"))
+        text = re.sub(r"(duration \d+)$", rf"\1 may_stop{parts}", text, flags=re.MULTILINE)
+    if draw.randint(0, 2) == 0:  # it is not known where somebody starts
+        name, start = cast.people[0].name, draw.choice(cast.floor.rooms)
+        text = re.sub(rf'^(agent "{name}" .*location (?!{start}\b)\w+)', rf"\1 or {start}", text, flags=re.MULTILINE)
     if '"pick' in text and draw.randint(0, 1) == 0:  # what is delivered is carried
         text = 'thing "box"\n' + re.sub(r'^(event "pick.*)$', r"\1 takes box", text, flags=re.MULTILINE)
         text = re.sub(r'^(event "drop.*)$', r"\1 gives box", text, flags=re.MULTILINE)

@@ -11,10 +11,16 @@ from typing import Iterable
 
 _MOVEMENT, _ACTION = "going_", "doing_"
 
-_STOP = "STOP"
+_DONE, _STOP, _PART = "DONE", "STOP", "PART"
 
 FINDING_OUT = _ACTION + "finding_out"
 """The location of a state that has been shown, until it is known what it is."""
+
+SOMEWHERE = _ACTION + "being_somewhere"
+"""The location of an agent of whom it is not known yet where it starts."""
+
+TO_BE_SAID = (FINDING_OUT, SOMEWHERE)
+"""The locations that are left with one of several words, which somebody has to say."""
 
 
 def movement(origin: str, destination: str) -> str:
@@ -34,12 +40,12 @@ def is_movement(location: str) -> bool:
 
 def is_action(location: str) -> bool:
     """Return True for the location of an agent in an action with a duration."""
-    return location.startswith(_ACTION) and location != FINDING_OUT
+    return location.startswith(_ACTION) and location not in TO_BE_SAID
 
 
 def is_under_way(location: str) -> bool:
-    """Return True for the location of a movement or an action, and for what is being found out."""
-    return is_movement(location) or is_action(location) or location == FINDING_OUT
+    """Return True for the location of a movement or an action, and for what somebody has to say."""
+    return is_movement(location) or is_action(location) or location in TO_BE_SAID
 
 
 def is_end(source: str, target: str) -> bool:
@@ -49,7 +55,28 @@ def is_end(source: str, target: str) -> bool:
 
 def breaks_off(source: str, word: str) -> bool:
     """Return True for the word with which an action at this location is broken off: that of its event, and STOP."""
-    return word.endswith(_STOP) and is_action(source) and source.startswith(action(word[: -len(_STOP)], ""))
+    return _is_of(source, word, _STOP)
+
+
+def ends_part(source: str, word: str) -> bool:
+    """Return True for the word with which a part of an action at this location ends that is not the last one: that of
+    its event, and PART."""
+    return _is_of(source, word, _PART)
+
+
+def part_of(word: str) -> str:
+    """Return the word of the end of a part for that of the end of an action; "" for other words."""
+    return word[: -len(_DONE)] + _PART if word.endswith(_DONE) else ""
+
+
+def end_of(word: str) -> str:
+    """Return the word of the end of an action for that of the end of a part; "" for other words."""
+    return word[: -len(_PART)] + _DONE if word.endswith(_PART) else ""
+
+
+def _is_of(source: str, word: str, end: str) -> bool:
+    """Return True for the word of the event that goes on at this location with that end behind it."""
+    return word.endswith(end) and is_action(source) and source.startswith(action(word[: -len(end)], ""))
 
 
 def action_of(location: str) -> str:

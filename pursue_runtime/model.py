@@ -7,7 +7,7 @@ from typing import Any, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Op
 
 from pursue_runtime.bounded import whole
 from pursue_runtime.data import reading
-from pursue_runtime.locations import breaks_off, is_end
+from pursue_runtime.locations import breaks_off, ends_part, is_end, part_of
 from pursue_runtime.zones import EPSILON, Zone, holds, parse_zone
 
 
@@ -28,6 +28,11 @@ class Edge(NamedTuple):
     def breaks_off(self) -> bool:
         """True where it breaks off an action."""
         return breaks_off(self.source, self.word)
+
+    @property
+    def ends_part(self) -> bool:
+        """True where it ends a part of an action that is not the last one."""
+        return ends_part(self.source, self.word)
 
     @property
     def is_end(self) -> bool:
@@ -178,6 +183,12 @@ class Model:
                 if not timed or self._fits(moves, position):
                     return moves
         return None
+
+    def reported(self, position: Position, word: str, agent: str = "") -> str:
+        """What the report of an end ends here: where parts of an action are left, the word of the end of a part."""
+        part = part_of(word)
+        ends_part = part and self.joint_move(position, word, agent, timed=False) is None
+        return part if ends_part and self.joint_move(position, part, agent, timed=False) is not None else word
 
     def possible(self, position: Position, timed: bool = True) -> List[str]:
         """The words that can happen here, each once, in system order."""

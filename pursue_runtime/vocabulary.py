@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import NamedTuple, Optional, Tuple
 
 from pursue_runtime.event_words import START
-from pursue_runtime.locations import FINDING_OUT, action_of, is_action, is_end, is_movement, is_under_way
+from pursue_runtime.locations import FINDING_OUT, SOMEWHERE, action_of, is_action, is_end, is_movement, is_under_way
 from pursue_runtime.model import Automaton, Edge, Model
 from pursue_runtime.sentences import Names
 from pursue_runtime.simulator.simulator import ACTING
@@ -27,11 +27,14 @@ class Deed(NamedTuple):
 SETS_OFF = Deed("sets off from {} to {}", "go to {1}")
 ARRIVES = Deed("arrives at {}", "arrive at {}")
 DOES = Deed("does {}", "do {}")
+STARTS = Deed("starts at {}", "start at {}")
 FOUND = Deed("is found to be {}", "be found to be {}")
 BREAKS_OFF = Deed("breaks off {}", "break off {}")
 BEGINS, FINISHES = Deed("begins {}", "begin {}"), Deed("finishes {}", "finish {}")  # what takes time
+FINISHES_PART = Deed("finishes a part of {}", "finish a part of {}")
 
 AT, ON_WAY, AT_WORK = "at {}", "on its way from {} to {}", "doing {} at {}"
+UNPLACED = "at a place that nobody has said yet"
 """Where an agent is, behind `is`."""
 
 
@@ -39,11 +42,15 @@ def deed(model: Names, automaton: Automaton, edge: Edge) -> Deed:
     """An edge of an agent in words."""
     if edge.source == FINDING_OUT:
         return FOUND.of(value_found(edge))
+    if edge.source == SOMEWHERE:
+        return STARTS.of(model.shown(edge.target))
     source, target, word = (model.shown(name) for name in (edge.source, edge.target, edge.word))
     if edge.source == edge.target:  # also on its way
         return DOES.of(word)
     if edge.breaks_off:
         return BREAKS_OFF.of(model.shown(action_of(edge.source)))
+    if edge.ends_part:
+        return FINISHES_PART.of(model.shown(action_of(edge.source)))
     if edge.is_end:
         begin = begin_of(automaton, edge.source)
         arrives = is_movement(edge.source)
@@ -95,6 +102,8 @@ def _placed(model: Names, automaton: Automaton, location: str, words: Tuple[str,
     """Where an agent is, in the words for who stands, moves, or acts."""
     if is_fact(automaton):
         return "being found out" if location == FINDING_OUT else location
+    if location == SOMEWHERE:
+        return UNPLACED
     begin, (stands, moves, acts) = begin_of(automaton, location), words
     if begin is None:
         return stands.format(model.shown(location))

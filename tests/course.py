@@ -7,6 +7,7 @@ counts, what agents carry, and levels of batteries.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from fractions import Fraction
 from itertools import product
 from math import ceil, floor
 from typing import Dict, List, Optional, Set, Tuple, Union
@@ -35,7 +36,7 @@ from pursue_gen.language.scenario import (
     Waits,
 )
 from pursue_gen.tools.simulation.meaning import holds
-from pursue_runtime.locations import is_movement
+from pursue_runtime.locations import SOMEWHERE, is_movement
 from tests.rounds import Rest, after, events_in, whole
 
 NEVER = -1e9
@@ -57,17 +58,21 @@ class Stay:
     """The moment from which it rests before it may begin something: the end of its last action or movement."""
     came: float = 0.0
     """When it came to the place; whoever has taken part in something there counts as having come with its end."""
+    unplaced: bool = False
+    """Nobody has said yet where it starts."""
 
     @property
     def location(self) -> str:
         """The name that the location has everywhere in a mission."""
+        if self.unplaced:
+            return SOMEWHERE
         if self.to:
             return f"going_{self.place}_to_{self.to}"
         return f"doing_{self.event}_in_{self.place}" if self.event else self.place
 
     @property
     def is_idle(self) -> bool:
-        return not self.to and not self.event
+        return not self.to and not self.event and not self.unplaced
 
 
 def is_for(part: Union[Poi, Connection], agent: str) -> bool:
@@ -89,6 +94,8 @@ class Course:
     rounds: Dict[Tuple[str, str], List[str]] = field(default_factory=dict)
     """What has happened in the present round of each rule, but for what was broken off."""
     begun: Dict[str, int] = field(default_factory=dict)
+    parts: Dict[str, int] = field(default_factory=dict)
+    """How many parts are done of events in parts."""
     done: Dict[Tuple[str, str], List[Tuple[float, float]]] = field(default_factory=dict)
     """(agent, event) → beginnings and ends"""
     carried: Dict[str, List[str]] = field(default_factory=dict)
@@ -101,7 +108,7 @@ class Course:
     def __post_init__(self) -> None:
         self.events = {event.name: event for event in self.scenario.events}
         self.agents = {agent.name: agent for agent in self.scenario.agents}
-        self.stays = {agent.name: Stay(agent.location.name, 0.0) for agent in self.scenario.agents}
+        self.stays = {a.name: Stay(a.location.name, 0.0, unplaced=bool(a.or_at)) for a in self.scenario.agents}
         self.states = {state.name: state.initially for state in self.scenario.states}
         tools = {event.mounts.name for event in self.scenario.events if event.mounts is not None}
         for agent in self.scenario.agents:
@@ -216,9 +223,10 @@ class Course:
             return False
         if self.levels.get(agent, 0) < self._used_at_work(agent, event):
             return False
-        if event.is_shared and self._goes_on(name):
+        if (event.is_shared or event.split) and self._goes_on(name):
             return False
-        if event.at_most is not None and self.begun.get(name, 0) >= event.at_most:
+        times = [what for _, what in self.happened].count(name) if event.split else self.begun.get(name, 0)
+        if event.at_most is not None and times >= event.at_most:
             return False
         for dependency in self.scenario.dependencies:
             value = self.states[dependency.state.name]
@@ -281,7 +289,7 @@ class Course:
         battery = self.batteries.get(agent)
         if battery is None or event.duration is None or self._is_docked(agent):
             return 0
-        use = battery.uses * (event.duration + 1 if event.latest is None else event.latest)
+        use = battery.uses * self._lasts(event)[1]
         return ceil(use) if battery.driving is None else use
 
     def _is_docked(self, agent: str) -> bool:
@@ -359,16 +367,24 @@ class Course:
             self.find(agent, word.endswith("_is_true"))
             return
         stay = self.stays[agent]
-        if stay.to and target == stay.to:
+        if stay.unplaced:
+            self.place(agent, target)
+        elif stay.to and target == stay.to:
             self.arrive(agent)
         elif stay.event and word == f"{stay.event}STOP":
             self.stop(agent)
         elif stay.event:
-            self.end(agent)
+            self.end(agent, word)
         elif is_movement(target) and not stay.to:
             self.set_off(agent, stay.place, target.rpartition("_to_")[2])
         else:
             self.begin(agent, word)
+
+    def place(self, agent: str, poi: str) -> None:
+        """It is said where the agent starts."""
+        assert poi in [ref.name for ref in self.agents[agent].starts]
+        assert self.now <= float(self.scenario.rest) / 2 + 1e-9, "it is to be said sooner"
+        self.stays[agent] = Stay(poi, self.now, rested=self.now, came=self.now)
 
     def find(self, state: str, value: bool) -> None:
         """It is found out what a state is."""
@@ -438,19 +454,33 @@ class Course:
             found += [end for _, end in some[: len(some) - goes_on] if what == event]
         return max(found)
 
-    def end(self, agent: str) -> None:
-        """It has done what it was busy with."""
+    def _lasts(self, event: Event) -> Tuple[Fraction, Fraction]:
+        """Between which times it ends: of what is in parts each."""
+        low, parts = Fraction(event.duration or 0), event.split or 1
+        high = low + 1 if event.latest is None else Fraction(event.latest)
+        if all(1000 % Fraction(end / parts).denominator == 0 for end in (low, high)):
+            return low / parts, high / parts
+        return Fraction(floor(low * 10 / parts), 10), Fraction(ceil(high * 10 / parts), 10)
+
+    def end(self, agent: str, word: str) -> None:
+        """It has done what it was busy with, or a part of it."""
         stay = self.stays[agent]
         event = self.events[stay.event]
-        low = event.duration or 0
-        high = low + 1 if event.latest is None else event.latest
+        low, high = self._lasts(event)
         assert low - 1e-9 < self.now - stay.since <= high + 1e-9, (agent, stay, self.now)
-        self._advance(agent, event.name, f"{event.name}DONE")
+        done = (self.parts.get(event.name, 0) + 1) % (event.split or 1)
+        assert (word == f"{event.name}PART") == (done > 0), "the last part ends all of it"
+        self.parts[event.name] = done
+        if not done:
+            self._advance(agent, event.name, f"{event.name}DONE")
         if agent in self.levels and self._is_docked(agent):
             battery = self.batteries[agent]
             gain = battery.recharges * low
             gain = floor(gain) if battery.driving is None else gain
             self.levels[agent] = min(battery.capacity, self.levels[agent] + gain)
+        if done:
+            self._leave(agent)
+            return
         self._has_moved(agent, event)
         self._has_happened(event.name)
         beginning, _ = self.done[agent, event.name][-1]
@@ -469,6 +499,11 @@ class Course:
         """It breaks off what it is busy with: that has begun, and not happened."""
         stay = self.stays[agent]
         assert self.events[stay.event].may_stop and self.now - stay.since > float(self.scenario.rest) - 1e-9
+        self._leave(agent)
+
+    def _leave(self, agent: str) -> None:
+        """It is busy no more with what has not happened."""
+        stay = self.stays[agent]
         beginning, _ = self.done[agent, stay.event][-1]
         self.done[agent, stay.event][-1] = (beginning, NEVER)
         for key in self._bound(agent, stay.event):

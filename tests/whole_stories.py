@@ -96,9 +96,11 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     for x, y in zip(places, places[1:]):
         lines += ways(f"{x} and {y}", whom())
     lines += [f'thing "{thing}"' for thing in things]
+    parts = maybe(f" in {draw(st.integers(2, 4))} parts", 2)
     limit = f" at_most {draw(st.integers(1, 3))} times"
     lines += [
-        f'event "load" location {place()} duration {window()}{maybe(" may_stop", 1)}{takes}{maybe(limit)}{only_if()}',
+        f'event "load" location {place()} duration {window()}{maybe(" may_stop", 1)}{parts}{takes}{maybe(limit)}'
+        f"{only_if()}",
         f'event "drop"{maybe(f" location {place()}", 1)}{gives}{maybe(limit)}{only_if()}',
         f'event "ride" collaborative{maybe(" together", 0 if draw(st.booleans()) else 9)} location {place()}'
         f" duration {window()}{mounts and ' mounts saw'}{only_if()}",
@@ -149,7 +151,10 @@ def _agents(draw: st.DrawFn, names: Sequence[str], place: object, carry: str, mo
         mobile = f"mobile {draw(st.integers(1, 2))}{carries}"
         lines.append(f'agent "{name}" {kind} {mobile} location {place()}{can_do}{reacts_to}')  # type: ignore[operator]
     moves = " mobile 2" if draw(st.booleans()) else ""
-    lines.append(f'agent "guest"{moves} location {place()} can_do call reacts_to ride, wave')  # type: ignore[operator]
+    first = place()  # type: ignore[operator]
+    other = draw(st.sampled_from(("", "", " or a", " or b")))
+    first += other if other != f" or {first}" else ""
+    lines.append(f'agent "guest"{moves} location {first} can_do call reacts_to ride, wave')
     return lines
 
 

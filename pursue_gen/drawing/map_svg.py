@@ -194,7 +194,7 @@ def _room(scenario: Scenario, places: Mapping[str, Point], height: float) -> Poi
     """How much is needed above the paper for agents' names, and where what stands below it may begin."""
     above, below = 0.0, height
     for name, (_, y) in places.items():
-        agents = sum(agent.location.name == name for agent in scenario.agents)
+        agents = sum(ref.name == name for agent in scenario.agents for ref in agent.starts)
         events = sum(event.location is not None and event.location.name == name for event in scenario.events)
         above = max(above, 40 + 17 * (agents - 1) - y if agents else 0.0)
         below = max(below, y + 60 + 15 * events)
@@ -202,18 +202,19 @@ def _room(scenario: Scenario, places: Mapping[str, Point], height: float) -> Poi
 
 
 def _standing(scenario: Scenario, places: Mapping[str, Point], looks: Mapping[str, AgentLook]) -> List[str]:
-    """The agents above the POI where they start, one above the other."""
+    """The agents above the POI where they start, one above the other; above each where they may, with a question mark.
+    """
     parts = []
     standing: Dict[str, int] = {}
-    for agent in scenario.agents:
-        if agent.location.name not in places:
-            continue
-        x, y = places[agent.location.name]
-        row = standing.get(agent.location.name, 0)
-        standing[agent.location.name] = row + 1
-        up, half = y - 26 - 17 * row, _LETTER * len(agent.shown) / 2
+    starts = ((agent, ref.name) for agent in scenario.agents for ref in agent.starts if ref.name in places)
+    for agent, place in starts:
+        x, y = places[place]
+        row = standing.get(place, 0)
+        standing[place] = row + 1
+        shown = f"{agent.shown}?" if agent.is_somewhere else agent.shown
+        up, half = y - 26 - 17 * row, _LETTER * len(shown) / 2
         parts.append(mark(looks[agent.name], x - half - 4, up - 5, 7.0))
-        parts.append(text(x + 8, up, agent.shown, "pg-halo"))
+        parts.append(text(x + 8, up, shown, "pg-halo"))
     return parts
 
 
@@ -246,7 +247,8 @@ def _lasts(event: Event, unit: Optional[Number]) -> str:
     happen."""
     times = "" if event.at_most is None else f" at most {event.at_most}"
     moves = f" {event.load_words}" if event.load_words else ""
-    return ("" if event.window is None else f" ({window_words(event.window, unit)})") + moves + times
+    parts = f" in {event.split} parts" if event.split else ""
+    return ("" if event.window is None else f" ({window_words(event.window, unit)}{parts})") + moves + times
 
 
 def _conditions(scenario: Scenario) -> Iterator[str]:

@@ -62,7 +62,7 @@ def attempt(scenario: Scenario, play: Play) -> Attempt:
         owner = play.game.automata[step.owner].name
         owner = who_awaited(owner, scenario) or owner
         edge = play.game.origins[step.edges[0]]
-        if text and (edge.leaves is Role.FINDING or (owner in others and not edge.is_end)):
+        if text and (edge.leaves in (Role.FINDING, Role.SOMEWHERE) or (owner in others and not edge.is_end)):
             done.append(f"{who} {text} at {moment(step.at, scenario.unit)}")
     ending = _ending(scenario, play)[0]
     return Attempt(first, "; ".join([*done[-_MOST_OTHERS:], f"{ending.text} ({moment(ending.at, scenario.unit)})"]))

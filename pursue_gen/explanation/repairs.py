@@ -41,6 +41,7 @@ from pursue_gen.language.scenario import (
     Scenario,
     StatedObjective,
 )
+from pursue_gen.language.statements.event import MOST_PARTS
 from pursue_gen.language.template import name_text
 from pursue_gen.language.times import instead, like
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
@@ -214,16 +215,29 @@ def _of_duration(scenario: Scenario, event: Event) -> Iterator[Repair]:
 
 
 def _of_breaking_off(scenario: Scenario) -> Iterator[Repair]:
-    """What may be broken off, of what takes longer than something else may wait for its answer."""
+    """What may be broken off, or is done in parts, of what takes longer than something else may wait for its answer."""
     due = [(each, each.deadline) for each in scenario.safety if isinstance(each, Respond)]
     for event in scenario.events:
         doers = scenario.doers(event.name)
         long = [each for each, deadline in due if event.window is not None and event.window[1] > deadline]
         others = any(not isinstance(each.response, Ref) or each.response.name != event.name for each in long)
-        if others and not (event.may_stop or event.collaborative) and any(agent.controllable for agent in doers):
+        if not others or event.collaborative or not any(agent.controllable for agent in doers):
+            continue
+        if not event.may_stop:
             label = f"{event.shown} that may be broken off (may_stop)"
             freer = scenario.with_instead(event, replace(event, may_stop=True))
             yield _switch("may_stop", event.name, label, "", freer, event.span)
+        yield _in_parts(scenario, event)
+
+
+def _in_parts(scenario: Scenario, event: Event) -> Repair:
+    """More parts of what may be broken off, each of which stays done."""
+    now = event.split or 1
+    return Repair(
+        "parts", event.name, f"{event.shown} in more parts", now, range(now + 1, MOST_PARTS + 1),
+        lambda k: scenario.with_instead(event, replace(event, may_stop=True, split=k)),
+        lambda k: f"{event.shown} in {k} parts, of which each stays done (may_stop in {k} parts)", event.span, 0,
+    )  # fmt: skip
 
 
 def _may_be_endless(scenario: Scenario, event: Event) -> bool:
@@ -267,7 +281,12 @@ def _of_orders(scenario: Scenario) -> Iterator[Repair]:
 
 
 def _of_knowledge(scenario: Scenario) -> Iterator[Repair]:
-    """What is not known at first known from the start: as if a robot saw it there."""
+    """What is not known at first known from the start: as if a robot saw it there; where somebody starts."""
+    for agent in (each for each in scenario.agents if each.is_somewhere):
+        for ref in agent.starts:
+            known = scenario.with_instead(agent, replace(agent, location=ref, or_at=()))
+            label = f"{agent.shown} starting at {ref.shown} (location {ref.name})"
+            yield _switch("start", agent.name, label, agent.starts_text, known, agent.location.span)
     robots = [agent for agent in scenario.agents if agent.is_robot]
     for state in (each for each in scenario.states if each.is_found_out):
         for robot in robots[:1]:
@@ -291,7 +310,7 @@ def _reactions(reaction: Fraction) -> Tuple[str, ...]:
 def _all_time(scenario: Scenario) -> Number:
     """More than it takes to do everything once and to go each way in both directions, waiting included."""
     slowest = max((agent.mobile or 0 for agent in scenario.agents), default=0)
-    working = sum((event.latest or event.duration or 0) + 2 for event in scenario.events)
+    working = sum((event.latest or event.duration or 0) + 2 * (event.split or 1) for event in scenario.events)
     working += sum(travel.window[1] for travel in scenario.travels)
     return working + sum(2 * (way.distance * slowest + 2) for way in scenario.connections)
 

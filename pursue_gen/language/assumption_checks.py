@@ -48,10 +48,10 @@ def _longest(scenario: Scenario, agent: Agent) -> Dict[str, Number]:
     for (_, place), (_, most) in scenario.movements(agent).items():
         found[place] = max(most, found.get(place, 0))
     named = {ref.name for ref in agent.can_do}
-    for event in (each for each in scenario.events if each.name in named and each.window is not None):
-        assert event.window is not None
+    for event in (each for each in scenario.events if each.name in named and each.part_window is not None):
+        assert event.part_window is not None
         for place in [poi.name for poi in scenario.pois] if event.location is None else [event.location.name]:
-            found[place] = max(event.window[1], found.get(place, 0))
+            found[place] = max(event.part_window[1], found.get(place, 0))
     return found
 
 

@@ -69,9 +69,9 @@ def actions_use(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str], i
 
 def _used_at_work(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str], Fraction]:
     return {
-        (event.name, place): Fraction(battery.uses) * Fraction(event.window[1])
+        (event.name, place): Fraction(battery.uses) * Fraction(event.part_window[1])
         for event, place in _actions(scenario, battery)
-        if event.window is not None and not is_dock(battery, place)
+        if event.part_window is not None and not is_dock(battery, place)
     }
 
 
@@ -83,9 +83,9 @@ def recharges(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str], int
 
 def _recharged(scenario: Scenario, battery: Battery) -> Dict[Tuple[str, str], Fraction]:
     return {
-        (event.name, place): Fraction(battery.recharges) * Fraction(event.duration)
+        (event.name, place): Fraction(battery.recharges) * Fraction(event.part_window[0])
         for event, place in _actions(scenario, battery)
-        if event.duration is not None and is_dock(battery, place)
+        if event.part_window is not None and is_dock(battery, place)
     }
 
 

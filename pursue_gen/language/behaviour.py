@@ -70,15 +70,15 @@ def destinations_from(scenario: Scenario, start: str, agent: str) -> FrozenSet[s
 
 
 def places_of(scenario: Scenario) -> Dict[str, FrozenSet[str]]:
-    """For each agent the POIs where it can be: those that its start leads to; its start alone if it is not mobile."""
+    """For each agent the POIs where it can be: those that a start leads to; its starts alone if it is not mobile."""
     leads: Dict[Tuple[object, ...], Dict[str, FrozenSet[str]]] = {}  # by what is closed to agents
     found = {}
     for agent in scenario.agents:
-        closed, start = scenario.closed_to(agent.name), agent.location.name
+        closed, starts = scenario.closed_to(agent.name), frozenset(ref.name for ref in agent.starts)
         if closed not in leads:
             leads[closed] = destinations(replace(scenario, connections=scenario.ways_of(agent.name)))
-        alone = frozenset({start})
-        found[agent.name] = leads[closed].get(start, alone) if agent.mobile is not None else alone
+        onward = (leads[closed].get(start, starts) for start in starts)
+        found[agent.name] = starts.union(*onward) if agent.mobile is not None else starts
     return found
 
 
@@ -153,7 +153,7 @@ def _parts(scenario: Scenario, field: str) -> Dict[str, List[_Part]]:
 def _reach(agent: Agent, ref: Ref, event: Event, where: FrozenSet[str], way: str) -> Iterator[Diagnostic]:
     if event.location is None or event.location.name in where:
         return
-    place, start = event.location.name, agent.location.name
+    place, start = event.location.name, agent.starts_text
     if agent.mobile is None:
         message = f"{agent.name} stays in {start} and can never do {event.name} in {place}"
         hint = f"make it mobile (mobile 1), let it start in {place}, or take {event.name} away from it"

@@ -112,7 +112,7 @@ def _doubtful(scenario: Scenario) -> FrozenSet[str]:
     """The codes of findings that may be no more than the consequence of a name that is declared nowhere (a typo)."""
     events, pois = {event.name for event in scenario.events}, {poi.name for poi in scenario.pois}
     places = [name for way in scenario.connections for name in (way.a, way.b)]
-    places += [agent.location.name for agent in scenario.agents]
+    places += [ref.name for agent in scenario.agents for ref in agent.starts]
     places += [event.location.name for event in scenario.events if event.location is not None]
     codes: Set[str] = set() if events_used(scenario) <= events else {"PML157"}
     if not all(ref.name in events for agent in scenario.agents for ref in agent.can_do):
@@ -142,10 +142,14 @@ def _units(scenario: Scenario) -> Iterator[Diagnostic]:
 
 
 def _starts(scenario: Scenario) -> Iterator[Diagnostic]:
-    """Agents that start where they may never be."""
+    """Agents that start where they may never be, or that are on patrol from a place that is not known."""
+    for patrol in scenario.patrols:
+        for agent in (each for each in scenario.on_patrol(patrol) if each.is_somewhere):
+            message = f"{agent.name} is on patrol, and starts at {agent.starts_text}: nobody knows what it has visited"
+            yield error("PML441", message, patrol.span, f"let {agent.name} start at one place, or let others patrol")
     for agent in scenario.agents:
-        start = agent.location
-        if start.name in {part.name for part in scenario.closed_to(agent.name) if isinstance(part, Poi)}:
+        closed = {part.name for part in scenario.closed_to(agent.name) if isinstance(part, Poi)}
+        for start in (ref for ref in agent.starts if ref.name in closed):
             message = f"{agent.name} starts in {start.name}, which is not for {agent.name}"
             hint = f"let it start somewhere else, or let poi {start.name} be for {agent.name}, too"
             yield error("PML149", message, start.span, hint)
@@ -272,11 +276,12 @@ def _beside(scenario: Scenario) -> Iterator[Diagnostic]:
         places.setdefault(text, objective.span)
     for objective in statements:
         yield from objective.check()
-    start = {agent.name: agent.location.name for agent in scenario.agents}
+    start = {agent.name: {ref.name for ref in agent.starts} for agent in scenario.agents}
     for safety in scenario.safety:
         first, second = safety.breaks.pair or ("", "")
-        at = start.get(first)
-        if at is not None and first != second and at == start.get(second) and safety.breaks.place in (None, at):
+        both = start.get(first, set()) & start.get(second, set()) if first != second else set()
+        at = next((place for place in sorted(both) if safety.breaks.place in (None, place)), None)
+        if at is not None:
             message = f"{first} and {second} both start in {at}: the objective is lost before anything moves"
             yield error("PML174", message, safety.span, "let one of them start somewhere else")
     avoided = {each.breaks.event.name: each for each in scenario.safety if each.breaks.event is not None}

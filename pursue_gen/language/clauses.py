@@ -86,6 +86,8 @@ class Domains:
         self._states = frozenset(state.name for state in scenario.states)
         self.unknown = tuple(state.name for state in scenario.states if state.is_found_out)
         """The states that are not known at first."""
+        self.somewhere = frozenset(agent.name for agent in scenario.agents if agent.is_somewhere)
+        """The agents of whom it is not known at first where they start."""
         self._events = {event.name: event for event in scenario.events}
         self._scenario, self._places = scenario, places_of(scenario)
         self._found: Dict[str, Values] = {}
@@ -99,8 +101,9 @@ class Domains:
         return self._found[variable]
 
     def ever(self, variable: str) -> Values:
-        """The same, and that a state is not known, where that may be."""
-        return self.of(variable) | {UNKNOWN} if variable in self.unknown else self.of(variable)
+        """The same, and that it is not known, where that may be."""
+        known = variable not in self.unknown and variable not in self.somewhere
+        return self.of(variable) if known else self.of(variable) | {UNKNOWN}
 
     def among(self, who: Who) -> Tuple[str, ...]:
         """The agents that are meant, in the order of their declaration."""
@@ -230,6 +233,14 @@ def possibly(clauses: Clauses, domains: Domains) -> Clauses:
     )
 
 
+def unless_placed(clauses: Clauses, domains: Domains) -> Clauses:
+    """Clauses that hold, too, where it is not known yet where one of their agents starts."""
+    return tuple(
+        {name: values | {UNKNOWN} if name in domains.somewhere else values for name, values in clause.items()}
+        for clause in clauses
+    )
+
+
 def given(clauses: Clauses, variable: str, value: Value) -> Optional[Clauses]:
     """What remains to be required where the variable is known to have the value; None: it cannot hold."""
     kept = []
@@ -246,8 +257,8 @@ def given(clauses: Clauses, variable: str, value: Value) -> Optional[Clauses]:
 def holds_at_start(
     condition: Condition, scenario: Scenario, domains: Domains, whatever: Callable[[Iterable[object]], bool] = all
 ) -> bool:
-    """True if a condition holds before anything has happened, whatever states are that are not known; with `any` if it
-    may hold."""
+    """True if a condition holds before anything has happened, whatever states are that are not known, and wherever
+    agents start; with `any` if it may hold."""
     first = {agent.name: Value("at", agent.location.name) for agent in scenario.agents}
     first.update({state.name: TRUE if state.initially else FALSE for state in scenario.states})
     loads = domains.loads.items()
@@ -255,7 +266,19 @@ def holds_at_start(
     unknown = [name for _, ref in names_in(condition) for name in domains.unknown if name == ref.name]
     names = tuple(dict.fromkeys(unknown))
     some = product((TRUE, FALSE), repeat=len(names))
-    return whatever(_holds(condition, {**first, **dict(zip(names, values))}, domains) for values in some)
+    placed = _placed(scenario)
+    return whatever(
+        _holds(condition, {**first, **there, **dict(zip(names, values))}, domains)
+        for values in some
+        for there in placed
+    )
+
+
+def _placed(scenario: Scenario) -> List[Dict[str, Value]]:
+    """For each way in which agents may start that start somewhere where each of them is."""
+    agents = [agent for agent in scenario.agents if agent.is_somewhere]
+    places = product(*([Value("at", ref.name) for ref in agent.starts] for agent in agents))
+    return [{agent.name: value for agent, value in zip(agents, some)} for some in places]
 
 
 def _holds(condition: Condition, now: Mapping[str, Value], domains: Domains) -> bool:

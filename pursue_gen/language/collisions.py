@@ -41,7 +41,9 @@ def _in_network(scenario: Scenario) -> Iterator[_Stated]:
     for event in scenario.events:
         yield event.span, [names.event(event.name), names.done(event.name)]
         yield event.span, [names.broken_off(event.name)] if event.may_stop else []
-        yield event.span, [names.busy(event.name)] if event.is_shared else []
+        yield event.span, [names.busy(event.name)] if event.is_shared or event.split else []
+        parts = (names.part_done(event.name), names.parts(event.name), names.parts_done(event.name))
+        yield event.span, parts if event.split else []
         yield event.span, [names.count(event.name), names.times(event.name)] if event.at_most is not None else []
     for rule in scenario.rules:
         yield rule.span, [names.rule(rule.name), names.rule_turn(rule.name), names.rule_clock(rule.name)]
@@ -53,6 +55,8 @@ def _in_network(scenario: Scenario) -> Iterator[_Stated]:
         yield state.span, [names.state_value(state.name)]
     for agent in scenario.agents:
         yield agent.span, [names.agent(agent.name), names.agent_position(agent.name), names.agent_clock(agent.name)]
+        starts = [names.starts(agent.name, ref.name) for ref in agent.starts] if agent.is_somewhere else []
+        yield agent.span, starts
         yield agent.span, [names.busy_with(agent.name)] if any(scenario.conditions()) else []
     yield from ((battery.span, [names.level(battery.agent.name)]) for battery in scenario.batteries)
     yield from ((carrier.agent.span, [names.load(carrier.agent.name)]) for carrier in carriers(scenario))

@@ -49,7 +49,7 @@ class Words:
         index = 0
         while index < len(tokens):
             kind = tokens[index].type
-            if kind == "ANY" and tokens[index - 1].type == "BY" and _quantifies(tokens, index):
+            if kind == "ANY" and tokens[index - 1].type in ("BY", "LOCATION") and _quantifies(tokens, index):
                 names, index = self._names_at(tokens, index + 2, members)
                 found += _listed(names, "or", "OR")  # one of them
             elif _quantifies(tokens, index):

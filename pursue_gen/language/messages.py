@@ -232,6 +232,8 @@ def _meant(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     token, statement = chunk[index], kind_of(chunk)
     if statement in ("EVENT", "AGENT") and f" {token} " in STATEMENTS[statement].form():
         return f"its parts come in this order: {STATEMENTS[statement].form()}"
+    if statement == "EVENT" and chunk[index - 1].type == "IN":
+        return "did you mean location? behind in stands a number of parts, as in may_stop in 4 parts"
     meant = _MEANT.get(str(token).lower(), "")
     if any(KEYWORDS.get(kind) == meant for kind in expected):
         return f"did you mean {meant}?"

@@ -5,6 +5,7 @@ taken, and the translation, plans, the observer and the controllers all meet the
 from __future__ import annotations
 
 from functools import partial
+from typing import Tuple
 
 from pursue_gen.language.scenario import Event
 from pursue_gen.language.symbols import Role, Symbol, numbered
@@ -36,13 +37,26 @@ busy_with, level, load = Role.BUSY_WITH, Role.LEVEL, Role.LOAD
 """The variables of an agent with which event it is busy, and where; of the level of its battery; of what it
 carries."""
 
+SOMEWHERE, starts = Role.SOMEWHERE(), Role.STARTS
+"""The location of an agent of whom it is not known yet where it starts, and the channels that say that, by agent and
+POI."""
+
+NOWHERE = 0
+"""The value of its position then: no place has this number, and no way."""
+
 movement, arrival = Role.SETTING_OFF, Role.ARRIVAL
 """The channels on which an agent sets off from one POI to another, and arrives there, where somebody listens to that;
 else that edge has none. It is the word that the edge has in any case."""
 
-event, done, broken_off, busy = Role.EVENT, Role.END, Role.BROKEN_OFF, Role.BUSY
-"""The channels on which an event happens or begins, on which one with a duration ends, or is broken off; the variable
-that is 1 while one goes on that several agents can do, and that its partners share."""
+event, done, broken_off, part_done = Role.EVENT, Role.END, Role.BROKEN_OFF, Role.PART_END
+"""The channels on which an event happens or begins, and on which one with a duration ends, is broken off, or a part of
+it ends that is not the last one."""
+
+busy = Role.BUSY
+"""The variable that is 1 while an event goes on that several agents can do, and that happens once at a time."""
+
+parts, parts_done = Role.PARTS, Role.PARTS_DONE
+"""The automaton that counts how many parts of an event are done, and its variable."""
 
 count, times = Role.COUNT, Role.TIMES
 """The automaton that counts how often an event has begun that can happen so many times only, and its variable."""
@@ -123,6 +137,12 @@ def done_times(times: int) -> Symbol:
 def apart(times: int) -> Symbol:
     """The same, where it is too soon for it to count again."""
     return Role.APART(times)
+
+
+def leaves_off(of: Event) -> Tuple[Symbol, ...]:
+    """The channels on which an event ends that has not happened then: it is broken off, or one of its parts ends."""
+    broken = (broken_off(of.name),) if of.may_stop else ()
+    return broken if of.split is None else (*broken, part_done(of.name))
 
 
 def has_happened(of: Event) -> Symbol:

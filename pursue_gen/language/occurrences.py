@@ -94,6 +94,7 @@ def are_names(tokens: Sequence[Token]) -> List[bool]:
         begins = opens and kind == "OBJECTIVE" and token.type in _OPENING and following != "NEVER_WITH"
         begins = begins or (token.type, following) == ("AT_MOST", "NUMBER")
         whoever = token.type == "ANY" and following in ("ROBOT", "AGENT")
+        whoever = whoever or (token.type, following) == ("EACH", "PLACE")
         stands = (behind and not begins and not whoever) or following in _BEHIND_STATES
         named.append(token.type == "WORD" or (token.type in MAY_BE_NAMES and stands))
     return named

@@ -38,12 +38,17 @@ class Role(enum.Enum):
     AT = "{}", "the POI {}"
     WAY = locations.movement("{}", "{}"), "the way from {} to {}"
     WORK = locations.action("{}", "{}"), "{} in {}"
+    SOMEWHERE = locations.SOMEWHERE, "it is not known where it starts"
+    STARTS = "{}_starts_at_{}", "that {} starts at {}"
     SETTING_OFF = "{}_{}2{}", "{} leaving {} for {}"
     ARRIVAL = f"{{0}}_{locations.movement('{1}', '{2}')}2{{2}}", "{0} arriving at {2} from {1}"
 
     EVENT = "{}", "the event {}"
     END = "{}DONE", "the end of {}"
     BROKEN_OFF = "{}STOP", "that {} is broken off"
+    PART_END = "{}PART", "the end of a part of {}"
+    PARTS = "{}_parts", "the parts of {}"
+    PARTS_DONE = "P{}_parts", "how many parts of {} are done"
     BUSY = "B{}", "that {} goes on"
     COUNT = "{}_count", "the count of {}"
     TIMES = "P{}_count", "how often {} has happened"
@@ -106,9 +111,9 @@ class Role(enum.Enum):
     BRINGUP = "{}_bringup", "the package that starts the mission"
 
 
-UNDER_WAY = (Role.WAY, Role.WORK, Role.FINDING)
-"""The locations that are left by the end of a movement or an action, or once it is known what is being found out: it
-takes time to come."""
+UNDER_WAY = (Role.WAY, Role.WORK, Role.FINDING, Role.SOMEWHERE)
+"""The locations that are left by the end of a movement or an action, or once it is known what is being found out, or
+where an agent starts: it takes time to come."""
 
 
 class Symbol(str):
@@ -159,7 +164,8 @@ def numbered(role: Role, number: int) -> Symbol:
 
 _COUNTED = Role.DONE_TIMES, Role.APART, Role.LEFT, Role.CAME, Role.CAME_LATE, Role.CHARGED
 _FURTHER = "([2-9]|[1-9][0-9]+)?"
-_READ = {role: "(.+)" for role in Role if "{" not in role.form or role in (*UNDER_WAY, Role.END, Role.BROKEN_OFF)}
+_ENDS = (Role.END, Role.BROKEN_OFF, Role.PART_END)
+_READ = {role: "(.+)" for role in Role if "{" not in role.form or role in (*UNDER_WAY, *_ENDS)}
 _READ.update(dict.fromkeys(_COUNTED, "([1-9][0-9]*)"))
 _READ.update({Role.DID: "([1-9][0-9_]*)", Role.SAFETY: _FURTHER, Role.REACH: _FURTHER, Role.ASSUMPTION: "([0-9]+)"})
 _READ[Role.AWAITED] = _READ[Role.ASSUMPTION]

@@ -142,7 +142,7 @@ def quickly_found(scenario: Scenario) -> List[str]:
 def longest(scenario: Scenario) -> int:
     """The longest period that is tried, in time units."""
     moves = sum(window[1] + 2 for agent in scenario.agents for window in scenario.movements(agent).values())
-    work = sum(event.window[1] + 2 for event in scenario.events if event.window is not None)
+    work = sum(event.window[1] + 2 * (event.split or 1) for event in scenario.events if event.window is not None)
     waiting = sum(assumption.known_number for assumption in scenario.assumptions if assumption.since)
     places = Counter(patrol.span for patrol in without_period(scenario))
     return max(2, ceil(_WALKS * max(places.values(), default=1) * (moves + work + waiting)))

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import FrozenSet, Iterable, Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.clauses import Value
-from pursue_gen.language.numbers import Number
+from pursue_gen.language.numbers import Number, exact
 from pursue_gen.language.scenario import Agent, Event, Scenario, Window
 from pursue_gen.language.symbols import Symbol
 from pursue_gen.tga.conditions import Conditions
@@ -74,16 +75,16 @@ class Surroundings:
         return tuple(agent for agent in self.scenario.doers(event.name) if self.can_ever_do(agent, event))
 
     def is_contested(self, event: Event) -> bool:
-        """True for an event that partners share and several agents can do.
+        """True for an event that several agents can do, and that partners share or that is done in parts.
 
-        The end of one must not be taken for that of another one: it happens once at a time.
+        The end of one must not be taken for that of another one, nor a part done twice: it happens once at a time.
         """
-        return event.is_shared and len(self.doers(event)) > 1
+        return (event.is_shared or event.split is not None) and len(self.doers(event)) > 1
 
     def pois(self, agent: Agent) -> Tuple[Symbol, ...]:
         """The locations at the POIs at which an agent can ever be, as far as being mobile goes."""
         if agent.mobile is None:
-            return (names.at(agent.location.name),)
+            return tuple(names.at(ref.name) for ref in agent.starts)
         return tuple(names.at(poi.name) for poi in self.scenario.pois if poi.admits(agent.name))
 
 
@@ -98,7 +99,7 @@ def agent_automaton(agent: Agent, around: Surroundings) -> Automaton:
         event = around.event(name)
         if not around.can_ever_do(agent, event):
             continue
-        window = event.window
+        window = event.part_window
         if window is None:
             edges += shape.instantaneous(event, ways)
         else:
@@ -109,7 +110,12 @@ def agent_automaton(agent: Agent, around: Surroundings) -> Automaton:
         places = shape.shared_places(event) if event.is_shared else ()
         locations += [Location(names.doing(name, poi)) for poi in places]
         edges += [edge for poi in places for edge in shape.sharing(event, poi)]
-    return Automaton(names.agent(agent.name), tuple(locations), names.at(agent.location.name), tuple(edges))
+    first = names.at(agent.location.name)
+    if agent.is_somewhere:
+        first = names.SOMEWHERE
+        locations.append(Location(first, (ClockBound(shape.clock, "<=", exact(Fraction(shape.rest) / 2)),)))
+        edges += [shape.start(names.at(ref.name)) for ref in agent.starts]
+    return Automaton(names.agent(agent.name), tuple(locations), first, tuple(edges))
 
 
 @dataclass(frozen=True)
@@ -150,6 +156,12 @@ class _Shape:
         """The invariant of something that ends in that window."""
         return ClockBound(self.clock, "<=", window[1])
 
+    def start(self, poi: Symbol) -> Edge:
+        """It is said that it starts at a POI: before anybody has rested, so that nothing has begun."""
+        sync = Sync(names.starts(self.agent.name, poi), sends=True)
+        assign = ((names.agent_position(self.agent.name), self.around.positions.at(poi)),)
+        return Edge(names.SOMEWHERE, poi, Guard(), sync, assign, (self.clock,), controllable=False)
+
     def movement(self, a: str, b: str, window: Window) -> Tuple[Edge, ...]:
         """Setting off from a, as far as it ever can, and arriving at b."""
         codes, on_the_way, name = self.around.positions, names.going(a, b), self.agent.name
@@ -162,25 +174,27 @@ class _Shape:
         return begin, end
 
     def lasting(self, event: Event, window: Window, poi: str) -> Tuple[Edge, ...]:
-        """Beginning an event at a POI, as far as the agent ever can, and ending it."""
-        codes, at_work, end = self.around.positions, names.doing(event.name, poi), names.done(event.name)
-        working = self.around.conditions
-        ending = self._edge(at_work, poi, end, window[0], self.around.turn(end), codes.at(poi))
-        ending = ending.plus(assign=working.ends(self.agent.name))
+        """Beginning an event at a POI, as far as the agent ever can; ending it, or a part of it; breaking it off."""
+        codes, at_work, working = self.around.positions, names.doing(event.name, poi), self.around.conditions
+        ends = [(names.done(event.name), window[0])]
         conditions = self._conditions(event, codes.at(poi), Value("at", poi))
+        if conditions is not None:
+            ends += [(names.broken_off(event.name), self.rest)] if event.may_stop else []
+            ends += [(names.part_done(event.name), window[0])] if event.split else []
+        ending = tuple(
+            self._edge(at_work, poi, end, after, self.around.turn(end), codes.at(poi)).plus(
+                assign=working.ends(self.agent.name)
+            )
+            for end, after in ends
+        )
         if conditions is None:
-            return (ending,)
-        stops: Tuple[Edge, ...] = ()
-        if event.may_stop:
-            stop = names.broken_off(event.name)
-            off = self._edge(at_work, poi, stop, self.rest, self.around.turn(stop), codes.at(poi))
-            stops = (off.plus(assign=working.ends(self.agent.name)),)
+            return ending
         start = self._edge(poi, at_work, names.event(event.name), self.rest, conditions, codes.doing(poi))
         start = start.plus(assign=working.begins(self.agent.name, event.name, poi))
         if not self.around.is_contested(event):
-            return (start, ending, *stops)
+            return (start, *ending)
         busy = names.busy(event.name)
-        return start.plus((Test(busy, 0),), assign=((busy, 1),)), ending.plus(assign=((busy, 0),))
+        return start.plus((Test(busy, 0),), assign=((busy, 1),)), *(end.plus(assign=((busy, 0),)) for end in ending)
 
     def sharing(self, event: Event, poi: str) -> Tuple[Edge, Edge]:
         """Taking part in an event of another agent at a POI, from its beginning to its end.

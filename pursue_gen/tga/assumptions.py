@@ -150,19 +150,20 @@ def _not_before(automaton: Automaton, number: int, assumption: NotBefore, *_: ob
     return automaton.with_each(edges)
 
 
-def _waits(automaton: Automaton, number: int, assumption: Waits, *_: object) -> Automaton:
-    """The first time is free; a clock runs from the end of each one to the next."""
+def _waits(automaton: Automaton, number: int, assumption: Waits, scenario: Scenario, *_: object) -> Automaton:
+    """The first time is free; a clock runs from the end of each one to the next. What is left off has not ended."""
     count, clock = names.assumption_count(number), names.assumption_clock(number)
     first, following = assumption.event.name, assumption.following.name
     lasts = any(edge.sent == names.done(first) for edge in automaton.edges)
+    may_be_left = any(names.leaves_off(event) for event in scenario.events if event.name == first)
 
     def edges(edge: Edge) -> List[Edge]:
         if edge.sent == names.done(first):
-            return [edge.plus(resets=(clock,))]
+            return [edge.plus(resets=(clock,), assign=((count, 1),) if may_be_left else ())]
         if edge.sent not in (first, following):
             return [edge]
         begun = edge.plus(resets=(clock,)) if edge.sent == first and not lasts else edge
-        counted = ((count, 1),) if edge.sent == first else ()
+        counted = ((count, 1),) if edge.sent == first and not may_be_left else ()
         if edge.sent != following:
             return [begun.plus(assign=counted)]
         again = begun.plus((Test(count, 1),), bounds=(ClockBound(clock, ">=", exact(assumption.time)),))
@@ -182,7 +183,7 @@ def _departs(automaton: Automaton, number: int, assumption: Departure, scenario:
         return replace(location, invariant=(*location.invariant, latest)) if location.name in places else location
 
     def edges(edge: Edge) -> List[Edge]:
-        if edge.target in places and edge.leaves is Role.WAY:
+        if edge.target in places and edge.leaves in (Role.WAY, Role.SOMEWHERE):
             return [edge.plus(resets=(clock,))]
         if edge.received is not None:
             # Whoever takes part in what another agent does is kept until that ends; its time begins anew then.

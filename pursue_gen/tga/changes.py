@@ -38,6 +38,11 @@ class Change:
         return clauses if self.known is None else given(clauses, *self.known)
 
 
+def placed(agent: str, poi: str) -> Change:
+    """It is said where an agent starts."""
+    return Change({(agent, UNKNOWN): Value("at", poi)}, (agent, UNKNOWN))
+
+
 def setting_off(agent: str, a: str, b: str) -> Change:
     """An agent sets off from a to b."""
     origin = Value("at", a)
@@ -75,9 +80,14 @@ def happening(channel: str, scenario: Scenario, domains: Domains) -> Change:
         for work in domains.of(agent.name):
             if work.is_work and channel == work.what:
                 becomes[agent.name, Value("at", work.where)] = work
-            elif work.is_work and channel in (names.done(work.what), names.broken_off(work.what)):
+            elif work.is_work and channel in _ends(work.what):
                 becomes[agent.name, work] = Value("at", work.where)
     return Change(becomes)
+
+
+def _ends(event: str) -> Tuple[str, ...]:
+    """The channels on which an event may end, or be left."""
+    return names.done(event), names.broken_off(event), names.part_done(event)
 
 
 def beginning(agent: str, event: str, place: str, scenario: Scenario, domains: Domains) -> Change:

@@ -138,6 +138,8 @@ class Conditions:
         return list(tests)
 
     def _code(self, value: Value) -> int:
+        if value == UNKNOWN:
+            return names.NOWHERE
         if value.is_way:
             return self._positions.going(value.where, value.what)
         return self._positions.doing(value.where) if value.is_work else self._positions.at(value.where)

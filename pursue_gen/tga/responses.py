@@ -11,13 +11,13 @@ from __future__ import annotations
 from typing import Dict, Iterable, Iterator, List, Optional, Tuple, Union
 
 from pursue_gen.language import network_names as names
-from pursue_gen.language.clauses import Clauses, Domains, clauses_of, holds_at_start, possibly
+from pursue_gen.language.clauses import Clauses, Domains, clauses_of, holds_at_start, possibly, unless_placed
 from pursue_gen.language.conditions import At, Condition, Doing, Holds, OnWay, atoms
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.scenario import Escort, Ref, Respond, Scenario
 from pursue_gen.tga.agents import Surroundings
-from pursue_gen.tga.changes import Change, arriving, found_out, happening, setting_off
+from pursue_gen.tga.changes import Change, arriving, found_out, happening, placed, setting_off
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Sync
 
 _Moves = Dict[str, Change]
@@ -62,7 +62,7 @@ def respond_automaton(respond: Union[Respond, Escort], around: Surroundings, num
 
 def _fails(condition: Condition, domains: Domains) -> Clauses:
     """What has to hold where it is not known that a condition does: it may not."""
-    return possibly(clauses_of(condition, domains, False), domains)
+    return unless_placed(possibly(clauses_of(condition, domains, False), domains), domains)
 
 
 def _comes(what: Union[Ref, Condition], move: Change, domains: Domains) -> Optional[Clauses]:
@@ -83,6 +83,10 @@ def _moves(what: Union[Ref, Condition], scenario: Scenario, domains: Domains) ->
         happened = names.has_happened(events[what.name])
         return {happened: happening(happened, scenario, domains)}
     for atom in atoms(what):
+        if isinstance(atom, (At, OnWay, Doing)):
+            for agent in (agent for agent in scenario.agents if agent.name in domains.among(atom.who)):
+                for ref in agent.starts if agent.is_somewhere else ():
+                    found[names.starts(agent.name, ref.name)] = placed(agent.name, ref.name)
         if isinstance(atom, (At, OnWay)):
             for agent in (agent for agent in scenario.agents if agent.name in domains.among(atom.who)):
                 found.update(_movements(atom, agent.name, scenario.movements(agent)))
@@ -94,8 +98,7 @@ def _moves(what: Union[Ref, Condition], scenario: Scenario, domains: Domains) ->
                 found[names.found(state.name, value)] = found_out(state.name, value)
         elif isinstance(atom, Doing):
             name = atom.event.name
-            stops = (names.broken_off(name),) if events[name].may_stop else ()
-            for channel in (names.event(name), names.done(name), *stops):
+            for channel in (names.event(name), names.done(name), *names.leaves_off(events[name])):
                 found[channel] = happening(channel, scenario, domains)
     return found
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import product
+from types import MappingProxyType
 from typing import AbstractSet, Dict, Iterable, List, Mapping, Tuple
 
 from pursue_gen.language import network_names as names
@@ -29,17 +30,17 @@ _Step = Tuple[str, str, str]
 
 def rule_of(rule: Rule, events: Iterable[Event]) -> Tuple[Automaton, Turns]:
     """The automaton of a rule about some of these events, and whose turn is when."""
-    lasting = {event.name: event.may_stop for event in events if event.duration is not None}
-    return rule_automaton(rule, lasting.keys(), {name for name, may_stop in lasting.items() if may_stop})
+    lasting = {event.name: names.leaves_off(event) for event in events if event.duration is not None}
+    return rule_automaton(rule, lasting.keys(), lasting)
 
 
 def rule_automaton(
-    rule: Rule, lasting: AbstractSet[str], may_stop: AbstractSet[str] = frozenset()
+    rule: Rule, lasting: AbstractSet[str], back: Mapping[str, Iterable[str]] = MappingProxyType({})
 ) -> Tuple[Automaton, Turns]:
-    """The automaton of a rule, and whose turn is when. `lasting` holds the events that have a duration; what is broken
-    off, of those that may be, leads back to where it has begun."""
+    """The automaton of a rule, and whose turn is when. `lasting` holds the events that have a duration; `back` by event
+    the channels on which it ends and has not happened: they lead back to where it has begun."""
     initial = f"{rule.name}_initial_location"
-    layout = _Layout(rule.name, lasting, may_stop, [initial], [])
+    layout = _Layout(rule.name, lasting, back, [initial], [])
     layout.lay(rule.body, "", initial, initial)
     numbers = {name: number for number, name in enumerate(layout.locations)}
     edges = tuple(
@@ -62,7 +63,7 @@ class _Layout:
 
     rule: str
     lasting: AbstractSet[str]
-    may_stop: AbstractSet[str]
+    back: Mapping[str, Iterable[str]]
     locations: List[str]
     steps: List[_Step]
 
@@ -102,7 +103,7 @@ class _Layout:
     def _apart(self, body: RuleBody, way: str) -> _Layout:
         """That part of the rule alone: its first location is the first one of its list, its last one the last one."""
         source, target = f"{self._part(way)}_first", f"{self._part(way)}_last"
-        part = _Layout(self.rule, self.lasting, self.may_stop, [source], [])
+        part = _Layout(self.rule, self.lasting, self.back, [source], [])
         part.lay(body, way, source, target)
         part.locations.append(target)
         return part
@@ -122,7 +123,7 @@ class _Layout:
         while_doing = f"{self._leaf(way)}_doing_{event}"
         self.locations.append(while_doing)
         self.steps += [(source, while_doing, names.event(event)), (while_doing, target, names.done(event))]
-        self.steps += [(while_doing, source, names.broken_off(event))] if event in self.may_stop else []
+        self.steps += [(while_doing, source, channel) for channel in self.back.get(event, ())]
 
     def _part(self, way: str) -> str:
         return f"{self.rule}{len(way)}{way}"

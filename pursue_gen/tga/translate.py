@@ -15,7 +15,7 @@ from pursue_gen.tga.assumptions import assumed, assumption_clocks, assumption_va
 from pursue_gen.tga.awaited import ways_awaited
 from pursue_gen.tga.batteries import battery_variables, powered
 from pursue_gen.tga.conditions import Conditions
-from pursue_gen.tga.counts import count_automaton, counted
+from pursue_gen.tga.counts import count_automaton, counted, parts_automaton, split
 from pursue_gen.tga.endurance import charge_clocks
 from pursue_gen.tga.loads import laden, load_variables
 from pursue_gen.tga.network import Network
@@ -38,6 +38,7 @@ def translate(scenario: Scenario) -> Network:
     rules = [rule_of(rule, scenario.events) for rule in scenario.rules if not rule.each]
     own = tuple(own_turns(scenario))
     rules += [count_automaton(event, most) for event, most in counted(scenario)]
+    rules += [parts_automaton(event, parts) for event, parts in split(scenario)]
     in_turn = tuple((names.rule_turn(automaton.name), turn) for automaton, turn in rules)
     conditions = Conditions(scenario, codes)
     around = Surroundings(scenario, codes, in_turn, conditions, awaited(scenario))
@@ -85,9 +86,12 @@ def _clocks(scenario: Scenario) -> Tuple[str, ...]:
 
 def _variables(scenario: Scenario, pois: Mapping[str, int]) -> Tuple[Tuple[str, int], ...]:
     variables = [(names.rule_turn(rule.name), 0) for rule in scenario.rules if not rule.each]
-    variables += [(names.agent_position(agent.name), pois[agent.location.name]) for agent in scenario.agents]
+    for agent in scenario.agents:
+        here = names.NOWHERE if agent.is_somewhere else pois[agent.location.name]
+        variables.append((names.agent_position(agent.name), here))
     variables += [(names.state_value(state.name), first_value(state)) for state in scenario.states]
     variables += [(names.times(event.name), 0) for event, _ in counted(scenario)]
+    variables += [(names.parts_done(event.name), 0) for event, _ in split(scenario)]
     return tuple(variables)
 
 
@@ -104,9 +108,11 @@ def _channels(scenario: Scenario) -> Tuple[str, ...]:
         for connection in scenario.ways_of(agent.name)
         for a, b in connection.directions
     ]
+    somewhere = [agent for agent in scenario.agents if agent.is_somewhere]
+    channels += [names.starts(agent.name, ref.name) for agent in somewhere for ref in agent.starts]
     for event in scenario.events:
         channels += [names.event(event.name), *([names.done(event.name)] if event.duration is not None else [])]
-        channels += [names.broken_off(event.name)] if event.may_stop else []
+        channels += names.leaves_off(event)
     unlocks = (sync.channel for sync in unlocking(scenario) if sync is not None and sync.sends)
     return (*channels, *arrivals(scenario), *found_channels(scenario), *unlocks)
 

@@ -16,15 +16,19 @@ from pursue_runtime.vocabulary import (
     BREAKS_OFF,
     DOES,
     FINISHES,
+    FINISHES_PART,
     FOUND,
     ON_WAY,
     SETS_OFF,
+    STARTS,
+    UNPLACED,
     Deed,
 )
 
 _DEEDS = {
     Role.SETTING_OFF: SETS_OFF, Role.ARRIVAL: ARRIVES, Role.WAY: ARRIVES,
     Role.EVENT: DOES, Role.WORK: BEGINS, Role.END: FINISHES, Role.BROKEN_OFF: BREAKS_OFF,
+    Role.PART_END: FINISHES_PART, Role.STARTS: STARTS,
 }  # fmt: skip
 """What an agent does, by the role of its channel; of the location that it leaves or enters where that says more."""
 
@@ -32,6 +36,8 @@ _DEEDS = {
 def place(scenario: Scenario, location: str) -> str:
     """Where an agent is, behind `is`: `at c`, `on its way from c to b`, `doing catch at b`."""
     symbol = Symbol.of(location)
+    if symbol.role is Role.SOMEWHERE:
+        return UNPLACED
     if symbol.role not in UNDER_WAY:
         return AT.format(scenario.shown(location))
     return (ON_WAY if symbol.role is Role.WAY else AT_WORK).format(*map(scenario.shown, symbol.parts))
@@ -44,5 +50,5 @@ def deed(scenario: Scenario, automaton: str, edge: Edge) -> Optional[Deed]:
         return FOUND.of(symbol.parts[-1])
     role = Role.WORK if symbol.role is Role.EVENT and edge.enters is Role.WORK else symbol.role
     said = _DEEDS.get(role) if any(agent.name == automaton for agent in scenario.agents) else None
-    parts = symbol.parts[-1:] if said is ARRIVES else symbol.parts[-2:]
+    parts = symbol.parts[-1:] if said in (ARRIVES, STARTS) else symbol.parts[-2:]
     return None if said is None else said.of(*map(scenario.shown, parts))

@@ -12,7 +12,7 @@ from pursue_gen.language.batteries import levels, shown_level
 from pursue_gen.language.loads import carriers, load_words
 from pursue_gen.language.scenario import Pause, Request, Scenario
 from pursue_gen.language.symbols import Role, Symbol
-from pursue_gen.tga.counts import counted
+from pursue_gen.tga.counts import counted, split
 from pursue_gen.tga.network import Automaton, Network
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.own_turns import own_turns
@@ -32,6 +32,10 @@ def courses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
     for event, most in counted(scenario):
         count = network.automaton(names.count(event.name))
         done = {place.name: f"{number} of {most} times" for number, place in enumerate(count.locations)}
+        found.append(Status(count.name, event.shown, done))
+    for event, parts in split(scenario):
+        count = network.automaton(names.parts(event.name))
+        done = {place.name: f"{number} of {parts} parts" for number, place in enumerate(count.locations)}
         found.append(Status(count.name, event.shown, done))
     for rule in (rule for rule in scenario.rules if not rule.each):
         automaton = network.automaton(rule.name)
@@ -61,7 +65,7 @@ def _turn(scenario: Scenario, automaton: Automaton, location: str) -> str:
     """What a rule waits for in a location, as in `next: load or wait`; or what goes on."""
     leaving = (edge.sync.channel for edge in automaton.edges if edge.source == location and edge.sync)
     channels = [Symbol.of(channel) for channel in dict.fromkeys(leaving)]
-    ends = [channel for channel in channels if channel.role is not Role.BROKEN_OFF]
+    ends = [channel for channel in channels if channel.role not in (Role.BROKEN_OFF, Role.PART_END)]
     if ends and all(channel.role is Role.END for channel in ends):
         return " and ".join(f"{scenario.shown(channel.parts[0])} goes on" for channel in ends)
     shown = ("the end of " * (each.role is Role.END) + scenario.shown(each.parts[0]) for each in ends)

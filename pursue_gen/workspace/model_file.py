@@ -51,6 +51,8 @@ def model_data(network: Network, objective: Objective, scenario: Scenario, react
 
 def _format(has_partners: bool, scenario: Scenario, objective: Objective) -> int:
     """The format of model.yaml, the oldest that can say all of it."""
+    if any(event.split for event in scenario.events) or any(agent.is_somewhere for agent in scenario.agents):
+        return 6
     if any(state.is_found_out for state in scenario.states):
         return 5
     if scenario.ends:

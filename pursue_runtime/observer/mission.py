@@ -342,7 +342,9 @@ class Mission(MissionStatus):
         return self._after_losses(now)
 
     def _on_report(self, word: Word, now: float) -> List[SystemState]:
-        """Take a report of an event. The end of what several do together counts when all have reported it."""
+        """Take a report of an event. The end of what several do together counts when all have reported it; that of an
+        action in parts is the end of a part while others are left."""
+        word = word._replace(event=self.model.reported(self.position(now), word.event, word.agent))
         if self.shared_ends.settles(word):
             self.lost.pop(word.agent, None)
             return self._status_changes(now)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Collection, Dict, List, NamedTuple, Optional, Protocol, Sequence, Tuple
 
 from pursue_runtime.event_words import Word, format_word
-from pursue_runtime.locations import FINDING_OUT, action, is_movement, is_under_way
+from pursue_runtime.locations import TO_BE_SAID, action, is_movement, is_under_way
 from pursue_runtime.model import Automaton, Edge, Model
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.state import LIVE, SystemState, older, rewinds
@@ -74,7 +74,7 @@ def end_window(model: Model, automaton: Automaton, location: str) -> Optional[En
             return _shared_window(model, edge)
         lows = {bound.right: -bound.bound for bound in edge.when if bound.right and not bound.left}
         for bound in automaton.invariants[location]:
-            if bound.left in lows or location == FINDING_OUT:
+            if bound.left in lows or location in TO_BE_SAID:
                 return EndWindow(edge.word, bound.left, lows.get(bound.left, 0.0), bound.bound)
     return None
 
@@ -82,7 +82,7 @@ def end_window(model: Model, automaton: Automaton, location: str) -> Optional[En
 def end_words(automaton: Automaton, location: str) -> List[str]:
     """Return the words with one of which the agent ends what it does at this location, if it ends that itself."""
     own = (edge for edge in automaton.edges_from(location) if edge.sync != "receive")
-    return list(dict.fromkeys(edge.word for edge in own if edge.is_end))
+    return list(dict.fromkeys(edge.word for edge in own if edge.is_end and not edge.ends_part))
 
 
 def _shared_window(model: Model, ending: Edge) -> Optional[EndWindow]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_runtime.locations import FINDING_OUT
+from pursue_runtime.locations import TO_BE_SAID
 from pursue_runtime.model import Model, Position
 from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import RUNNING, SystemState
@@ -36,7 +36,7 @@ def course(model: Model, strategies: Sequence[Strategy], state: SystemState) -> 
     """The next events by these strategies, one for each controller, in order; none where the mission does not run.
 
     It ends at the goal, where the strategies know nothing more to do, where somebody who is not controlled has to act,
-    and where it is being found out what a state is.
+    and where somebody has to say what a state is, or where an agent starts.
     """
     if state.status != RUNNING:
         return []
@@ -88,7 +88,7 @@ def _ends(model: Model, here: Position, lost: "set[str]") -> Iterator[_Move]:
         for edge in automaton.edges_from(location):
             if edge.sync == "receive" or edge.controllable or not edge.is_end:
                 continue
-            if location == FINDING_OUT:
+            if location in TO_BE_SAID:
                 yield 0.0, automaton.name, "", False  # nobody knows what comes of it
                 break
             if automaton.name not in lost and edge.allowed(here.values):

@@ -6,13 +6,13 @@ import os
 import random
 from typing import List, Optional, Sequence, Tuple
 
+from pursue_runtime.locations import TO_BE_SAID
 from pursue_runtime.model import Model
 from pursue_runtime.named_files import read_text
 from pursue_runtime.state import SystemState
 from pursue_runtime.ui.mission_view import MARGIN, Environment, possible_words
 from pursue_runtime.ui.options import Options
 from pursue_runtime.ui.trace import TraceError, TraceStep, read_trace
-from pursue_runtime.vocabulary import is_fact
 
 MIN_PAUSE = 1.0  # time units after a word without effect until the next one
 LATE = 1.0  # time units after which a step of a trace that a restart has missed is skipped
@@ -55,8 +55,9 @@ class RandomEnvironment:
             return
         delay = pause + self._random.expovariate(1.0 / self._pace)
         able = possible_words(self._model, self._state, self._state.clocks_at(now))
-        # What states are found to be is said by the simulator.
-        offers = [offer for offer in able if not is_fact(self._model.automaton(offer.agent))]
+        # What states are found to be, and where agents start, is said by the simulator.
+        locations = self._state.locations
+        offers = [offer for offer in able if locations[offer.agent] not in TO_BE_SAID]
         then = [offer for offer in offers if offer.opens <= delay and delay <= offer.closes - MARGIN]
         if then:
             self._plan = (now + delay * self._state.unit, self._random.choice(then).word)

@@ -20,7 +20,7 @@ from pursue_runtime.event_words import (
     one_line,
     parse_word,
 )
-from pursue_runtime.locations import FINDING_OUT, is_movement
+from pursue_runtime.locations import TO_BE_SAID, is_movement
 from pursue_runtime.model import Model
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.sentences import Told, in_words
@@ -61,13 +61,13 @@ class Task(NamedTuple):
 
 def possible_words(model: Model, state: SystemState, clocks: Dict[str, float], kinds: Collection[str] = ("agent",),
              ends: bool = False) -> List[PossibleWord]:
-    """What agents of these kinds can start (and with `ends` also end) in this state, in system order, and what states
-    can be found to be that are being found out."""
+    """What agents of these kinds can start (and with `ends` also end) in this state, in system order, and what has
+    to be said: what states are found to be, and where agents start."""
     found: Dict[str, PossibleWord] = {}
     for automaton in model.of_kind(*kinds):
         location = state.locations.get(automaton.name, "")
         for edge in automaton.edges_from(location):
-            hidden = edge.is_end and location != FINDING_OUT and not ends
+            hidden = edge.is_end and location not in TO_BE_SAID and not ends
             if edge.sync == "receive" or hidden:
                 continue
             zone = edge.when + automaton.invariants[location]

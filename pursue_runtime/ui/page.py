@@ -9,7 +9,7 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 
 from pursue_runtime.data import reading
 from pursue_runtime.event_words import START, event_in
-from pursue_runtime.locations import FINDING_OUT, is_action, is_end, is_movement
+from pursue_runtime.locations import FINDING_OUT, TO_BE_SAID, is_action, is_end, is_movement
 from pursue_runtime.model import Automaton, Model
 from pursue_runtime.poses import read_poses
 from pursue_runtime.sentences import Told, in_words, listed
@@ -269,7 +269,7 @@ class Page:
         """One for each thing that the agent may begin, possible now or not, with the locations where it may."""
         found: Dict[str, Dict[str, Any]] = {}
         for edge in automaton.edges:
-            if edge.sync != "receive" and (not edge.is_end or edge.source == FINDING_OUT):
+            if edge.sync != "receive" and (not edge.is_end or edge.source in TO_BE_SAID):
                 word = report_word(self._model, automaton.name, edge.word)
                 label = self._label(automaton.name, word)
                 button = found.setdefault(word, {"agent": automaton.name, "word": word, "label": label, "from": []})
@@ -285,6 +285,8 @@ class Page:
         edge = next(edges, None)
         if edge is not None and edge.source == FINDING_OUT:
             return f"is {value_found(edge)}"
+        if edge is not None and edge.source in TO_BE_SAID:
+            return f"starts at {self._model.shown(edge.target)}"
         moves = edge is not None and is_movement(edge.target)
         return where(self._model, automaton, edge.target) if edge and moves else self._model.shown(event)
 

@@ -55,7 +55,7 @@ SLIPS = [
     ("travel bot from a b takes 5", "PML010", 19, "expected `to` after `a`, found `b`", "the form is"),
     ("travel bot from a to b takes", "PML010", 29, "expected a number after `takes`", "the form is"),
     ("travel 3 from a to b takes 5", "PML010", 8, "expected a name after `travel`", "a name begins with a letter"),
-    ('event "e" duration 3 location a', "PML010", 22, "`at_most`, `only_if` or the end", "location a duration 6"),
+    ('event "e" duration 3 location a', "PML010", 22, "`at_most`, `in`, `only_if` or the end", "location a duration 6"),
     ('event "e" at_most 2', "PML010", 20, "expected `times` after `2`", "at_most 2 times"),
     ('event "e" at_most times', "PML010", 19, "expected a number after `at_most`", "come in this order"),
     ('event "e" at_most 1 time', "PML010", 21, "expected `times` after `1`, found `time`", "did you mean times?"),
@@ -209,7 +209,7 @@ def test_no_nonsense_follows_from_a_syntax_error() -> None:
 def test_an_expected_list_reads_like_a_sentence() -> None:
     (finding,) = syntax_errors('event "e" e')
     parts = "`label`, `collaborative`, `location`, `duration`, `may_stop`, `takes`, `gives`, `mounts`, `needs`"
-    assert f"expected {parts}, `at_most`, `only_if` or the end" in finding.message
+    assert f"expected {parts}, `at_most`, `in`, `only_if` or the end" in finding.message
 
 
 BEFORE = '''poi "a"

@@ -183,10 +183,10 @@ class AboutOne(Assumption):
 
     def never_comes(self, agent: Agent, place: Ref, setting: Setting) -> Optional[Diagnostic]:
         """A warning where the agent never comes to the place that it is about; else None."""
-        start = agent.location.name
-        if agent.mobile is None and place.name != start:
+        start = agent.starts_text
+        if agent.mobile is None and all(ref.name != place.name for ref in agent.starts):
             message = f"{agent.name} is not mobile: it stays in {start} anyway"
-        elif place.name not in setting.onward(start, agent.name):
+        elif all(place.name not in setting.onward(ref.name, agent.name) for ref in agent.starts):
             message = f"no way leads {agent.name} from {start} to {place.name} anyway"
         else:
             return None
@@ -212,7 +212,7 @@ class Departure(AboutOne):
     def never_away(self, agent: Agent, places: Iterable[str], setting: Setting) -> Optional[Diagnostic]:
         """An error where the agent cannot leave one of these places, to which it may come; else None."""
         if agent.mobile is None:
-            message = f"{agent.name} is not mobile: it stays in {agent.location.name}, and cannot leave it"
+            message = f"{agent.name} is not mobile: it stays in {agent.starts_text}, and cannot leave it"
             return error("PML252", message, self.span, "make it mobile (mobile 1)")
         for place in places:
             ways = setting.next_to(place, agent.name)
@@ -231,7 +231,8 @@ def never_at(agent: Agent, setting: Setting) -> AbstractSet[str]:
 
 def visited(agent: Agent, setting: Setting) -> Sequence[str]:
     """The places to which the agent may come, as far as ways and assumptions go, the nearest first."""
-    found, seen = [agent.location.name], {agent.location.name, *never_at(agent, setting)}
+    found = [ref.name for ref in agent.starts]
+    seen = {*found, *never_at(agent, setting)}
     for place in found:
         found += sorted(setting.next_to(place, agent.name) - seen)
         seen.update(found)

@@ -67,7 +67,7 @@ class Reaches(AboutOne):
         place = self.place.name
         if self.time <= 0:
             return error("PML251", "within 0 assumes that it is always there", self.span, "expected more than 0")
-        if agent.mobile is None and place == agent.location.name:
+        if agent.mobile is None and place == agent.starts_text:
             return warning("PML254", f"{agent.name} is not mobile: it stays in {place} anyway", self.span, "delete it")
         if all(ref.name != self.event.name for each in setting.agents for ref in each.can_do):
             message = f"nobody can do {self.event.name} anyway"

@@ -47,20 +47,21 @@ class ThereBy(AboutOne):
         return latest_to(self.place.name, self.time, ways, stay)
 
     def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
-        place, start = self.place.name, agent.location.name
+        place = self.place.name
         if self.time <= 0:
             message = "by 0 assumes that it is always there: expected more than 0"
             return error("PML251", message, self.span, "write the time, or take mobile away from it")
-        if place == start and agent.mobile is None:
-            return warning("PML254", f"{agent.name} is not mobile: it stays in {start} anyway", self.span, "delete it")
-        latest = self.latest(setting.open_ways(agent), setting.shortest_stay).get(start)
-        if place != start and latest is None:
-            message = f"no way that is always open leads {agent.name} from {start} to {place}"
-            return error("PML252", message, self.span, f"connect {start} and {place}, without only_if")
-        if latest is not None and latest < setting.shortest_stay:
-            sooner = like(exact(self.time + setting.shortest_stay - latest), self.time)
-            message = f"{agent.name} may need {units(sooner)} from {start} to {place}"
-            return error("PML252", message, self.span, f"write by {written_time(sooner)} or later")
+        if place == agent.starts_text and agent.mobile is None:
+            return warning("PML254", f"{agent.name} is not mobile: it stays in {place} anyway", self.span, "delete it")
+        for start in (ref.name for ref in agent.starts):
+            latest = self.latest(setting.open_ways(agent), setting.shortest_stay).get(start)
+            if place != start and latest is None:
+                message = f"no way that is always open leads {agent.name} from {start} to {place}"
+                return error("PML252", message, self.span, f"connect {start} and {place}, without only_if")
+            if latest is not None and latest < setting.shortest_stay:
+                sooner = like(exact(self.time + setting.shortest_stay - latest), self.time)
+                message = f"{agent.name} may need {units(sooner)} from {start} to {place}"
+                return error("PML252", message, self.span, f"write by {written_time(sooner)} or later")
         shared = {event.name for event in setting.events if event.is_shared}
         for event in (ref.name for ref in agent.reacts_to if ref.name in shared):
             message = f"{agent.name} takes part in {event}, and could be kept from going to {place} in time"

@@ -12,7 +12,7 @@ from pursue_gen.language.lengths import metres
 from pursue_gen.language.numbers import Number, Window, exact, is_fine, window_of
 from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.statements.base import Labelled
-from pursue_gen.language.template import Template
+from pursue_gen.language.template import Filling, Template, name_text
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word
 
@@ -23,14 +23,24 @@ MOST_METRES = 100
 """The largest number of a robot's size."""
 
 
+def _read_starts(reader: TreeReader, tree: Any) -> Tuple[Ref, Tuple[Ref, ...]]:
+    first, *others = map(reader.ref, tree.children)
+    return first, tuple(others)
+
+
+def _starts_text(first: Ref, others: Tuple[Ref, ...]) -> str:
+    return " or ".join(map(name_text, (first, *others)))
+
+
 @dataclass(frozen=True)
 class Agent(Labelled):
     """A robot (controllable), a human ally (controllable and human) or an uncontrollable agent.
 
     `mobile` is the time units per unit of distance (the inverse of its speed), None: it never moves. `speed`: the
     metres per second from which it was computed; None: it was written itself. `carries`: how many things at one time at
-    most; None: not said. `has`: what it carries, or has mounted, at the start. `label`: what people read; None: the
-    name. `radius`, `tolerance`, `inflation`: of a robot, in metres, as `workspace.robot_size` has them; None: not said.
+    most; None: not said. `has`: what it carries, or has mounted, at the start. `or_at`: other places at which it may
+    start, where that is not known. `label`: what people read; None: the name. `radius`, `tolerance`, `inflation`: of a
+    robot, in metres, as `workspace.robot_size` has them; None: not said.
     """
 
     name: str
@@ -48,6 +58,7 @@ class Agent(Labelled):
     speed: Optional[Number] = None
     carries: Optional[int] = None
     has: Tuple[Ref, ...] = ()
+    or_at: Tuple[Ref, ...] = ()
 
     listed_in: ClassVar[str] = "agents"
     symbol: ClassVar[str] = "Class"
@@ -75,11 +86,12 @@ class Agent(Labelled):
         'agent {name="bot"} [label {label:name}] [human] [controllable] [mobile {mobile:number=3}]'
         " [speed {speed:number}] [radius {radius:metres}] [tolerance {tolerance:metres}] [inflation {inflation:metres}]"
         " [carries {carries:count}] [has {has:things}]"
-        " location {location:POI=a} [can_do {can_do:events=e1, e2}] [reacts_to {reacts_to:events=e3}]"
+        " location {location,or_at:starts=a} [can_do {can_do:events=e1, e2}] [reacts_to {reacts_to:events=e3}]",
+        starts=Filling("starts", _read_starts, _starts_text, "POI", ("location", "or"), 'starts: ref ("or" ref)*'),
     )
     note: ClassVar[str] = (
         'location is required; behind the name: label "Porter 1"; in place of mobile: speed 0.5; before location, of a '
-        "robot: radius 0.2 tolerance 0.1 inflation 0.5; carries 2 has box"
+        "robot: radius 0.2 tolerance 0.1 inflation 0.5; carries 2 has box; where it is not known: location a or b"
     )
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("a robot", 'agent "{=bot}" controllable mobile {=1} location {POI} can_do {event}'),
@@ -88,6 +100,10 @@ class Agent(Labelled):
             'agent "{=bot}" controllable mobile {=1} carries {=2} location {POI} can_do {event}, {event}',
         ),
         Form("somebody who does as they like", 'agent "{=visitor}" mobile {=1} location {POI} can_do {event}'),
+        Form(
+            "somebody of whom it is not known where it starts",
+            'agent "{=visitor}" mobile {=1} location {POI} or {POI} can_do {event}',
+        ),
         Form("a person who helps", 'agent "{=helper}" human controllable mobile {=1} location {POI} can_do {event}'),
     )
     declares: ClassVar[str] = "agent"
@@ -117,6 +133,21 @@ class Agent(Labelled):
         return self.template.written(self if self.speed is None else replace(self, mobile=None))
 
     @property
+    def starts(self) -> Tuple[Ref, ...]:
+        """The places of which it starts at one."""
+        return (self.location, *self.or_at)
+
+    @property
+    def is_somewhere(self) -> bool:
+        """True where it is not known at which of several places it starts."""
+        return bool(self.or_at)
+
+    @property
+    def starts_text(self) -> str:
+        """The places at which it may start, as they are written."""
+        return _starts_text(self.location, self.or_at)
+
+    @property
     def is_robot(self) -> bool:
         """True for an agent that gets a controller of its own."""
         return self.controllable and not self.human
@@ -144,6 +175,12 @@ class Agent(Labelled):
 
     def check(self) -> Iterator[Diagnostic]:
         yield from self._check_size()
+        if self.or_at and self.controllable:
+            message = f"{self.name} is controlled, and starts at {self.starts_text}"
+            hint = "name one place: it is told where to begin; or delete controllable"
+            yield error("PML441", message, self.location.span, hint)
+        for ref in twice(self.starts):
+            yield error("PML441", f"{self.name} starts at {ref.name} or {ref.name}", ref.span, "delete one of the two")
         if self.mobile is not None and self.mobile <= 0:
             hint = "mobile is the time per unit of distance: write a number above 0, or delete it where nothing moves"
             yield error("PML142", f"{self.name} would take no time for any way", self.span, hint)

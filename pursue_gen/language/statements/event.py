@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil, floor
 from typing import Any, Callable, ClassVar, Iterator, Optional, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, warning
 from pursue_gen.language.conditions import Condition, condition_words
-from pursue_gen.language.numbers import Number, Window, window_of
+from pursue_gen.language.numbers import Number, Window, exact, is_fine, window_of
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import Labelled, check_window
 from pursue_gen.language.template import Filling, Template
+from pursue_gen.language.times import like, window_text
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Numbers, Word
 
 MOST_TIMES = 100
 """How often an event can happen at most that is counted: each count is a location of an automaton."""
+
+MOST_PARTS = 20
+"""Parts of an event at most: how many are done multiplies the states of the game."""
 
 
 def _read_counted(reader: TreeReader, tree: Any) -> Tuple[Ref, int]:
@@ -38,7 +44,8 @@ class Event(Labelled):
     it can happen in all; None: as often as one likes.
     `together`: whoever takes part in a collaborative event is busy until it ends; else only the one who does it.
     `only_if`: what has to hold when it begins; None: nothing. `label`: what people read; None: the name.
-    `may_stop`: who does it may break it off; it has not happened then.
+    `may_stop`: who does it may break it off; it has not happened then. `split`: in so many parts it is done, one after
+    the other, each of which stays done; None: as a whole.
     `takes`, `gives`: the thing that whoever does it carries from its end on, and the one that is given away then; so
     many of it (`taken`, `given`) at once.
     `mounts`: the tool that is mounted from its end on, in place of another one; `needs`: what is carried or mounted.
@@ -55,6 +62,7 @@ class Event(Labelled):
     only_if: Optional[Condition] = None
     label: Optional[str] = None
     may_stop: bool = False
+    split: Optional[int] = None
     takes: Optional[Ref] = None
     taken: int = 1
     gives: Optional[Ref] = None
@@ -84,19 +92,23 @@ class Event(Labelled):
     )
     template: ClassVar[Template] = Template(
         'event {name="work"} [label {label:name}] [collaborative] [together] [location {location:POI=a}]'
-        " [duration {duration,latest:window=6}] [may_stop] [takes {takes,taken:counted}] [gives {gives,given:counted}]"
-        " [mounts {mounts:thing}] [needs {needs:thing}] [at_most {at_most:count=2} times]"
+        " [duration {duration,latest:window=6}] [may_stop] [in {split:count=4} parts] [takes {takes,taken:counted}]"
+        " [gives {gives,given:counted}] [mounts {mounts:thing}] [needs {needs:thing}] [at_most {at_most:count=2} times]"
         " [only_if {only_if:condition=open is_true}]",
         counted=Filling("counted", _read_counted, counted_text, "thing", rules="counted: [NUMBER] ref"),
     )
     note: ClassVar[str] = (
         'all but the name is optional; or: duration 6 to 9; behind the name: label "do the work"; behind the duration: '
-        "takes box, takes 2 box, gives box, mounts brush, needs brush"
+        "may_stop in 4 parts, takes box, takes 2 box, gives box, mounts brush, needs brush"
     )
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("something that can happen at a place", 'event "{=work}" location {POI} duration {=1}'),
         Form("something that takes more or less time", 'event "{=work}" location {POI} duration {=3} to {=5}'),
         Form("something that may be broken off", 'event "{=work}" location {POI} duration {=20} may_stop'),
+        Form(
+            "something that is done part by part",
+            'event "{=work}" location {POI} duration {=20} may_stop in {=4} parts',
+        ),
         Form("something that happens so many times only", 'event "{=call}" at_most {=2} times'),
         Form(
             "something that can happen only while something holds",
@@ -130,6 +142,18 @@ class Event(Labelled):
         return None if self.duration is None else window_of(self.duration, self.latest)
 
     @property
+    def part_window(self) -> Optional[Window]:
+        """Between which times it ends once it has begun: all of it, or a part, whose window is rounded outwards, to
+        tenths, where it has more than MOST_DIGITS digits; None for an event that is instantaneous."""
+        whole, parts = self.window, self.split or 1
+        if whole is None or parts == 1:
+            return whole
+        low, high = (Fraction(end) / parts for end in whole)
+        if is_fine(low) and is_fine(high):
+            return exact(low), exact(high)
+        return exact(Fraction(floor(low * 10), 10)), exact(Fraction(ceil(high * 10), 10))
+
+    @property
     def load_words(self) -> str:
         """What it takes, gives, mounts and needs, in words; "": nothing."""
         return ", ".join(f"{words} {ref.shown}" for words, ref in self._moves)
@@ -146,6 +170,8 @@ class Event(Labelled):
         own = (kind, name) == ("event", self.name)
         if own and self.may_stop:
             yield "may be broken off, and has not happened then"
+        if own and self.split:
+            yield f"is done in {self.split} parts, which stay done"
         yield from (f"{self.name} {words} it" for words, ref in self._moves if (kind, name) == ("thing", ref.name))
         if self.only_if is not None and (own or (kind == "state" and self.speaks_of(kind, name))):
             yield f"{'' if own else f'{self.name} '}only while {shown(condition_words(self.only_if))}"
@@ -157,6 +183,7 @@ class Event(Labelled):
             if duration is None:
                 what, hint = "takes no time", "write how long it takes, as in duration 20 may_stop; or delete may_stop"
             yield error("PML433", f"{name} {what}: it cannot be broken off", self.span, hint)
+        yield from self._check_parts()
         if duration is not None and duration <= 0 and self.latest is None:
             hint = "write duration and a number above 0, or delete duration: then it takes no time"
             yield error("PML141", f"{name} has a duration of 0", self.span, hint)
@@ -166,3 +193,27 @@ class Event(Labelled):
             yield error("PML204", message, self.span, f"write a number in these limits, or delete it{never}")
         if duration is not None and self.latest is not None:
             yield from check_window(name, duration, self.latest, "duration", self.span)
+
+    def _check_parts(self) -> Iterator[Diagnostic]:
+        """Parts of what has none, too few or too many of them, or parts whose time is rounded."""
+        name, parts, window = self.name, self.split, self.part_window
+        if parts is None:
+            return
+        what, hint = "", f"delete in {parts} parts"
+        if self.duration is None:
+            what = "takes no time"
+            hint = f"write how long all of it takes, as in duration 20 in {parts} parts; or {hint}"
+        elif self.collaborative:
+            what, hint = "is collaborative", f"{hint}, or collaborative"
+        elif not 2 <= parts <= MOST_PARTS:
+            what = f"has {parts} parts: expected 2 to {MOST_PARTS}"
+            hint = f"write a number in these limits, or {hint}"
+        if what:
+            yield error("PML440", f"{name} {what}", self.span, hint)
+        elif window is not None and tuple(end * parts for end in window) != self.window:
+            each, whole = (
+                window_text(*(like(exact(end * times), self.duration) for end in window)) for times in (1, parts)
+            )
+            message = f"each of the {parts} parts of {name} is taken to last {each}: all of them {whole}"
+            hint = "that is on the safe side; write times that can be divided, or another number of parts"
+            yield warning("PML424", message, self.span, hint)

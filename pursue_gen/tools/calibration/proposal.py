@@ -211,7 +211,7 @@ def _present(scenario: Scenario, slack: Mapping[str, int]) -> Dict[Measured, Win
     for event in scenario.events:
         if event.window is not None:
             later = min((slack.get(doer.name, 0) for doer in scenario.doers(event.name)), default=0)
-            found[Work(event.name)] = event.window[0], exact(event.window[1] + later)
+            found[Work(event.name)] = event.window[0], exact(event.window[1] + later * (event.split or 1))
     return found
 
 

@@ -89,7 +89,7 @@ def of_record(record: MissionRecord, scenario: Scenario, file: str = "") -> Samp
         if what is None:
             stays.strangers.add(drive.action or str(Way(drive.robot, drive.a, drive.b)))
         elif drive.outcome == ARRIVED:
-            stays.measured.append(Sample(what, drive.seconds, file, drive.start - begun))
+            stays.measured.append(Sample(what, names.whole(what, drive.seconds), file, drive.start - begun))
         else:
             why = f"{drive.outcome}{f': {drive.text}' if drive.text else ''}"
             stays.unused.append(Unused(what, drive.seconds, why, file))
@@ -132,7 +132,11 @@ class _Names:
             for agent in scenario.agents
             for way in scenario.movements(agent)
         }
-        self._events = {event.name for event in scenario.events if event.window is not None}
+        self._events = {event.name: event.split or 1 for event in scenario.events if event.window is not None}
+
+    def whole(self, what: Measured, seconds: float) -> float:
+        """How long all of it takes where one part of it, or all of what has none, was measured to take so long."""
+        return seconds * self._events[what.event] if isinstance(what, Work) else seconds
 
     def way(self, agent: str, location: str) -> Optional[Way]:
         """The way that an agent is on there; None where the scenario has none."""
@@ -214,8 +218,8 @@ class _Stays:
                 self.unused.append(Unused(what, last.stamp - stay.start, why, self._file))
 
     def _begin(self, agent: str, location: str, state: SystemState) -> Optional[_Stay]:
-        if agent_clock(agent) not in state.clocks:
-            return None  # no agent
+        if agent_clock(agent) not in state.clocks or role_of(location) is Role.SOMEWHERE:
+            return None  # no agent, or one of whom it is to be said where it starts
         start, what = _start(agent, state), self._names.what(agent, location)
         if what is None:
             self.strangers.add(f"{agent} {place(self._names.scenario, location)}")
@@ -240,7 +244,7 @@ class _Stays:
             why = ", ".join(sorted(stay.flaws)) or "it took no time"
             self.unused.append(Unused(what, took, why, self._file))
         else:
-            self.measured.append(Sample(what, took, self._file, stay.start - self._begun))
+            self.measured.append(Sample(what, self._names.whole(what, took), self._file, stay.start - self._begun))
 
 
 def _start(agent: str, state: SystemState) -> float:

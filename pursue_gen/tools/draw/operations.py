@@ -229,6 +229,10 @@ def _times(values: Values, field: str) -> Parts:
     return {"AT_MOST": f"{fields.number_of(values, field)} times" if values.get(field) else None}
 
 
+def _parts(values: Values, field: str) -> Parts:
+    return {"IN": f"{fields.number_of(values, field)} parts" if values.get(field) else None}
+
+
 _WHOM = {"only_for": _text("FOR", fields.text_of), "not_for": _text("EXCEPT", fields.text_of)}
 
 _FIELDS: Mapping[str, Mapping[str, Callable[[Values, str], Parts]]] = {
@@ -246,6 +250,7 @@ _FIELDS: Mapping[str, Mapping[str, Callable[[Values, str], Parts]]] = {
         "location": _text("LOCATION", fields.name_of),
         "duration": _text("DURATION", fields.window_of),
         "may_stop": _tick("MAY_STOP"),
+        "parts": _parts,
         "takes": _text("TAKES", fields.name_of),
         "gives": _text("GIVES", fields.name_of),
         "mounts": _text("MOUNTS", fields.name_of),

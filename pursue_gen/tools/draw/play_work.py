@@ -50,6 +50,7 @@ def _shown(session: Session, lines: Sequence[str], turn: int) -> Dict[str, Any]:
         if automaton.name in setup.agents:
             location = automaton.locations[play_.position.state.locations[number]]
             here = Symbol.of(location)
-            at[automaton.name] = list(here.parts if here.role is Role.WAY else here.parts[-1:])
+            if here.parts:  # else nobody has said yet where it starts
+                at[automaton.name] = list(here.parts if here.role is Role.WAY else here.parts[-1:])
     said = [] if play_.over else choices(session)
     return {"turn": turn, "lines": list(lines), "choices": [list(one) for one in said], "over": play_.over, "at": at}

@@ -207,7 +207,7 @@ def _agents(document: Draft) -> List[Dict[str, Any]]:
         found.append({**agent, **lists, **_placed(document, number)})
     for each in made:
         kind = "free" if not each.controllable else "person" if each.human else "robot"
-        agent = {"name": each.name, "label": each.label or "", "kind": kind, "location": each.location.name}
+        agent = {"name": each.name, "label": each.label or "", "kind": kind, "location": each.starts_text}
         agent.update(mobile="" if each.speed else str(each.mobile or ""), speed=str(each.speed or ""))
         agent.update({word: _length(getattr(each, word)) for word in SIZE})
         agent.update(carries=str(each.carries or ""), has=names_text(each.has))
@@ -236,11 +236,13 @@ def _events(document: Draft) -> List[Dict[str, Any]]:
         texts = {key: words_behind(one, key.upper()) for key in ("location", "duration", *_MOVES, "only_if")}
         at_most = words_behind(one, "AT_MOST").partition(" ")[0]
         ticks = {key: key.upper() in parts for key in _TICKS}
+        event["parts"] = words_behind(one, "IN").partition(" ")[0]
         found.append({**event, **texts, "at_most": at_most, **ticks, **_placed(document, number)})
     for each in document.scenario.events:
         if each.span.member:
             event = {"name": each.name, "label": each.label or "", "at_most": str(each.at_most or "")}
             event.update(location=each.location.name if each.location else "", only_if=_condition(each.only_if))
+            event["parts"] = str(each.split or "")
             event["duration"] = "" if each.duration is None else window_text(each.duration, each.latest)
             counts = {"takes": each.taken, "gives": each.given}
             event.update({key: counted_text(getattr(each, key), counts.get(key, 1)) for key in _MOVES})

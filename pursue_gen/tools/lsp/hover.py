@@ -155,7 +155,7 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
     if not ways:
         lines.append("- no way leads here")
     lines += [f"- {in_markdown(scenario, poi.whom_words)}"] if poi.whom_words else []
-    lines += _if_any("starts here", [a.name for a in scenario.agents if a.location.name == poi.name])
+    lines += _if_any("starts here", [a.name for a in scenario.agents if any(ref.name == poi.name for ref in a.starts)])
     here = [e.name for e in scenario.events if e.location is not None and e.location.name == poi.name]
     lines += _if_any("happens here", here)
     if poi.pose is not None:
@@ -169,6 +169,8 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
     where = f"at {event.location.name}" if event.location else "wherever the agent is"
     lines = [f"**{event.name}**: an event{_read_as(event.label)}", "", f"- happens {where}"]
     lines.append(f"- takes {lasts(event.window, scenario.unit)}" if event.window is not None else "- takes no time")
+    if event.split is not None:
+        lines.append(f"- is done in {event.split} parts, each of which stays done")
     if event.at_most is not None:
         lines.append(f"- happens at most {event.at_most} times")
     lines += [f"- {in_markdown(scenario, event.load_words)}"] if event.load_words else []
@@ -237,7 +239,7 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
     what = "a robot: the program decides what it does" if agent.is_robot else "nobody controls it"
     if agent.human and agent.controllable:
         what = "a person who follows instructions"
-    lines = [f"**{agent.name}**: {what}{_read_as(agent.label)}", "", f"- starts at {agent.location.name}"]
+    lines = [f"**{agent.name}**: {what}{_read_as(agent.label)}", "", f"- starts at {agent.starts_text}"]
     if agent.mobile is None:
         lines.append("- stays there")
     else:

@@ -128,7 +128,7 @@ def overview(setup: Setup, words: Words, play: PlayState) -> Iterator[str]:
             continue
         location = automaton.locations[number]
         symbol = Symbol.of(location)
-        is_away = symbol.role is Role.WAY
+        is_away = symbol.role in (Role.WAY, Role.SOMEWHERE)
         group, key = (away, words.place(automaton.name, location)) if is_away else (at, symbol.parts[-1])
         group.setdefault(key, []).append(shown(automaton.name))
     widest = max((len(poi.shown) for poi in setup.scenario.pois), default=0)

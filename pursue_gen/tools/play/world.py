@@ -140,9 +140,16 @@ class StrategyPlay:
         number = sum(deed.agent == name for deed in play.deeds)
         if edge.leaves is Role.FINDING and any(dict(edge.assign).values()) is not self._is_true(name):
             return None  # it is found to be the other
+        if edge.leaves is Role.SOMEWHERE and edge.target != self._start_of(name):
+            return None  # it starts elsewhere
         moment = _short(low + (high - low) * self._share(name, number), low, high)
         moment = max(moment, min(low + GRAIN, high))
         return min(max(moment, play.now), high)
+
+    def _start_of(self, agent: str) -> str:
+        """Where an agent starts, if the person does not say."""
+        (places,) = (each.starts for each in self.setup.scenario.agents if each.name == agent)
+        return random.Random(f"{self.seed}/{agent}").choice(places).name
 
     def _is_true(self, state: str) -> bool:
         """What a state turns out to be, if the person does not say."""

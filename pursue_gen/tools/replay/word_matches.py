@@ -26,6 +26,7 @@ from pursue_runtime.event_words import (
     STOP,
     STUCK,
 )
+from pursue_runtime.locations import end_of, part_of
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, WAITING, SystemState
 
@@ -93,7 +94,8 @@ def match_words(
     arrivals = Arrivals(record.states)
     for since, before, state in steps:
         numbers = (*range(before.seq, since.seq - 1, -1), None)
-        for words in (received.get((state.event, number), []) for number in numbers):
+        ends = [(end_of(state.event), None)] if end_of(state.event) else []
+        for words in (received.get(key, []) for key in (*((state.event, number) for number in numbers), *ends)):
             near = words[bisect.bisect(words, (state.stamp - ago,)) : bisect.bisect(words, (state.stamp + later,))]
             members = moves.sharing(place_of(before), state.event, state.agent) or (state.agent,)
             nearest: Dict[str, int] = {}
@@ -150,7 +152,8 @@ def _why(now: SystemState, word: RecordedWord, said: WordMatches, moves: Moves) 
     if not word.event:
         return now.seq, "it is no word"
     if word.seq is None:
-        doer = next((move[0][0] for move in moves.of(place_of(now), word.event, word.agent)), "")
+        meant = (move for end in (word.event, part_of(word.event)) for move in moves.of(place_of(now), end, word.agent))
+        doer = next((move[0][0] for move in meant), "")
         agent = word.agent or doer
         if said.arrivals is not None and said.arrivals.are_after(word, agent, now.seq):
             return now.seq, f"it reports the end of what {agent} had begun before state {now.seq}"

@@ -169,7 +169,8 @@ def _segments_of(
     for stay in stays(recording, agent.name):
         here = Symbol.of(stay.what)
         is_way = here.role is Role.WAY
-        points = line(*here.parts) if is_way else line(*here.parts[-1:] * 2)
+        there = here.parts[-1:] or (agent.location.name,)  # nobody has said yet where it starts
+        points = line(*here.parts) if is_way else line(*there * 2)
         done = _part_done(recording, stay, agent, here.parts) if is_way else 0.0
         description, is_work = words.place(agent.name, stay.what), here.role is Role.WORK
         segments.append(Segment(stay.start, stay.end, tuple(_first_part(points, done)), description, is_work))

@@ -19,6 +19,7 @@ from pursue_gen.tools.report.statuses import broken, changes, conditions, holdin
 from pursue_gen.vocabulary.statuses import courses
 from pursue_gen.vocabulary.words import Words, words_of
 from pursue_runtime.state import HOLDING
+from pursue_runtime.vocabulary import UNPLACED
 
 _WIDTH, _WIDEST = 960.0, 2000.0
 _ROW, _BAR, _TOP = 54.0, 16.0, 54.0
@@ -128,6 +129,8 @@ def _scale(recording: Recording) -> Scale:
 def _bar_label(recording: Recording, location: str) -> str:
     """What stands above a movement or an action; nothing above a wait."""
     symbol = Symbol.of(location)
+    if symbol.role is Role.SOMEWHERE:
+        return ""
     first, *others = map(recording.scenario.shown, symbol.parts)
     return "" if symbol.role not in UNDER_WAY else first if symbol.role is Role.WORK else f"{first} → {others[0]}"
 
@@ -193,16 +196,17 @@ def _agent(recording: Recording, scale: Scale, agent: str, look: AgentLook, fill
     found, taken, shown = stays(recording, agent), 0.0, recording.scenario.shown
     labels = [_bar_label(recording, stay.what) for stay in found]
     for number, (stay, label) in enumerate(zip(found, labels)):
-        place = shown(Symbol.of(stay.what).parts[-1])
+        symbol = Symbol.of(stay.what)
+        here = f"at {shown(symbol.parts[-1])}" if symbol.parts else UNPLACED
         x = scale.x(stay.start)
         if not label:
-            yield _line(scale, stay, f"at {place}", "wait", max(0.0, taken - x))
+            yield _line(scale, stay, here, "wait", max(0.0, taken - x))
             continue
         after = next((scale.x(found[k].start) for k in range(number + 1, len(found)) if labels[k]), None)
         room = (scale.width if after is None else after) - x
         taken = x + min(room, (len(label) + 1) * _BOLD)
         is_work = role_of(stay.what) is Role.WORK
-        ink = ("#ffffff", f"{label} at {place}", 3.0) if is_work else (fill, f"from {label}", 1.5)
+        ink = ("#ffffff", f"{label} {here}", 3.0) if is_work else (fill, f"from {label}", 1.5)
         yield _bar(scale, stay, _label(x, room, label, "pg-strong"), look.colour, *ink)
     free = 0.0
     for before, step in zip(recording.steps, recording.steps[1:]):

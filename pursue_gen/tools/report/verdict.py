@@ -88,5 +88,6 @@ def _agents(scenario: Scenario) -> str:
         does = ", ".join(ref.shown for ref in agent.can_do) or "-"
         reacts = ", ".join(ref.shown for ref in agent.reacts_to) or "-"
         speed = speed_words(agent, scenario)
-        rows.append((agent.shown, agent.kind_words, agent.location.shown, speed, does, reacts))
+        starts = " or ".join(ref.shown for ref in agent.starts)
+        rows.append((agent.shown, agent.kind_words, starts, speed, does, reacts))
     return table(("agent", "is", "starts at", "moves", "can do", "takes part in"), rows, "Who is there")

@@ -20,14 +20,23 @@ def holds(
     whatever: Callable[[Iterable[object]], bool] = all,
 ) -> bool:
     """True if a condition holds where agents are at these locations of their automata and variables have these values,
-    whatever the states are that are not known; with `any` if it may hold.
+    whatever the states are that are not known; with `any` if it may hold. Where it is not known yet where agents start,
+    it holds wherever that is.
 
     Raises KeyError for an agent or a state that is not there.
     """
     named = (names.state_value(ref.name) for kind, ref in names_in(condition) if kind == "state")
     unknown = tuple(dict.fromkeys(name for name in named if values[name] == names.UNKNOWN_VALUE))
     some = ({**values, **dict(zip(unknown, known))} for known in product((0, 1), repeat=len(unknown)))
-    return whatever(_holds(condition, scenario, locations, each) for each in some)
+    known = tuple(some)
+    starts = [each for each in scenario.agents if locations.get(each.name) == names.SOMEWHERE]
+    return all(
+        whatever(_holds(condition, scenario, {**locations, **there}, each) for each in known)
+        for there in (
+            dict(zip((each.name for each in starts), (ref.name for ref in places)))
+            for places in product(*(each.starts for each in starts))
+        )
+    )
 
 
 def _holds(condition: Condition, scenario: Scenario, locations: Mapping[str, str], values: Mapping[str, int]) -> bool:

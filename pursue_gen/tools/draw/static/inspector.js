@@ -124,6 +124,7 @@ function event(thing) {
     field("field-location", "happens", thing.location, set(thing, "location"), { options: [["", "anywhere"], ...places()] }),
     field("field-duration", "duration (3, 3 to 5, or 30 s to 1 min; empty: none)", thing.duration, set(thing, "duration"), { spellcheck: "false" }),
     tick("field-may_stop", "may be broken off before it ends", thing.may_stop, set(thing, "may_stop")),
+    field("field-parts", "in so many parts, which stay done", thing.parts, set(thing, "parts"), { inputmode: "numeric" }),
     ...["takes", "gives", "mounts", "needs"].filter(() => things.length).map((word) => field(`field-${word}`, word, thing[word], set(thing, word), { options: [["", "nothing"], ...[...new Set([...things, thing[word]])].filter(Boolean).map((one) => [one, one])] })),
     field("field-at_most", "at most so many times", thing.at_most, set(thing, "at_most"), { inputmode: "numeric" }),
     tick("field-collaborative", "needs a partner who reacts", thing.collaborative, set(thing, "collaborative")),
