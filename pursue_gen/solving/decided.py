@@ -13,6 +13,7 @@ from pursue_gen.solving.lost_promises import promises
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.policies import won_by_policy
 from pursue_gen.solving.shares import can_be_shared, won_in_shares
+from pursue_gen.solving.tours_beside import won_beside_tours
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.strategy import Strategy
@@ -32,9 +33,10 @@ def strategy_of(
     if not objective.reaches and len(promises(objective)) > 1:
         several, how = can_be_shared(network, objective), (network, objective, reaction)
         limits = budget.part(shared if several else _GUESSED)
-        if several:
+        found = won_beside_tours(*how, SolveOptions(limits))
+        if found is None and several:
             found = won_in_shares(*how, SolveOptions(limits), EFFORTS[:2])
-        else:
+        elif found is None:
             found = won_by_policy(*how, limits.work, SolveOptions(limits))
         budget.spend(limits.work if found is None else min(limits.work, found.stats.work))
         if found is not None:

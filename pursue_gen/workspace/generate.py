@@ -42,6 +42,7 @@ from pursue_gen.workspace.packages import (
 )
 from pursue_gen.workspace.poses_text import poses_text
 from pursue_gen.workspace.spots import placing
+from pursue_runtime.bounded import DATA
 from pursue_runtime.manifest import MISSION, Manifest, make_manifest, mission_file
 
 _UI = "UI"
@@ -91,6 +92,7 @@ def generate(
     poses_of = {controller: poses_text(scenario, where, robots, options.spare) for controller, robots in sent.items()}
     packages = _with_mission(_packages(scenario, subs, data, poses_of, options), scenario)
     _check_packages(packages)
+    _check_sizes(packages)
     for package in packages:
         for path, content in files_of(package, values, jinja, templates).items():
             files[f"src/{package.name}/{path}"] = content
@@ -156,6 +158,16 @@ def _check_packages(packages: Sequence[Package]) -> None:
     if twice:
         message = f"two packages would have the same name: {', '.join(twice)}"
         raise Invalid([error("WSP006", message, hint="rename the robot, or the .pur file")])
+
+
+def _check_sizes(packages: Sequence[Package]) -> None:
+    """What nodes would not read is not written."""
+    for package in packages:
+        for path, content in package.data.items():
+            if path.startswith("config/") and len(content) > DATA.size:
+                megabytes = f"{len(content) >> 20} MiB; nodes read {DATA.size >> 20} MiB at most"
+                hint = "ask for less at once: a patrol by some robots in place of any robot, fewer places or robots"
+                raise Invalid([error("WSP009", f"src/{package.name}/{path} would have {megabytes}", hint=hint)])
 
 
 def _packages(

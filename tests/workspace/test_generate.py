@@ -31,6 +31,7 @@ from pursue_gen.workspace.packages import RECEIVING, RUNTIME, SHARED
 from pursue_gen.workspace.poses_text import poses_text
 from pursue_gen.workspace.spots import placing
 from pursue_runtime import bundle
+from pursue_runtime.bounded import DATA
 from pursue_runtime.event_words import MARKERS
 from pursue_runtime.poses import read_poses
 from pursue_runtime.ui.promise import read_promise
@@ -525,3 +526,10 @@ def test_the_readme_names_what_is_there(generated: Dict[str, bytes]) -> None:
 def test_scenarios_of_the_project_can_all_be_packages() -> None:
     for path in sorted(SCENARIOS.rglob("*.pur")):
         assert re.fullmatch("[a-z][a-z0-9_]*", load(str(path)).name), path
+
+
+def test_what_nodes_would_not_read_is_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys.modules["pursue_gen.workspace.generate"], "DATA", DATA._replace(size=500))
+    with pytest.raises(PursueError, match="nodes read 0 MiB at most") as refused:
+        made("thesis/scenario_1")
+    assert refused.value.diagnostics[0].code == "WSP009"

@@ -208,14 +208,21 @@ class _Writer:
             if len(nodes) > 1 and len(self._robots) > 1:
                 places = ", ".join(self._places[node] for node in nodes)
                 lines.append(f"objective: always at_most 1 robots at {places} // one in lift {name}")
-        reached: Set[Node] = set().union(*self._reached.values())
-        visited = [
-            self._places[stop.node]
-            for stop in self._stops
-            if stop.vertex.name and stop.node in reached and not any(map(stop.vertex.properties.get, _NO_VISITS))
-        ]
-        some = visited or [self._places[robot.node] for robot in self._robots]
-        return [*lines, f"objective: patrol {', '.join(dict.fromkeys(some))} by any robot"]
+        patrols: Dict[FrozenSet[str], List[str]] = {}
+        for stop in self._stops:
+            able = frozenset(name for name, reached in self._reached.items() if stop.node in reached)
+            if stop.vertex.name and able and not any(map(stop.vertex.properties.get, _NO_VISITS)):
+                patrols.setdefault(able, []).append(self._places[stop.node])
+        if not patrols:  # what is asked of a place has to stand somewhere
+            patrols = {frozenset({robot.name}): [self._places[robot.node]] for robot in self._robots[:1]}
+        return lines + [f"objective: patrol {', '.join(some)} by {self._by(who)}" for who, some in patrols.items()]
+
+    def _by(self, some: FrozenSet[str]) -> str:
+        """Any of these robots."""
+        if len(some) == len(self._robots):
+            return "any robot"
+        group = self._groups.get(some)
+        return f"any of {group}" if group else " or ".join(self._agents_of(some))
 
 
 def _told_apart(titles: Mapping[Node, str]) -> Iterator[Tuple[Node, str]]:
