@@ -98,7 +98,7 @@ def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAU
     limits = replace(limits, seconds=limits.left * _SEARCH, spent=0.0)
     budget = Budget(limits, options.progress, options.engine, whole=options.whole)
     patrols = base.with_each(lambda each: each if each in without_period(base) else None)
-    tours = None if options.whole else _of_tours(patrols, rules)
+    tours = None if options.whole or base.reach else _of_tours(patrols, rules)  # a goal ends all patrols
     alone = len(patrols.objectives) == len(base.objectives)
     # Nothing below `low` is won; `high` is, where it is `known`.
     low, high = (2, longest(scenario)) if tours is None else tours

@@ -235,3 +235,10 @@ def test_beside_another_promise_the_period_is_about_what_tours_keep() -> None:
     assert period(least_period(parse(LIFT, "lift.pur", "lift"), DEFAULT)) <= 150
     alone = parse(LIFT.replace("objective: always at_most 1 robots at cabin1, cabin2\n", ""), "lift.pur", "lift")
     assert period(least_period(alone, DEFAULT)) <= period(least_period(parse(LIFT, "lift.pur", "lift"), DEFAULT))
+
+
+def test_a_patrol_that_ends_with_the_goal_may_be_shorter_than_any_tour() -> None:
+    text = LIFT.replace("objective: always at_most 1 robots at cabin1, cabin2", 'event "wave" location hall')
+    text = text.replace("speed 0.5 location hall", "speed 0.5 location hall can_do wave")
+    found = least_period(parse(f"{text}reach_objective: do wave\n", "lift.pur", "lift"), DEFAULT)
+    assert period(found) == 2 and is_won(found.text)
