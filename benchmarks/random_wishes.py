@@ -103,6 +103,7 @@ _FORMS: Tuple[str, ...] = (
     "assume: {caller} waits {t10} between {called} and {also_called}",
     "assume: at_most 2 of {called}, {also_called} in all",
     "assume: {person} leaves {room} within {t10}",
+    "assume: {caller} does {called} every {t4} to {t30}",
     "assume: {person} stays {t4} to {t30} at each place",
     "assume: {person} at {room} by {t80}",
     "assume: {person} reaches {room} within {t30} after {done}",

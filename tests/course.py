@@ -21,6 +21,7 @@ from pursue_gen.language.scenario import (
     AtMost,
     Connection,
     Event,
+    Every,
     InAll,
     Leaves,
     NeverAt,
@@ -425,6 +426,9 @@ class Course:
             if isinstance(each, Waits) and (each.agent.name, (each.then or each.event).name) == (agent, name):
                 ends = [end for _, end in self.done.get((agent, each.event.name), ())]
                 assert self.now - max(ends, default=NEVER) >= each.time - 1e-9, "it is assumed to wait longer"
+            if isinstance(each, Every) and (each.agent.name, each.event.name) == (agent, name):
+                last = max((begun for begun, _ in self.done.get((agent, name), ())), default=0.0)
+                assert each.least - 1e-9 <= self.now - last <= each.most + 1e-9, "it is assumed to come so often"
             if isinstance(each, NotBefore) and (each.agent.name, each.event.name) == (agent, name):
                 assert self.now > each.time - 1e-9, "it is assumed to begin later"
         for pause in (each for each in self.scenario.safety if isinstance(each, Pause)):

@@ -170,6 +170,7 @@ def _assumptions(draw: st.DrawFn, place: object) -> List[str]:
         "at_most": f"assume: guest does call at_most {draw(st.integers(0, 2))} times",
         "in_all": f"assume: at_most {draw(st.integers(0, 3))} of call in all",
         "after": f"assume: guest does call after {draw(st.integers(1, 30))}",
+        "every": f"assume: guest does call every {draw(st.integers(0, 4))} to {draw(st.integers(4, 20))}",
         "waits": f"assume: guest waits {draw(st.integers(1, 9))} between call",
         "leaves": f"assume: guest leaves {place()} within {draw(st.integers(4, 20))}",  # type: ignore[operator]
         "stays": f"assume: guest stays {draw(st.integers(0, 4))} to {draw(st.integers(4, 20))} at each place",

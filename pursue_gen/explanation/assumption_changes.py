@@ -12,6 +12,9 @@ from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.times import written_time
 
+_CONTRADICTIONS = ("PML264", "PML442")
+"""Findings about two assumptions of which one may keep an agent from what the other one says that it does."""
+
 
 def assumption_changes(scenario: Scenario, longest: Number) -> Iterator[Repair]:
     """Assumptions with another number, and those that may be missing; times are up to `longest` time units."""
@@ -25,7 +28,15 @@ def assumption_changes(scenario: Scenario, longest: Number) -> Iterator[Repair]:
     for kind in KINDS.values():
         for one, values in kind.missing(setting, longest):
             with_it = replace(scenario, assumptions=(*scenario.assumptions, one))
-            yield _change(with_it, one, values, one.subject)
+            if not _contradicts(with_it):
+                yield _change(with_it, one, values, one.subject)
+
+
+def _contradicts(scenario: Scenario) -> bool:
+    """True if one of its assumptions leaves no room for another one."""
+    setting = setting_of(scenario)
+    found = (finding for each in scenario.assumptions for finding in each.check_in(setting))
+    return any(finding.code in _CONTRADICTIONS for finding in found)
 
 
 def _change(

@@ -26,10 +26,13 @@ def setting_of(scenario: Scenario) -> Setting:
         ways = (way for connection in scenario.ways_of(agent) for way in connection.directions)
         return {end for start, end in ways if start == place}
 
+    ruled = {ref.name for rule in scenario.rules for ref in rule.events}
+    ruled.update(dependency.event.name for dependency in scenario.dependencies)
     return Setting(
-        scenario.agents, scenario.events, scenario.states, scenario.safety, scenario.assumptions,
+        scenario.agents, scenario.events, scenario.states, scenario.safety, scenario.assumed,
         lambda place, agent: destinations_from(scenario, place, agent), next_to,
         lambda agent: open_ways(scenario, agent), at_start, lambda agent: _longest(scenario, agent), scenario.rest,
+        ruled,
     )  # fmt: skip
 
 

@@ -6,6 +6,7 @@ from pursue_gen.language.scenario import (
     Assumption,
     AtMost,
     Event,
+    Every,
     InAll,
     MostOpen,
     NotBefore,
@@ -44,6 +45,8 @@ def _allows(assumption: Assumption, objective: Respond) -> bool:
     name = getattr(objective.trigger, "name", "")
     if isinstance(assumption, Waits):
         return assumption.following.name != name or assumption.time < objective.deadline
+    if isinstance(assumption, Every):
+        return assumption.event.name != name or assumption.least < objective.deadline
     if isinstance(assumption, (AtMost, InAll)):
         return assumption.times > 1 or all(ref.name != name for _, ref in assumption.names())
     if isinstance(assumption, MostOpen):

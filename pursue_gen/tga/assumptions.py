@@ -18,6 +18,7 @@ from pursue_gen.language.scenario import (
     Assumption,
     AtMost,
     Departure,
+    Every,
     InAll,
     Leaves,
     MostOpen,
@@ -172,6 +173,26 @@ def _waits(automaton: Automaton, number: int, assumption: Waits, scenario: Scena
     return automaton.with_each(edges)
 
 
+def _every(automaton: Automaton, number: int, assumption: Every, scenario: Scenario, *_: object) -> Automaton:
+    """An invariant everywhere; what else it does begins only where it can do the event in time afterwards."""
+    clock = names.assumption_clock(number)
+    latest, earliest = ClockBound(clock, "<=", exact(assumption.most)), ClockBound(clock, ">=", exact(assumption.least))
+    pois = {each.name for each in automaton.locations if role_of(each.name) is Role.AT}
+
+    def edges(edge: Edge) -> List[Edge]:
+        if edge.sent == assumption.event.name:
+            again = edge.plus(resets=(clock,))
+            return [again.plus(bounds=(earliest,)), _when_broken(again, number)]
+        if edge.is_end:
+            return [edge]
+        lasts = 0 if edge.target in pois else automaton.longest.get(edge.target, 0)
+        in_time = edge.plus(bounds=(ClockBound(clock, "<", exact(assumption.most - scenario.rest - lasts)),))
+        return [in_time, _when_broken(edge, number)]
+
+    bounded = automaton.with_locations(lambda location: replace(location, invariant=(*location.invariant, latest)))
+    return bounded.with_each(edges)
+
+
 def _departs(automaton: Automaton, number: int, assumption: Departure, scenario: Scenario, *_: object) -> Automaton:
     """An invariant where it stands; what it does there begins only where it can set off in time afterwards."""
     clock, (least, most) = names.assumption_clock(number), assumption.window
@@ -270,6 +291,7 @@ _KEPT: Mapping[Type[Assumption], Callable[[Automaton, int, Any, Scenario, Condit
     InAll: _at_most,
     NotBefore: _not_before,
     Waits: _waits,
+    Every: _every,
     Leaves: _departs,
     Stays: _departs,
     Reaches: _reaches,

@@ -137,7 +137,7 @@ SLIPS = [
     ("objective: patrol a, b order every 5 by c", "PML010", 24, "expected `,`, `in`", "in order and every are"),
     ("objective: patrol a, b every 5 in order by c", "PML010", 32, "expected `by`", "b in order every 60"),
     ("objective: patrol every 5 by b", "PML010", 25, "`5`", "the form is"),
-    ("assume: a does b", "PML010", 17, "expected `at_most` or `after` after `b`", "guest does call at_most 2 times"),
+    ("assume: a does b", "PML010", 17, "expected `at_most`, `every` or `after`", "guest does call at_most 2 times"),
     ("assume: a does b at_most twice", "PML010", 26, "expected a number after `at_most`", "at_most 2 times"),
     ("assume: a waits 5 b", "PML010", 19, "expected `between` after `5`", "waits 5 between call"),
     ("assume: a leaves b", "PML010", 19, "expected `within` after `b`", "leaves hall within 30"),

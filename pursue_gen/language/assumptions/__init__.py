@@ -6,6 +6,7 @@ from typing import Mapping, Type
 
 from pursue_gen.language.assumptions.at_most import AtMost
 from pursue_gen.language.assumptions.base import AboutOne, Assumption, Departure
+from pursue_gen.language.assumptions.every import Every
 from pursue_gen.language.assumptions.in_all import InAll
 from pursue_gen.language.assumptions.leaves import Leaves
 from pursue_gen.language.assumptions.most_open import MostOpen
@@ -18,7 +19,7 @@ from pursue_gen.language.assumptions.there_by import ThereBy
 from pursue_gen.language.assumptions.waits import Waits
 
 __all__ = [
-    "AboutOne", "Assumption", "AtMost", "Departure", "InAll", "Leaves", "MostOpen", "NeverAt", "NeverHolds",
+    "AboutOne", "Assumption", "AtMost", "Departure", "Every", "InAll", "Leaves", "MostOpen", "NeverAt", "NeverHolds",
     "NotBefore", "Reaches", "Stays", "ThereBy", "Waits",
 ]  # fmt: skip
 """Parts of scenarios: `language.scenario` hands them on."""
@@ -26,6 +27,7 @@ __all__ = [
 KINDS: Mapping[str, Type[Assumption]] = {
     "at_most": AtMost, "not_before": NotBefore, "waits": Waits, "leaves": Leaves, "stays": Stays,
     "reaches": Reaches, "there_by": ThereBy, "never_at": NeverAt, "never_holds": NeverHolds, "in_all": InAll,
+    "every_so_often": Every,
 }  # fmt: skip
 """The kinds of assumptions, by their rules in the grammar; `MostOpen` stands behind an objective."""
 

@@ -47,6 +47,7 @@ class Setting(NamedTuple):
     at_start: Callable[[Condition], bool]  # whether a condition holds at the start
     longest: Callable[[Agent], Mapping[str, Number]]  # by place the longest time of what leads it there, or ends there
     rest: Number  # so many time units agents rest between two steps
+    ruled: AbstractSet[str]  # the events that rules and dependencies are about
 
     @property
     def shortest_stay(self) -> Number:

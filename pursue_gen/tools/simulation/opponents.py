@@ -102,23 +102,25 @@ class Opponent:
         return obliged if obliged is not None and obliged.delay < chosen.delay else chosen
 
     def _obliged(self, able: List[Option], state: State, point: Tuple[float, ...]) -> Optional[OpponentMove]:
-        """How the one goes away that must leave its place first, as is assumed of it; None where nobody must."""
+        """What the one does that must leave its place first, or do something again, as is assumed of it; None where
+        nobody must."""
         network, clock = self._stage.arena.network, self._stage.arena.clock
-        latest: List[Tuple[float, str]] = []
+        latest: List[Tuple[float, str, str]] = []
         under_way = {each.name for each, here in zip(network.automata, state[0]) if role_of(here) in UNDER_WAY}
         for automaton, here in zip(network.automata, state[0]):
             agent = who_awaited(automaton.name, self._stage.scenario) or automaton.name
             if agent in self._stage.opponents and agent not in under_way:
                 bounds = next(place.invariant for place in automaton.locations if place.name == here)
-                latest += [(bound.bound - point[clock[bound.clock]], agent) for bound in bounds]
+                latest += [(bound.bound - point[clock[bound.clock]], agent, bound.clock) for bound in bounds]
         if not latest:
             return None
-        moment, agent = min(latest)
-        leaving = [o for o in able if o.agent == agent and o.move.moves[0].edge.enters is Role.WAY]
-        leaving = [option for option in leaving if option.first <= moment + EPSILON]
-        if not leaving:
+        moment, agent, since = min(latest)
+        edges = ((option, option.move.moves[0].edge) for option in able if option.agent == agent)
+        ending = [option for option, edge in edges if edge.enters is Role.WAY or since in edge.resets]
+        ending = [option for option in ending if option.first <= moment + EPSILON]
+        if not ending:
             return None
-        option = self._draw.choice(leaving)
+        option = self._draw.choice(ending)
         return self._deed(option, max(option.first, min(option.last, moment)))
 
     def _any(self, able: List[Option]) -> OpponentMove:

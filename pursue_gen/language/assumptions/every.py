@@ -1,0 +1,109 @@
+"""`assume: agent does event every T to T`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil
+from typing import ClassVar, Optional, Sequence, Tuple
+
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
+from pursue_gen.language.assumptions.base import SHORTEST_STAY, AboutOne, Assumption, Setting
+from pursue_gen.language.numbers import Number, whole_below
+from pursue_gen.language.refs import Ref
+from pursue_gen.language.statements.agent import Agent
+from pursue_gen.language.statements.event import Event
+from pursue_gen.language.template import Template
+from pursue_gen.language.times import Time, like, time_units, window_text, written_time
+from pursue_gen.language.word import Form, Numbers
+
+
+@dataclass(frozen=True)
+class Every(AboutOne):
+    """`assume: agent does event every least to most`: between these time units after the start, and after each time, it
+    does the event.
+
+    Nothing may keep the agent from that, else time could not go on: so the event is free of all conditions.
+    """
+
+    agent: Ref
+    event: Ref
+    least: Number
+    most: Number
+    span: Span = NOWHERE
+    template: ClassVar[Template] = Template("{agent=belt} does {event=bring} every {least:time=20} to {most:time=30}")
+    forms: ClassVar[Tuple[Form, ...]] = (Form("how often something happens", template.to_fill_in),)
+    numbers: ClassVar[Numbers] = {
+        "every": "It happens {} after the start, or after the last time, or later.".format,
+        "to": "It has happened {} after the start, or after the last time.".format,
+    }
+    number: ClassVar[str] = "most"
+    nearest: ClassVar[int] = SHORTEST_STAY
+    in_rests: ClassVar[bool] = True
+
+    @property
+    def subject(self) -> str:
+        return f"assume: {self.template.written(self, least='…', most='…')}"
+
+    @property
+    def clause(self) -> str:
+        least = units(self.least) if isinstance(self.least, Time) else self.least
+        return f"{self.agent.shown} does {self.event.shown} every {least} to {units(self.most)}"
+
+    @property
+    def since(self) -> str:
+        return f"{self.agent.shown}'s last {self.event.shown}"
+
+    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+        if self.most < setting.shortest_stay:
+            message = f"to {written_time(self.most)} is too short"
+            message += f": agents rest for {time_units(like(setting.rest, self.most))} between two steps"
+            enough = written_time(like(setting.shortest_stay, self.most))
+            return error("PML251", message, self.span, f"write to {enough} or more")
+        if self.most < self.least:
+            message = f"every {window_text(self.least, self.most)}: the second number is smaller than the first one"
+            return error("PML200", message, self.span, f"write every {window_text(self.most, self.least)}")
+        event = next(each for each in setting.events if each.name == self.event.name)
+        why = self._hindered(agent, event, setting)
+        if why:
+            message = f"{agent.name} may be kept from {event.name}, and is assumed to do it in time: {why}"
+            return error("PML442", message, self.span, "assume waits, or leave out what keeps it from that")
+        return None
+
+    def _hindered(self, agent: Agent, event: Event, setting: Setting) -> str:
+        """Why the agent may be unable to do the event in time; "": it never is."""
+        others = (each for each in setting.assumptions if each is not self and self._is_touched_by(each, setting))
+        other = next(others, None)
+        reasons = (
+            (all(ref.name != event.name for ref in agent.can_do), f"it cannot do {event.name}"),
+            (bool(agent.reacts_to), "it takes part in what others do"),
+            (event.duration is not None, f"{event.name} has a duration"),
+            (event.collaborative, f"{event.name} takes two"),
+            (not self._is_where(agent, event), f"it is not always where {event.name} happens"),
+            (bool(event.only_if or event.at_most), f"{event.name} is not always allowed"),
+            (event.name in setting.ruled, f"{event.name} is not always allowed"),
+            (any((event.takes, event.gives, event.mounts, event.needs)), f"{event.name} is about a thing"),
+            (other is not None, f"{other.span.in_words if other else ''} assumes something of that, too"),
+        )
+        return next((reason for holds, reason in reasons if holds), "")
+
+    @staticmethod
+    def _is_where(agent: Agent, event: Event) -> bool:
+        """True if the agent is always at a place at which it can do the event."""
+        only = event.location
+        return only is None or (agent.mobile is None and all(ref.name == only.name for ref in agent.starts))
+
+    def _is_touched_by(self, other: Assumption, setting: Setting) -> bool:
+        """True if the other one is about the same agent or event, or about a state that the event sets."""
+        changed = {
+            state.name
+            for state in setting.states
+            if self.event.name in {ref.name for ref in (*state.true_if, *state.false_if)}
+        }
+        named = set(other.names())
+        return other.is_about(self.agent.name) or any(
+            (kind, ref.name) == ("event", self.event.name) or (kind == "state" and ref.name in changed)
+            for kind, ref in named
+        )
+
+    def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
+        return whole_below(self.most, max(1, ceil(shortest_stay), ceil(self.least)))
