@@ -187,7 +187,7 @@ def _why_it_may_stop_time(
     """Why time may have to stop because of an automaton that nobody commands.
 
     At the end of each stay the environment must be able to lead it away, whatever the variables are; and every stay but
-    the first may last a time unit, so that these moves leave time its way. Each stay begins with its clocks at 0, but
+    the first may last some time, so that these moves leave time its way. Each stay begins with its clocks at 0, but
     one at the network's start may not. `places`: where it may be.
     """
     stays = automaton.stays
@@ -209,7 +209,7 @@ def _why_it_may_stop_time(
             return f"may come to {name} without time to stay"
         if any(bound.op == "<" for bound in stays[name]):
             return f"has no last instant in {name}"
-        if any(bound.bound < 1 for bound in stays[name]):
+        if any(bound.bound <= 0 for bound in stays[name]):
             return f"has no time to stay in {name}"
         ways = [edge for edge in automaton.edges if edge.source == name != edge.target and _is_free(edge)]
         if stay is not None and (name != automaton.initial or not network.start):

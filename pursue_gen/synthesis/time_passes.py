@@ -11,7 +11,8 @@ def lets_time_pass(automaton: Automaton, network: Network) -> bool:
     """True if the environment can let time pass for ever, wherever the automaton has come to without commands.
 
     At each bound of an invariant there is an edge of the environment that leads away whatever the variables are, and
-    each new stay may last a time unit: the clock of the bound is reset on all ways into it.
+    each new stay may last some time: the clock of the bound is reset on all ways into it. (There are finitely many
+    bounds, so time goes on for ever.)
     """
     here = automaton.stays.get(automaton.initial, ())
     if here and network.start and not (
@@ -38,14 +39,14 @@ def _reached(automaton: Automaton, network: Network) -> Set[str]:
 
 def may_be_left(automaton: Automaton, location: str, network: Network, from_start: bool = False) -> bool:
     """True if the environment can lead the automaton away at the bound of that location, whatever the variables are,
-    and each new stay there may last a time unit; `from_start`: also where it has been there from the network's start,
+    and each new stay there may last some time; `from_start`: also where it has been there from the network's start,
     at which clocks may differ. Requires that the location has a bound."""
     assert location in automaton.stays
     if len(automaton.stays[location]) != 1:
         return False
     (bound,) = automaton.stays[location]
     entering = (edge for edge in automaton.edges if edge.target == location != edge.source)
-    if bound.op != "<=" or bound.bound < 1 or not all(bound.clock in edge.resets for edge in entering):
+    if bound.op != "<=" or bound.bound <= 0 or not all(bound.clock in edge.resets for edge in entering):
         return False
     return any(
         edge.source == location != edge.target

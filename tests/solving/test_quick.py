@@ -12,12 +12,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
-from pursue_gen.language import load
+from pursue_gen.language import load, parse
 from pursue_gen.proof.checker import verify
 from pursue_gen.solving import quick as quick_module
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.quick import quick, within
-from pursue_gen.solving.rules import Rules
+from pursue_gen.solving.rules import DEFAULT, IDEAL, Rules
 from pursue_gen.solving.solution import guaranteed, solution
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import Limits
@@ -183,3 +183,32 @@ def test_solve_and_ws_tell_the_same(tmp_path: Path) -> None:
     for begin in ("Time to the goal:", "Margin:"):
         told = [line for text in (first.err, second.err) for line in text.splitlines() if line.startswith(begin)]
         assert len(told) == 2 and told[0] == told[1]
+
+
+@pytest.mark.parametrize(
+    "rest, stays", [("", "mobile 3 location hall or room2"), ("rest 0.4\n", "location hall can_do blink")]
+)
+def test_a_quicker_strategy_wins_the_game_itself_too_where_others_stay_for_less_than_a_time_unit(
+    rest: str, stays: str
+) -> None:
+    """It is proven in a game whose times are multiples of a smaller unit."""
+    text = f"""\
+{rest}poi "hall"
+poi "room1"
+poi "room2"
+connect hall and room1 distance 2
+connect hall and room2 distance 1
+event "call"
+event "blink" duration 0.3 to 0.5
+event "answer" location room1 duration 3
+agent "bot" controllable mobile 2 location room2 can_do answer
+agent "child" {stays}
+agent "guest" location room1 can_do call
+assume: guest does call at_most 1 times
+objective: if call then answer within 29
+reach_objective: do answer twice at_least 5 apart
+"""
+    scenario = parse(text, "x.pur")
+    for rules in (IDEAL, DEFAULT):
+        won = solved(translate(scenario), scenario_objective(scenario), rules)
+        assert verify(won.network, won.objective, won.strategy, won.reaction).ok
