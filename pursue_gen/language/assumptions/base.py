@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import ceil
 from typing import (
     AbstractSet,
     Any,
@@ -18,16 +19,16 @@ from typing import (
     Tuple,
 )
 
-from pursue_gen.diagnostics import Diagnostic, Span, error, warning
+from pursue_gen.diagnostics import Diagnostic, Span, error, units, warning
 from pursue_gen.language.conditions import Condition
-from pursue_gen.language.numbers import Number, exact, whole_above
+from pursue_gen.language.numbers import Number, exact, whole_above, whole_below
 from pursue_gen.language.objectives import Safety
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.statements.base import Written
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.statements.state import State
-from pursue_gen.language.times import like
+from pursue_gen.language.times import Time, like, window_text, written_time
 
 SHORTEST_STAY = 2
 """Rests: an agent rests once before it may set off, and needs some time to do so."""
@@ -256,6 +257,41 @@ def latest_to(
                 pending[a] = max(moment, pending.get(a, moment))
     del found[place]
     return found
+
+
+class Between(AboutOne):
+    """An assumption that an agent does something so many time units after something at the earliest, and so many at the
+    latest."""
+
+    least: Number
+    most: Number
+    number: ClassVar[str] = "most"
+    nearest: ClassVar[int] = SHORTEST_STAY
+    in_rests: ClassVar[bool] = True
+
+    @property
+    def subject(self) -> str:
+        return f"assume: {self.template.written(self, least='…', most='…')}"
+
+    @property
+    def least_to_most(self) -> str:
+        """Both times, in words."""
+        least = units(self.least) if isinstance(self.least, Time) else self.least
+        return f"{least} to {units(self.most)}"
+
+    def ill_timed(self, word: str, why: str, setting: Setting) -> Optional[Diagnostic]:
+        """An error where no time is left between the two numbers behind the word, or the second one is too short."""
+        if self.most < setting.shortest_stay:
+            message = f"to {written_time(self.most)} is too short: {why}"
+            enough = written_time(like(setting.shortest_stay, self.most))
+            return error("PML251", message, self.span, f"write to {enough} or more")
+        if self.most < self.least:
+            message = f"{word} {window_text(self.least, self.most)}: the second number is smaller than the first one"
+            return error("PML200", message, self.span, f"write {word} {window_text(self.most, self.least)}")
+        return None
+
+    def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
+        return whole_below(self.most, max(1, ceil(shortest_stay), ceil(self.least)))
 
 
 class NotSooner(AboutOne):

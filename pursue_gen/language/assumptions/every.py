@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import ceil
-from typing import ClassVar, Optional, Sequence, Tuple
+from typing import ClassVar, Optional, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
-from pursue_gen.language.assumptions.base import SHORTEST_STAY, AboutOne, Assumption, Setting
-from pursue_gen.language.numbers import Number, whole_below
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
+from pursue_gen.language.assumptions.base import Assumption, Between, Setting
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.template import Template
-from pursue_gen.language.times import Time, like, time_units, window_text, written_time
+from pursue_gen.language.times import like, time_units
 from pursue_gen.language.word import Form, Numbers
 
 
 @dataclass(frozen=True)
-class Every(AboutOne):
+class Every(Between):
     """`assume: agent does event every least to most`: between these time units after the start, and after each time, it
     does the event.
 
@@ -36,32 +35,20 @@ class Every(AboutOne):
         "every": "It happens {} after the start, or after the last time, or later.".format,
         "to": "It has happened {} after the start, or after the last time.".format,
     }
-    number: ClassVar[str] = "most"
-    nearest: ClassVar[int] = SHORTEST_STAY
-    in_rests: ClassVar[bool] = True
-
-    @property
-    def subject(self) -> str:
-        return f"assume: {self.template.written(self, least='…', most='…')}"
 
     @property
     def clause(self) -> str:
-        least = units(self.least) if isinstance(self.least, Time) else self.least
-        return f"{self.agent.shown} does {self.event.shown} every {least} to {units(self.most)}"
+        return f"{self.agent.shown} does {self.event.shown} every {self.least_to_most}"
 
     @property
     def since(self) -> str:
         return f"{self.agent.shown}'s last {self.event.shown}"
 
     def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
-        if self.most < setting.shortest_stay:
-            message = f"to {written_time(self.most)} is too short"
-            message += f": agents rest for {time_units(like(setting.rest, self.most))} between two steps"
-            enough = written_time(like(setting.shortest_stay, self.most))
-            return error("PML251", message, self.span, f"write to {enough} or more")
-        if self.most < self.least:
-            message = f"every {window_text(self.least, self.most)}: the second number is smaller than the first one"
-            return error("PML200", message, self.span, f"write every {window_text(self.most, self.least)}")
+        rest = time_units(like(setting.rest, self.most))
+        found = self.ill_timed("every", f"agents rest for {rest} between two steps", setting)
+        if found is not None:
+            return found
         event = next(each for each in setting.events if each.name == self.event.name)
         why = self._hindered(agent, event, setting)
         if why:
@@ -104,6 +91,3 @@ class Every(AboutOne):
             (kind, ref.name) == ("event", self.event.name) or (kind == "state" and ref.name in changed)
             for kind, ref in named
         )
-
-    def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
-        return whole_below(self.most, max(1, ceil(shortest_stay), ceil(self.least)))
