@@ -16,7 +16,7 @@ syntax keyword pursueKeyword initially is label lasts leaves location may_stop m
 syntax keyword pursueKeyword never_with no none not of on_way one_way only_if open or order parts patrol per place
 syntax keyword pursueKeyword radius reaches reacts_to recharges robot robots second seen_at shown_by speed stays takes
 syntax keyword pursueKeyword then times to together tolerance true_if twice two unknown uses waits way when within
-syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*\%([ \t]\+\%(s\|min\|h\)\>\%([ \t]\+\d[0-9.]*[ \t]\+\%(s\|min\|h\)\>\)*\)\?"
+syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*\%([ \t]\+\%(s\|min\|h\|c\?m\)\>\%([ \t]\+\d[0-9.]*[ \t]\+\%(s\|min\|h\|c\?m\)\>\)*\)\?"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"
 syntax keyword pursueTodo TODO FIXME contained

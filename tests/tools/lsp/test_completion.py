@@ -244,7 +244,7 @@ def test_after_every_prefix_of_a_scenario_what_comes_next_is_offered(name: str, 
     same = [item for item in offered if item.token == token.type]
     assert same, f"{token!r} behind {text[max(0, at - 40) : at]!r}"
     if token.type == "WORD":
-        assert str(token) in [item.label for item in same]
+        assert str(token) in [item.label.partition(" of ")[0] for item in same]  # or all of a family: look of rooms
 
 
 @given(st.sampled_from(sorted(SCENARIOS)), st.data())

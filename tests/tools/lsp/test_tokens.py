@@ -35,7 +35,7 @@ def parsed(scenario: Scenario) -> Set[Tuple[str, int, int, bool]]:
             for field in value.__dataclass_fields__:
                 visit(getattr(value, field))
 
-    for parts in (scenario.pois, scenario.events, scenario.rules, scenario.states, scenario.agents):
+    for parts in (scenario.pois, scenario.events, scenario.rules, scenario.states, scenario.agents, scenario.things):
         for part in parts:  # type: ignore[attr-defined]
             found.add((part.name, part.span.line, part.span.column + 1, True))
     visit(scenario)
