@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, 
 
 import typer
 
+from pursue_gen.diagnostics import usage_error
+
 if TYPE_CHECKING:
     from pursue_gen.solving.request import SolveRequest
 
@@ -233,3 +235,21 @@ def _request(values: Dict[str, Any]) -> SolveRequest:
     from pursue_gen import api
 
     return api.request(seconds=values.pop("limit", None), **values)
+
+
+def speeds_of(texts: Sequence[str], robots: Sequence[str]) -> Dict[str, float]:
+    """The speed of each robot for which there is one, in metres per second; one of its own goes before that of all.
+
+    Raises PursueError.
+    """
+    found: Dict[str, float] = {}
+    for text in sorted(texts, key=lambda one: "=" in one):
+        name, _, number = text.rpartition("=")
+        try:
+            value = float(number)
+        except ValueError:
+            value = math.nan
+        if not 0.001 <= value <= 1000:
+            raise usage_error(f"--speed {text} is no speed", "expected metres per second, such as bot1=0.4")
+        found.update({robot: value for robot in ([name] if name else robots)})
+    return found

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Dict, Iterable, List, Optional, Tuple
+from typing import TYPE_CHECKING, Iterable, List, Optional, Tuple
 
 import typer
 
 from pursue_gen.cli.console import ended, guarded, info, show, suggest
-from pursue_gen.cli.options import ROBOT, SCENARIO
+from pursue_gen.cli.options import ROBOT, SCENARIO, speeds_of
 from pursue_gen.diagnostics import as_json, error, usage_error
 from pursue_gen.files import check_new, shell_quoted, write_bytes
 from pursue_gen.outcomes import Invalid, Unavailable
@@ -137,7 +136,7 @@ def _surveyed(given: _Given, options: Options) -> Tuple[Scenario, bytes, Survey,
     if options.unit != 1 and scenario.in_metres:
         raise usage_error(f"--unit is {options.unit:g}, and distances are metres", "leave it out")
     unit = _time_unit(options.drive.time_unit, scenario)
-    drive = replace(options.drive, speeds=_speeds(given.speed, robots), time_unit=unit)
+    drive = replace(options.drive, speeds=speeds_of(given.speed, robots), time_unit=unit)
     sizes = sizes_of(scenario).with_radius(given.radius)
     ground = read_ground(given.floor, whole=True)
     found = surveyed(scenario, ground, given.floor.name, replace(options, robots=sizes, drive=drive), given.copy)
@@ -188,18 +187,3 @@ def _time_unit(asked: float, scenario: Scenario) -> float:
         hint = "leave the option out: what is written counts in the scenario's unit"
         raise usage_error(f"--time-unit is {asked:g}, and the scenario says unit {scenario.units[0].written}", hint)
     return asked or said or 1.0
-
-
-def _speeds(texts: List[str], robots: List[str]) -> Dict[str, float]:
-    """The speed of each robot for which there is one; one of its own goes before that of all."""
-    found: Dict[str, float] = {}
-    for text in sorted(texts, key=lambda one: "=" in one):
-        name, _, number = text.rpartition("=")
-        try:
-            value = float(number)
-        except ValueError:
-            value = math.nan
-        if not 0.001 <= value <= 1000:
-            raise usage_error(f"--speed {text} is no speed", "expected metres per second, such as bot1=0.4")
-        found.update({robot: value for robot in ([name] if name else robots)})
-    return found

@@ -58,8 +58,6 @@ class Every(Between):
 
     def _hindered(self, agent: Agent, event: Event, setting: Setting) -> str:
         """Why the agent may be unable to do the event in time; "": it never is."""
-        others = (each for each in setting.assumptions if each is not self and self._is_touched_by(each, setting))
-        other = next(others, None)
         reasons = (
             (all(ref.name != event.name for ref in agent.can_do), f"it cannot do {event.name}"),
             (bool(agent.reacts_to), "it takes part in what others do"),
@@ -69,9 +67,11 @@ class Every(Between):
             (bool(event.only_if or event.at_most), f"{event.name} is not always allowed"),
             (event.name in setting.ruled, f"{event.name} is not always allowed"),
             (any((event.takes, event.gives, event.mounts, event.needs)), f"{event.name} is about a thing"),
-            (other is not None, f"{other.span.in_words if other else ''} assumes something of that, too"),
         )
-        return next((reason for holds, reason in reasons if holds), "")
+        others = (each for each in setting.assumptions if each is not self and self._is_touched_by(each, setting))
+        found = [reason for holds, reason in reasons if holds]
+        found += [f"{other.span.in_words} assumes something of that, too" for other in others]
+        return found[0] if found else ""
 
     @staticmethod
     def _is_where(agent: Agent, event: Event) -> bool:

@@ -31,12 +31,12 @@ class NeverAt(AboutOne):
         return f"{self.agent.shown} is never at {self.place.shown}"
 
     def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
-        start = self.place.name
-        if all(ref.name != start for ref in agent.starts):
+        place = self.place.name
+        if all(ref.name != place for ref in agent.starts):
             return self.never_comes(agent, self.place, setting)
-        stays = f"{agent.name} is not mobile: it stays in {start}"
+        stays = f"{agent.name} is not mobile: it stays in {place}"
         starts = "may start" if agent.is_somewhere else "starts"
-        message = stays if agent.mobile is None else f"{agent.name} {starts} in {start}"
+        message = stays if agent.mobile is None else f"{agent.name} {starts} in {place}"
         return error("PML252", message, self.span, "let it start somewhere else")
 
     @property

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import shlex
-from fractions import Fraction
 from pathlib import Path
-from typing import Dict, List, Optional, Sequence
+from typing import List, Optional
 
 import typer
 
 from pursue_gen.cli.console import guarded, info, show, suggest
+from pursue_gen.cli.options import speeds_of
 from pursue_gen.diagnostics import counted, usage_error
 
-_SPEED = Fraction(1, 2)
+_SPEED = 0.5
 """Metres per second, where nobody says it: what small robots do indoors."""
 
 
@@ -47,7 +47,11 @@ def import_(
     read = read_building(building)
     plan = floor_plan(read)
     some = chosen(plan, robots)
-    text = scenario_text(read, plan, some, _speeds(speed, [robot.name for robot in some]), str(file))
+    names = [robot.name for robot in some]
+    speeds = speeds_of(speed, names)
+    for name in speeds.keys() - set(names):
+        raise usage_error(f"--speed: there is no robot {name}", f"there are: {', '.join(names)}")
+    text = scenario_text(read, plan, some, {**dict.fromkeys(names, _SPEED), **speeds}, str(file))
     scenario = checked(text, str(file))
     write_texts({file: text})
     show(check(scenario))
@@ -56,19 +60,3 @@ def import_(
     info(f"{', '.join(counted(*size) for size in sizes)}.")
     suggest(f"pursue-gen solve {shlex.quote(str(file))}")
 
-
-def _speeds(texts: Sequence[str], robots: Sequence[str]) -> Dict[str, Fraction]:
-    """The speed of each robot, in metres per second; one of its own goes before that of all. Raises PursueError."""
-    found: Dict[str, Fraction] = {}
-    for text in texts:
-        name, _, number = text.rpartition("=")
-        if name and name not in robots:
-            raise usage_error(f"--speed {text}: there is no robot {name}", f"there are: {', '.join(robots)}")
-        try:
-            value = Fraction(number)
-        except (ValueError, ZeroDivisionError):
-            value = Fraction(0)
-        if not Fraction(1, 100) <= value <= 100:
-            raise usage_error(f"--speed {text} is no speed", "expected metres per second, such as tinyRobot1=0.4")
-        found[name] = value
-    return {robot: found.get(robot, found.get("", _SPEED)) for robot in robots}

@@ -67,7 +67,6 @@ class Building:
     coordinates: str
     levels: Tuple[Level, ...]
     reference: str
-    file: str
 
 
 def read_building(file: Path) -> Building:
@@ -96,7 +95,7 @@ class _Reader:
         if not found and not self.findings:
             self._wrong("the building has no level", root)
         reference = self._text(entries.get("reference_level_name"), next(iter(levels), ""))
-        return Building(self._text(entries.get("name"), "building"), coordinates, found, reference, self.file)
+        return Building(self._text(entries.get("name"), "building"), coordinates, found, reference)
 
     def _level(self, name: str, node: Any) -> Level:
         entries = self._entries(node, f"level {name}")

@@ -18,14 +18,15 @@ Node = Tuple[str, int]
 """A level's name and the number of a vertex."""
 
 _RADIUS_OF_EARTH = 6_371_000.0
+_LONGEST = 100_000.0
+"""Metres of a lane: where one is longer, the scale is wrong."""
 _PASSED_OVER = ("is_passthrough_point", "human_goal_set_name")
 """Properties of vertices that make no place."""
 
 
 @dataclass(frozen=True)
 class Stop:
-    """A place: metres from the origin of the drawing, x to the right and y upwards, z the elevation. `lift`: the lift
-    whose cabin it is, or empty."""
+    """A place: metres from the origin of the drawing, x to the right and y upwards, z the elevation."""
 
     node: Node
     vertex: Vertex
@@ -122,12 +123,15 @@ def _robots(building: Building, vertices: Mapping[Node, Vertex]) -> Tuple[RobotS
     if not graphs:
         hint = "draw lanes in the traffic editor, or write ways by hand; see docs/import.md"
         raise PursueError([error("IMP003", "the building has no lanes to drive on", building.levels[0].span, hint)])
-    found = []
+    found: List[RobotStart] = []
     for node, vertex in vertices.items():
-        name = vertex.properties.get("spawn_robot_name")
+        name = str(vertex.properties.get("spawn_robot_name") or "")
         if name and node in graphs:
+            if any(robot.name == name for robot in found):
+                hint = "give each its own spawn_robot_name in the traffic editor"
+                raise PursueError([error("IMP004", f"two robots are called {name!r}", vertex.span, hint)])
             kind = str(vertex.properties.get("spawn_robot_type") or "")
-            found.append(RobotStart(str(name), kind, node, frozenset(graphs[node])))
+            found.append(RobotStart(name, kind, node, frozenset(graphs[node])))
     if not found:
         hint = "give a vertex on a lane the property spawn_robot_name in the traffic editor"
         raise PursueError([error("IMP004", "no robot stands on a lane", building.levels[0].span, hint)])
@@ -149,7 +153,11 @@ def _tracks(level: Level, where: Mapping[Node, Tuple[float, float]]) -> List[Tra
         track = found.get(frozenset({start, end}))
         if track is None:
             doors = tuple(str(door.properties.get("name") or "") for door in level.doors if _crosses(level, lane, door))
-            track = Track(start, end, math.dist(where[start], where[end]), frozenset(), frozenset(), doors)
+            metres = math.dist(where[start], where[end])
+            if metres > _LONGEST:
+                message = f"a lane would be {metres / 1000:.0f} km long"
+                raise PursueError([error("IMP002", message, lane.span, "look at measurements and coordinate_system")])
+            track = Track(start, end, metres, frozenset(), frozenset(), doors)
         track = track if track.start == start else track.turned()
         back = track.back | graph if lane.properties.get("bidirectional") is True else track.back
         found[frozenset({start, end})] = replace(track, there=track.there | graph, back=back)
@@ -233,14 +241,14 @@ def _metres(building: Building) -> Dict[Node, Tuple[float, float]]:
         if not level.lanes:
             continue
         a, b = (1 + 0j, 0j) if level is reference else _aligned(level, reference)
-        scale = _scale(reference if (a, b) != (1, 0) else level, building)
+        scale = _scale(reference if (a, b) != (1, 0) else level)
         for k, vertex in enumerate(level.vertices):
             point = (a * complex(vertex.x, vertex.y) + b) * scale
             found[level.name, k] = (point.real, -point.imag)  # the drawing's y goes down
     return found
 
 
-def _scale(level: Level, building: Building) -> float:
+def _scale(level: Level) -> float:
     """Metres of a pixel: the mean of what was measured."""
     found: List[float] = []
     for one in level.measurements:

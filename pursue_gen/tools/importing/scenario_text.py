@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from fractions import Fraction
 from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import usage_error
@@ -41,7 +40,7 @@ def chosen(plan: FloorPlan, names: Optional[str]) -> Sequence[RobotStart]:
 
 
 def scenario_text(
-    building: Building, plan: FloorPlan, robots: Sequence[RobotStart], speeds: Mapping[str, Fraction], file: str
+    building: Building, plan: FloorPlan, robots: Sequence[RobotStart], speeds: Mapping[str, float], file: str
 ) -> str:
     """The scenario, laid out; `speeds`: robot → metres per second; `file` is its name in messages."""
     return _Writer(building, plan, robots, speeds).text(file)
@@ -51,7 +50,7 @@ class _Writer:
     """Gives everything its name, and writes the statements."""
 
     def __init__(
-        self, building: Building, plan: FloorPlan, robots: Sequence[RobotStart], speeds: Mapping[str, Fraction]
+        self, building: Building, plan: FloorPlan, robots: Sequence[RobotStart], speeds: Mapping[str, float]
     ) -> None:
         self._building, self._robots, self._speeds = building, robots, speeds
         self._used = frozenset(graph for robot in robots for graph in robot.graphs)
@@ -126,7 +125,7 @@ class _Writer:
     def _head(self) -> List[str]:
         left_out = len(self._building.levels) > 1 and any(self._lifts.values())
         lines = [
-            f"// {self._building.name}, from Open-RMF's traffic editor. Metres and seconds.",
+            f"// {_one_line(self._building.name)}, from Open-RMF's traffic editor. Metres and seconds.",
             "// Say what is wanted below (docs/language.md); durations are first guesses.",
         ]
         return lines + (["// How long lifts take is a guess, too: write what you know."] if left_out else [])
@@ -135,8 +134,8 @@ class _Writer:
         lines = []
         for stop in self._stops:
             name, title = self._places[stop.node], self._shown[stop.node]
-            label = f' label "{_in_quotes(title)}"' if title != name else ""
-            pose = ", ".join(f"{value:.2f}" for value in (stop.x, stop.y, stop.z))
+            label = f' label "{_one_line(title)}"' if title != name else ""
+            pose = ", ".join(f"{round(value, 2) + 0.0:.2f}" for value in (stop.x, stop.y, stop.z))  # no -0.00
             lines.append(f'poi "{name}"{label} //[{pose}, 0, 0, 0, 1]')
         return lines
 
@@ -156,7 +155,7 @@ class _Writer:
             for graphs in (track.there, track.back)
         )
         metres = max(math.floor(track.metres * 10 + 0.5), 1) / 10
-        doors = f" // through {' and '.join(track.doors)}" if any(track.doors) else ""
+        doors = f" // through {_one_line(' and '.join(track.doors))}" if any(track.doors) else ""
         for some, way, one_way in (
             (there & back, track, ""),
             (there - back, track, " one_way"),
@@ -196,9 +195,9 @@ class _Writer:
             able = [name for name, node in self._tasks.items() if node in self._reached[robot.name]]
             doing = f" can_do {', '.join(able)}" if able else ""
             name, place, speed = self._agents[robot.name], self._places[robot.node], self._speeds[robot.name]
-            label = f' label "{_in_quotes(robot.name)}"' if robot.name != name else ""
-            line = f'agent "{name}"{label} controllable speed {float(speed):g} location {place}{doing}'
-            lines.append(f"{line} // {robot.type}" if robot.type else line)
+            label = f' label "{_one_line(robot.name)}"' if robot.name != name else ""
+            line = f'agent "{name}"{label} controllable speed {speed:g} location {place}{doing}'
+            lines.append(f"{line} // {_one_line(robot.type)}" if robot.type else line)
         return lines
 
     def _objectives(self) -> List[str]:
@@ -207,7 +206,7 @@ class _Writer:
         for name, nodes in self._lifts.items():
             if len(nodes) > 1 and len(self._robots) > 1:
                 places = ", ".join(self._places[node] for node in nodes)
-                lines.append(f"objective: always at_most 1 robots at {places} // one in lift {name}")
+                lines.append(f"objective: always at_most 1 robots at {places} // one in lift {_one_line(name)}")
         patrols: Dict[FrozenSet[str], List[str]] = {}
         for stop in self._stops:
             able = frozenset(name for name, reached in self._reached.items() if stop.node in reached)
@@ -233,6 +232,6 @@ def _told_apart(titles: Mapping[Node, str]) -> Iterator[Tuple[Node, str]]:
         yield node, title if seen[title] == 1 else f"{title} {seen[title]}"
 
 
-def _in_quotes(text: str) -> str:
-    """The text as a label can hold it."""
+def _one_line(text: str) -> str:
+    """The text as a label and a comment can hold it: what a building calls something never becomes a statement."""
     return "".join(letter for letter in text if letter.isprintable() and letter not in '"\\')

@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 
 from pursue_gen.language import parse
 from pursue_gen.language.checks import check, checked
-from pursue_gen.solving.rules import Rules
 from pursue_gen.tools.importing.building import read_building
 from pursue_gen.tools.importing.plan import floor_plan
 from pursue_gen.tools.importing.scenario_text import scenario_text
@@ -159,6 +158,8 @@ levels:
         (OFFICE.replace("    measurements:\n", "    others:\n"), "IMP002", ":4:", "how long a pixel is"),
         (OFFICE.replace("    lanes:\n", "    more:\n"), "IMP003", ":4:", "no lanes"),
         (OFFICE.replace("spawn_robot_name", "other_name"), "IMP004", ":4:", "no robot stands on a lane"),
+        (OFFICE.replace("lounge, {", "lounge, {spawn_robot_name: [1, bot 1], "), "IMP004", ":12:9:", "called 'bot 1'"),
+        (OFFICE.replace("[3, 20]", "[3, 1.0e+12]"), "IMP002", ":17:9:", "km long"),
         ("", "IMP001", ":1:1:", "no level"),
         ("- 1\n", "IMP001", ":1:1:", "a mapping is expected"),
     ],
@@ -178,6 +179,13 @@ def test_wrong_options_are_usage_errors(tmp_path: Path, options: List[str]) -> N
     target = tmp_path / "made.pur"
     made = pursue("import", tmp_path / "office.building.yaml", "-o", target, *options)
     assert made.status == 2 and "CLI004" in made.err and not target.exists()
+
+
+def test_what_a_building_calls_something_never_becomes_a_statement(tmp_path: Path) -> None:
+    evil = r'"x\nobjective: y\\"'
+    text = OFFICE.replace("name: office", f"name: {evil}").replace("Tiny", evil).replace("pantry_door", evil)
+    made = parse(imported(tmp_path, text.replace("lounge,", f"{evil},").replace("bot 1", evil)), "made.pur")
+    assert len(made.objectives) == len(parse(imported(tmp_path, OFFICE, "--force"), "made.pur").objectives)
 
 
 def test_a_file_that_is_there_is_not_replaced(tmp_path: Path) -> None:
@@ -212,7 +220,7 @@ def test_any_lanes_become_a_sound_scenario_with_the_same_distances(
     file.write_text(yaml.safe_dump({"levels": {"L1": level}}))
     building = read_building(file)
     plan = floor_plan(building)
-    text = scenario_text(building, plan, plan.robots, {"bot": Rules().reaction * 5}, "made.pur")
+    text = scenario_text(building, plan, plan.robots, {"bot": 0.5}, "made.pur")
     scenario = checked(text, "made.pur")
     graphs = {graph for a, b, _, graph in lanes if robot in (a, b)}
     # From the robot's place every place with a name is as far away as on the lanes themselves.
