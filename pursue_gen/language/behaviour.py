@@ -105,8 +105,11 @@ def check_events(scenario: Scenario) -> Iterator[Diagnostic]:
             yield warning("PML157", message, event.span, hint)
             continue
         doers, partners = able.get(event.name, []), reacting.get(event.name, [])
+        if event.on_order:
+            yield from _ordered(event, [ref for _, ref in (*doers, *partners)], scenario)
+            continue
         if not doers:
-            hint = f"give it to an agent: can_do {event.name}, or delete the event"
+            hint = f"give it to an agent: can_do {event.name}, or delete the event; on_order if people order it"
             yield error("PML150", f"nobody can do {event.name}", event.span, hint)
         for agent, ref in doers:
             way = "way that it may take" if scenario.closed_to(agent.name) else "way"
@@ -119,6 +122,18 @@ def check_events(scenario: Scenario) -> Iterator[Diagnostic]:
                 message = f"{event.name} is not collaborative: it does not wait for {agent.name} to react to it"
                 hint = f'write event "{event.name}" collaborative …, or delete it behind reacts_to'
                 yield warning("PML152", message, ref.span, hint)
+
+
+def _ordered(event: Event, parts: List[Ref], scenario: Scenario) -> Iterator[Diagnostic]:
+    """An event that people order, which agents do or which waits for a state."""
+    for ref in parts:
+        message = f"{event.name} is ordered by people, so no agent does it"
+        yield error("PML451", message, ref.span, f"delete {event.name} here, or on_order behind event \"{event.name}\"")
+    for dependency in scenario.dependencies:
+        if dependency.event.name == event.name:
+            message = f"{event.name} is ordered by people: it waits for no state"
+            hint = "let what answers it wait; orders that cannot be kept are refused"
+            yield error("PML451", message, dependency.event.span, hint)
 
 
 def _togetherness(event: Event, doers: List[str]) -> Iterator[Diagnostic]:
@@ -199,6 +214,7 @@ class _Course:
 
     def __init__(self, scenario: Scenario) -> None:
         self.able = {ref.name for agent in scenario.agents for ref in agent.can_do}
+        self.able |= {event.name for event in scenario.events if event.on_order}
         self.waits: Dict[str, List[Tuple[Rule, Earlier]]] = {}
         """For each event the rules that name it, with the events after which it is its turn; none: at the start."""
         for rule in scenario.rules:

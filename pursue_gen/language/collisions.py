@@ -40,6 +40,7 @@ def _in_network(scenario: Scenario) -> Iterator[_Stated]:
     yield from ((poi.span, [names.at(poi.name)]) for poi in scenario.pois)
     for event in scenario.events:
         yield event.span, [names.event(event.name), names.done(event.name)]
+        yield event.span, [names.ORDER_DESK, names.DESK_OPEN] if event.on_order else []
         yield event.span, [names.broken_off(event.name)] if event.may_stop else []
         yield event.span, [names.busy(event.name)] if event.is_shared or event.split else []
         parts = (names.part_done(event.name), names.parts(event.name), names.parts_done(event.name))

@@ -83,6 +83,10 @@ def found(name: str, value: bool) -> Symbol:
     return Role.FOUND(name, str(value).lower())
 
 
+ORDER_DESK, DESK_OPEN, LISTENING = Role.ORDER_DESK(), Role.DESK_OPEN(), Role.LISTENING()
+"""The automaton of what people order, its variable, which is 1 only while an order is taken that was proven, and its
+location."""
+
 assumption, assumption_count, assumption_clock = Role.ASSUMPTION, Role.ASSUMED_TIMES, Role.ASSUMED_TIME
 """By the number of an assumption (the first has number 1): its variable, 1, or 0 in a mission in which it has been
 broken; the variable that counts what it limits; its clock, if it is about times."""

@@ -66,6 +66,10 @@ class Role(enum.Enum):
     FINDING = locations.FINDING_OUT, "a state is being found out"
     KNOWN = "known", "a state is known"
 
+    ORDER_DESK = "order_desk", "what people may order"
+    DESK_OPEN = "order_desk_open", "whether an order is being taken"
+    LISTENING = "listening", "orders may come"
+
     SAFETY = "obj{}", "a part of an objective"
     SAFETY_CLOCK = "Cobj{}", "a part of an objective"
     SAFETY_TURN = "P{}", "a part of an objective"

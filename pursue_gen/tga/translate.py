@@ -20,6 +20,7 @@ from pursue_gen.tga.endurance import charge_clocks
 from pursue_gen.tga.loads import laden, load_variables
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import reach_automaton, safety_automaton, unlocking
+from pursue_gen.tga.on_order import order_desk
 from pursue_gen.tga.own_turns import bound, own_turns
 from pursue_gen.tga.patrols import arrivals, awaited, turns
 from pursue_gen.tga.positions import positions
@@ -47,6 +48,8 @@ def translate(scenario: Scenario) -> Network:
     automata = [*([states] if states else []), *finding_automata(scenario)]
     agents = [laden(powered(agent_automaton(agent, around), scenario), scenario) for agent in scenario.agents]
     automata += [apart(assumed(bound(agent, own), scenario, conditions), scenario) for agent in agents]
+    desk = order_desk(scenario, in_turn)
+    automata += [desk] if desk else []
     automata += ways_awaited(scenario, codes)
     automata += [safety_automaton(each, around, k) for k, each in enumerate(scenario.safety)]
     steps = unlocking(scenario)
@@ -56,6 +59,7 @@ def translate(scenario: Scenario) -> Network:
     variables += assumption_variables(scenario) + turns(scenario)
     variables += tuple((turn.variable, 0) for turn in own)
     variables += (*pause_variables(scenario), *request_variables(scenario))
+    variables += ((names.DESK_OPEN, 0),) if desk else ()
     variables += battery_variables(scenario) + load_variables(scenario)
     network = Network(_clocks(scenario), variables, _channels(scenario), tuple(automata))
     _check_names(network)

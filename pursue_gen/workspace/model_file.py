@@ -51,6 +51,8 @@ def model_data(network: Network, objective: Objective, scenario: Scenario, react
 
 def _format(has_partners: bool, scenario: Scenario, objective: Objective) -> int:
     """The format of model.yaml, the oldest that can say all of it."""
+    if any(event.on_order for event in scenario.events):
+        return 7
     if any(event.split for event in scenario.events) or any(agent.is_somewhere for agent in scenario.agents):
         return 6
     if any(state.is_found_out for state in scenario.states):
@@ -100,7 +102,7 @@ def _given_up(scenario: Scenario) -> Dict[str, Any]:
 
 
 _WATCHING = dict.fromkeys((Role.SAFETY, Role.WATCHER, Role.TOUR), "safety")
-_KINDS = {Role.STATES: "states", Role.FACT: "agent", Role.REACH: "reach", **_WATCHING}
+_KINDS = {Role.STATES: "states", Role.FACT: "agent", Role.ORDER_DESK: "orders", Role.REACH: "reach", **_WATCHING}
 """By the role of an automaton its kind; all others but agents follow events as a rule does. Of what a state is that is
 not known at first, the world decides, as of what an agent does that nobody controls."""
 

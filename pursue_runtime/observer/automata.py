@@ -132,6 +132,11 @@ class Automata:
             self._values.update(edge.assign)
             self._zeros.update(dict.fromkeys(edge.resets, now))
 
+    def set_clocks(self, since: Mapping[str, float]) -> None:
+        """Set clocks, by the times since which they run."""
+        self._position = None
+        self._zeros.update(since)
+
     def set_values(self, values: Mapping[str, int]) -> None:
         """Set variables."""
         self._position = None

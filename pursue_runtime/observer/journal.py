@@ -25,6 +25,7 @@ ADOPTED = "adopted"
 
 CALLS: Mapping[str, Callable[..., List[SystemState]]] = {
     "hear": Mission.on_word,
+    "order": Mission.on_order,
     "tick": Mission.on_time,
     "silent": Mission.on_controller_silent,
     "back": Mission.on_controller_back,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import List, Optional, Tuple
+from typing import List, Mapping, Optional, Tuple
 
 from pursue_runtime.event_words import (
     BLOCKED,
@@ -27,7 +27,7 @@ from pursue_runtime.observer import life
 from pursue_runtime.observer.assumptions import Breach, breach, overstayed
 from pursue_runtime.observer.ending import has_come
 from pursue_runtime.observer.lateness import late_words, untimely_words
-from pursue_runtime.observer.mission_status import MissionStatus
+from pursue_runtime.observer.mission_orders import NOTHING, MissionOrders
 from pursue_runtime.observer.orders import first_overdue
 from pursue_runtime.observer.planning import stays
 from pursue_runtime.orders import Order
@@ -45,7 +45,7 @@ MAX_WORD_LENGTH = 1000
 """The most characters of a word; longer texts are dropped."""
 
 
-class Mission(MissionStatus):
+class Mission(MissionOrders):
     """One mission: takes words, moves the automata, and returns the states to publish.
 
     The arguments are those of MissionState.
@@ -61,7 +61,9 @@ class Mission(MissionStatus):
             return overdue
         delays = self._automata.internal_delays(position)
         delays += [] if overdue is None else [(overdue - now) / self._unit]
-        delays += [(moment - now) / self._unit for moment in self._early.values()]
+        begins = self.order_begins()
+        moments = [*self._early.values(), *([] if begins is None else [begins])]
+        delays += [(moment - now) / self._unit for moment in moments]
         delays += [delay + self._tolerance for name, delay in self._bounds(position) if name not in self.late]
         delays += [delay + self._lost_after for name, delay in self._late_agents(position)]
         if self.status == RUNNING and not self._warned:
@@ -129,6 +131,9 @@ class Mission(MissionStatus):
         moves = self._due_command(position, now)
         if moves:
             return self._take_command(moves, now)
+        begins = self.order_begins()
+        if begins is not None and begins <= now:
+            return self._put_plan_in_force(now)
         has_broken = False
         for name, delay in self._bounds(position):
             if name in self.late or delay + self._tolerance > EPSILON:
@@ -252,10 +257,11 @@ class Mission(MissionStatus):
         return self._take(moves, now, commanded=True)
 
     def _take(
-        self, moves: Optional[Tuple[Move, ...]], now: float, why: str = "", commanded: bool = False
+        self, moves: Optional[Tuple[Move, ...]], now: float, why: str = "", commanded: bool = False,
+        since: Mapping[str, float] = NOTHING,
     ) -> List[SystemState]:
         """Apply the moves, and then internal edges of objectives that are enabled. `why`: the reason if that loses the
-        mission, a sentence; "": that the first of them happens."""
+        mission, a sentence; "": that the first of them happens. `since`: clocks that run since another time."""
         states: List[SystemState] = []
         if moves and not why:
             name, edge = moves[0]
@@ -263,6 +269,8 @@ class Mission(MissionStatus):
         while moves:
             before = self.state(now)
             self._automata.take(moves, now)
+            self._automata.set_clocks(since)
+            since = NOTHING
             self.ending.on_moves(moves, before.clocks)
             self.robots.on_moves(moves)
             for name in self.shared_ends.on_moves(moves, self.lost, self._beginnings):

@@ -10,6 +10,7 @@ from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.beginnings import Beginnings
 from pursue_runtime.observer.ending import Ending
 from pursue_runtime.observer.life import Life
+from pursue_runtime.observer.ordering import Ordering
 from pursue_runtime.observer.orders import Orders
 from pursue_runtime.observer.planning import Planning
 from pursue_runtime.observer.robots import Robots
@@ -69,6 +70,7 @@ class MissionState:
         self._early: Dict[Word, float] = {}  # and their moments
         self._beginnings = Beginnings()
         self._planning = Planning(controllers)
+        self.ordering = Ordering()
         self._warned = False
         self._shown = self.robots.revision()  # in the newest state
         self._automata = Automata(model, unit)
@@ -110,7 +112,7 @@ class MissionState:
         """Return a value that a call changes if, and only if, the call has to be in the journal."""
         people = len(self.late), len(self.lost), len(self.silent)
         robots = *self.robots.revision(), *self.ways.revision(), *self.shared_ends.revision(), self.orders.texts()
-        others = *people, *robots, *self._early, *self._planning.revision()
+        others = *people, *robots, *self._early, *self._planning.revision(), *self.ordering.revision
         return (self.seq, self.status, self.reason, *self.ending.revision, *others)
 
     def _passed(self, now: float) -> float:

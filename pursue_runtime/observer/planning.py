@@ -21,12 +21,24 @@ UNKNOWN = 1000
 """More requests than a mission can have made without a trace of them in the journal."""
 
 
+class Ordered(NamedTuple):
+    """What a person has ordered, in the state of a request: the event, when it came (seconds), the clocks that it
+    starts, with the values that they began with, and for how many time units its plan may come into force once it has
+    begun."""
+
+    event: str
+    came: float
+    clocks: Dict[str, float]
+    window: float
+
+
 class PlanRequest(NamedTuple):
     """A request for a plan from this state; clocks are those at `stamp` (seconds), `ahead` is in time units.
 
     The plan must not rely on the agents in `excused`, nor send anybody along the ways in `blocked`, or the agent alone
     that stands behind a way. The robots in `turning` turn round when it begins, and may be back at any time. Those in
-    `awaited` are late; the plan relies on them for so many time units more, counted from `stamp`.
+    `awaited` are late; the plan relies on them for so many time units more, counted from `stamp`. `order`: the state is
+    the one behind an order of a person, which is taken together with the plan.
     """
 
     number: int
@@ -39,6 +51,15 @@ class PlanRequest(NamedTuple):
     blocked: Tuple[Block, ...] = ()
     turning: Tuple[str, ...] = ()
     awaited: Optional[Mapping[str, float]] = None
+    order: Optional[Ordered] = None
+
+    def data(self) -> Dict[str, Any]:
+        """Return what a planner is asked, without the game."""
+        own = ("number", "stamp", "order")
+        asked = {key: value for key, value in self._asdict().items() if key not in own}
+        if self.order is None:
+            return asked
+        return {**asked, "window": self.order.window, "sooner": self.order.clocks}
 
 
 class Proposal(NamedTuple):
@@ -96,9 +117,10 @@ class Planning:
         excused: FrozenSet[str],
         awaited: Mapping[str, float],
         ways: Ways,
+        order: Optional[Ordered] = None,
     ) -> None:
         """Request a plan from this position, unless there is a request, a proposal or a failure for this `place`."""
-        place = place, excused, sorted(awaited), ways.revision()
+        place = place, excused, sorted(awaited), ways.revision(), None if order is None else order.came
         if place != self._place:
             known = self.lead_time
             self.reset()
@@ -112,7 +134,8 @@ class Planning:
         self._number += 1
         self.searched = 0.0
         what = position.locations, position.values, position.clocks, stamp, ahead
-        self.request = PlanRequest(self._number, *what, tuple(sorted(excused)), *ways.revision(), awaited or None)
+        gone = tuple(sorted(excused))
+        self.request = PlanRequest(self._number, *what, gone, *ways.revision(), awaited or None, order)
 
     def adopt(self, absent: AbstractSet[str]) -> None:
         """Start anew from a state in which these agents are late or lost: others that were excused may be back."""
@@ -152,6 +175,8 @@ class Planning:
         if isinstance(answer.get("takes"), dict):
             begins = {"stamp": self.request.stamp, "ahead": self.request.ahead, "excused": list(self.request.excused)}
             data["takes"] = {**answer["takes"], **begins}
+        if self.request.order is not None:
+            data["order"] = self.request.order.event
         if self.request.awaited:
             data["awaited"] = sorted(self.request.awaited)
         self.proposal = Proposal(data, read_cover(answer["cover"]), self.request)

@@ -49,6 +49,7 @@ class Event(Labelled):
     `takes`, `gives`: the thing that whoever does it carries from its end on, and the one that is given away then; so
     many of it (`taken`, `given`) at once.
     `mounts`: the tool that is mounted from its end on, in place of another one; `needs`: what is carried or mounted.
+    `on_order`: it happens only when a person orders it during a mission, and where all is proven to be kept with it.
     """
 
     name: str
@@ -69,6 +70,7 @@ class Event(Labelled):
     given: int = 1
     mounts: Optional[Ref] = None
     needs: Optional[Ref] = None
+    on_order: bool = False
 
     listed_in: ClassVar[str] = "events"
     symbol: ClassVar[str] = "Event"
@@ -82,6 +84,11 @@ class Event(Labelled):
             "How long it takes, in the unit of time that you chose: 3 is up to 4. Without it, it takes no time.",
         ),
         Word("to", "Where the agent arrives; or, behind a number, the latest time.", True),
+        Word(
+            "on_order",
+            "People order it during the mission; it is accepted only where all is proven to be kept then, too.",
+            True,
+        ),
         Word("may_stop", "It may be broken off before it ends, and has not happened then.", True),
         Word("takes", "Of an event, a thing that is carried from its end on; of a way, how long it takes.", True),
         Word("gives", "A thing that is carried until its end, and no longer.", True),
@@ -91,15 +98,15 @@ class Event(Labelled):
         Word("times", "In the whole mission.", True),
     )
     template: ClassVar[Template] = Template(
-        'event {name="work"} [label {label:name}] [collaborative] [together] [location {location:POI=a}]'
+        'event {name="work"} [label {label:name}] [on_order] [collaborative] [together] [location {location:POI=a}]'
         " [duration {duration,latest:window=6}] [may_stop] [in {split:count=4} parts] [takes {takes,taken:counted}]"
         " [gives {gives,given:counted}] [mounts {mounts:thing}] [needs {needs:thing}] [at_most {at_most:count=2} times]"
         " [only_if {only_if:condition=open is_true}]",
         counted=Filling("counted", _read_counted, counted_text, "thing", rules="counted: [NUMBER] ref"),
     )
     note: ClassVar[str] = (
-        'all but the name is optional; or: duration 6 to 9; behind the name: label "do the work"; behind the duration: '
-        "may_stop in 4 parts, takes box, takes 2 box, gives box, mounts brush, needs brush"
+        'all but the name is optional; or: duration 6 to 9; behind the name: label "do the work", on_order; behind the '
+        "duration: may_stop in 4 parts, takes box, takes 2 box, gives box, mounts brush, needs brush"
     )
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("something that can happen at a place", 'event "{=work}" location {POI} duration {=1}'),
@@ -118,6 +125,7 @@ class Event(Labelled):
         Form("something that unloads a thing", 'event "{=unload}" location {POI} duration {=3} gives {thing}'),
         Form("something that mounts a tool", 'event "{=change}" location {POI} duration {=3} mounts {thing}'),
         Form("something for which a tool is needed", 'event "{=work}" location {POI} duration {=3} needs {thing}'),
+        Form("something that people order during a mission", 'event "{=order}" on_order'),
         Form("something that two do at once", 'event "{=handOver}" collaborative'),
         Form(
             "something that two do together for a while",
@@ -168,6 +176,8 @@ class Event(Labelled):
 
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         own = (kind, name) == ("event", self.name)
+        if own and self.on_order:
+            yield "is ordered by people during a mission, and accepted only where all is kept then, too"
         if own and self.may_stop:
             yield "may be broken off, and has not happened then"
         if own and self.split:
@@ -184,6 +194,7 @@ class Event(Labelled):
                 what, hint = "takes no time", "write how long it takes, as in duration 20 may_stop; or delete may_stop"
             yield error("PML433", f"{name} {what}: it cannot be broken off", self.span, hint)
         yield from self._check_parts()
+        yield from self._check_order()
         if duration is not None and duration <= 0 and self.latest is None:
             hint = "write duration and a number above 0, or delete duration: then it takes no time"
             yield error("PML141", f"{name} has a duration of 0", self.span, hint)
@@ -193,6 +204,27 @@ class Event(Labelled):
             yield error("PML204", message, self.span, f"write a number in these limits, or delete it{never}")
         if duration is not None and self.latest is not None:
             yield from check_window(name, duration, self.latest, "duration", self.span)
+
+    def _check_order(self) -> Iterator[Diagnostic]:
+        """Whatever an order cannot have: it is said, and takes no time and no place."""
+        wrong = {
+            "collaborative": self.collaborative,
+            "together": self.together,
+            "location": self.location,
+            "duration": self.duration,
+            "may_stop": self.may_stop,
+            "parts": self.split,
+            "takes": self.takes,
+            "gives": self.gives,
+            "mounts": self.mounts,
+            "needs": self.needs,
+            "only_if": self.only_if,
+        }
+        named = [word for word, value in wrong.items() if value not in (None, False)]
+        if self.on_order and named:
+            message = f"{self.name} is ordered by people: it has no {', no '.join(named)}"
+            hint = f"keep on_order alone; what robots do then is another event: if {self.name} then … within 600"
+            yield error("PML450", message, self.span, hint)
 
     def _check_parts(self) -> Iterator[Diagnostic]:
         """Parts of what has none, too few or too many of them, or parts whose time is rounded."""

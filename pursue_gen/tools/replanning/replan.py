@@ -31,8 +31,9 @@ from pursue_gen.synthesis.solve import Verdict, solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tga.objectives import stated
+from pursue_gen.tga.objectives import clock_of, stated
 from pursue_gen.tga.pauses import pauses
+from pursue_gen.tools.replanning.ordered import longer
 from pursue_gen.tools.replanning.request import Request, read_request
 from pursue_gen.tools.replanning.start import around, network_from, passed_bounds, start_clocks
 from pursue_gen.tools.replanning.tours import followers, tours_from_here
@@ -59,6 +60,7 @@ _STATES = 500
 def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
     """The answer to a request, both as JSON holds them (see docs/run_time.md).
 
+    Where an order of a person cannot be promised so soon, it says what could be: `possible`.
     `states`: limits the work to so many discrete states for the solver and as many symbolic ones for each look of the
     checker, in the place of time and memory, so that the answer does not depend on the machine; 0: it may depend.
     Every plan in an answer has been proven by the checker. Raises PursueError (exit status 2) for a request that cannot
@@ -67,6 +69,15 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
     start = time.monotonic()
     request = read_request(data)
     limits = Limits(states=states) if states else Limits(request.seconds, careful_memory(), wall=True).since(start)
+    answer = _answer(request, limits, states)
+    if not answer["won"] and any(request.sooner.values()):
+        later = longer(request, lambda more: bool(_answer(more, limits.since(start), states)["won"]))
+        return {**answer, **({} if later is None else {"possible": later})}
+    return answer
+
+
+def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
+    """The answer to a request within these limits, `states` as for `replan`."""
     ideal, objective = translate(request.scenario), scenario_objective(request.scenario)
     try:
         game = played(ideal, request.rules)
@@ -207,7 +218,12 @@ def _cannot_be_met(game: Network, request: Request) -> str:
     for a, b, *alone in sorted(request.blocked):
         for_whom = "".join(f" for {marked(name)}" for name in alone)
         without.append(f"without the way between {marked(a)} and {marked(b)}{for_whom}")
-    return " ".join([f"{_objectives(request.scenario)} cannot be guaranteed from here", " and ".join(without)]).strip()
+    ordered = [each for name, each in stated(request.scenario).items() if clock_of(name) in request.sooner]
+    if request.window:
+        what = f"{_objectives(request.scenario, ordered)} cannot be promised beside all that is promised already"
+    else:
+        what = f"{_objectives(request.scenario)} cannot be guaranteed from here"
+    return " ".join([what, " and ".join(without)]).strip()
 
 
 def _objectives(scenario: Scenario, some: Optional[Sequence[StatedObjective]] = None) -> str:

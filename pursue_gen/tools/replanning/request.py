@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any, Dict, FrozenSet, List, Mapping, Tuple
@@ -27,7 +27,9 @@ class Request:
     `excused`, nobody is sent along the ways in `blocked` (in alphabetical order; the agent behind a way, if there is
     one, alone is not), who is `turning` may be back at any time, and who is in `awaited` is late, and goes on within so
     many time units. It may take so many `seconds`, 0: any number. `follows`: the watchers and tours of the workspace's
-    plan, in its lines; their automata are in the state.
+    plan, in its lines; their automata are in the state. The plan may come into force up to `window` time units after
+    its begin. `sooner`: the clocks that an order of a person has started, with how much sooner it is to be answered
+    than the scenario promises.
     """
 
     scenario: Scenario
@@ -44,6 +46,8 @@ class Request:
     awaited: Mapping[str, Fraction]
     seconds: float
     follows: Tuple[str, ...] = ()
+    window: Fraction = Fraction(0)
+    sooner: Mapping[str, Fraction] = field(default_factory=dict)
 
 
 def read_request(data: object) -> Request:
@@ -79,6 +83,8 @@ def read_request(data: object) -> Request:
         awaited=_awaited(request.get("awaited"), scenario),
         seconds=float(seconds),
         follows=_lines(game.get("follows", ())),
+        window=_time(request.get("window", 0), "window"),
+        sooner={key: _time(value, key) for key, value in _object(request.get("sooner", {}), "sooner").items()},
     )
 
 

@@ -50,7 +50,7 @@ def network_from(network: Network, request: Request, told_apart: bool = False) -
     reaction = request.rules.reaction
     grid = least_common_multiple((_FINEST, common_denominator([reaction, *there.times])))
     beyond = {name: value + 1 for name, value in clocks.items()} if told_apart else _beyond(there, ceil(reaction))
-    return replace(there, start=region(clocks, beyond, grid))
+    return replace(there, start=around(region(clocks, beyond, grid), Fraction(0), request.window))
 
 
 def start_clocks(network: Network, request: Request) -> Dict[str, Fraction]:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Dict, List, Mapping, Optional, Tuple
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
+from pursue_gen.language import network_names as names
 from pursue_gen.language.symbols import Symbol
 from pursue_gen.language.times import unit_name
 from pursue_gen.synthesis.lookup import Entry
@@ -202,7 +203,7 @@ class _Checker:
             self._report(FAULT, "end", state, f"the mission went on after it was {before.status}")
         if state.stamp < before.stamp - EXACT:
             self._report(FAULT, "clock", state, f"time went back by {before.stamp - state.stamp:.3f} s")
-        before = self._with_broken(before, state)
+        before = self._with_order(self._with_broken(before, state), state)
         move = self._move(before, state)
         since, self._since = self._since, {}
         if move is not None:
@@ -210,7 +211,10 @@ class _Checker:
             decided = max(since_for(move[0][0], self.orders.get(before.plan), since, begun), key=lambda each: each.seq)
             self.steps.append(ReplayedStep(before, state, move, decided))
             self._since = self._standing(before, state, move, since)
-            self._zeros.update(dict.fromkeys(after(move, place_of(before))[1], state.stamp))
+            resets = after(move, place_of(before))[1]
+            self._zeros.update(dict.fromkeys(resets, state.stamp))
+            if state.agent == names.ORDER_DESK:
+                self._ordered(resets, state)
         elif self._turned(before, state):
             self.turns.append((before, state, "", False))
         elif state.discrete() != before.discrete():
@@ -230,6 +234,15 @@ class _Checker:
             self._report(WORLD, "assumption", state, f"an assumption is broken: {assumption.clause}")
         return before._replace(values={**before.values, **dict.fromkeys(broken, 0)}) if broken else before
 
+    def _with_order(self, before: SystemState, state: SystemState) -> SystemState:
+        """The state before with its desk open where an order of a person is taken, together with the plan for it."""
+        plan = self._record.plans.get(state.plan, {})
+        if state.agent != names.ORDER_DESK or names.DESK_OPEN not in before.values:
+            return before
+        if state.plan == before.plan or plan.get("order") != state.event:
+            self._report(FAULT, "order", state, f"{state.event} was taken without a plan that is proven with it")
+        return before._replace(values={**before.values, names.DESK_OPEN: 1})
+
     def _move(self, before: SystemState, state: SystemState) -> Optional[Move]:
         """The joint move that leads from one to the other, the one that fits the clocks best."""
         if not state.event:
@@ -237,6 +250,13 @@ class _Checker:
         place, clocks = place_of(before), self._clocks_at(state)
         found = [m for m in self.moves.of(place, state.event, state.agent) if after(m, place)[0] == place_of(state)]
         return min(found, key=lambda move: self.moves.untimely(move, place, clocks).amount, default=None)
+
+    def _ordered(self, clocks: Sequence[str], state: SystemState) -> None:
+        """An order runs since it came, and may be due sooner than the scenario promises: clocks are believed that are
+        later than those of an order that is due as late as can be."""
+        self._zeros.update(
+            (clock, state.stamp - state.clocks[clock] * state.unit) for clock in clocks if state.clocks[clock] >= 0
+        )
 
     def _standing(
         self, before: SystemState, state: SystemState, move: Move, since: Mapping[Entry, SystemState]

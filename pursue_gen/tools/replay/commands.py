@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import List, Mapping, Sequence
 
+from pursue_gen.language.network_names import ORDER_DESK
 from pursue_gen.tools.replay.finding import FAULT, NOTE, UNRECORDED, Finding
 from pursue_gen.tools.replay.game import Game
 from pursue_gen.tools.replay.orders import Orders, in_time
@@ -33,6 +34,8 @@ class CommandCheck:
             word, seq = step.word, step.state.seq
             if self.game.is_deadline(*step.move[0]) and not step.is_command:
                 continue  # it passes by itself, whoever has said so before
+            if step.state.agent == ORDER_DESK:
+                continue  # people order on another topic, and the observer takes it with the plan for it
             orders = self.orders.get(step.before.plan)
             owners = orders.owners.get(step.move[0][0], frozenset()) if orders is not None else frozenset()
             by_hand = word is not None and (word.seq is None or (bool(word.node) and word.node not in controllers))

@@ -14,6 +14,7 @@ from pursue_gen.tools.simulation.junk import junk_word
 from pursue_gen.tools.simulation.nodes import ControllerNode, ObserverNode, PeopleNode, to_process
 from pursue_gen.tools.simulation.opponents import Opponent, kind_in_mission
 from pursue_gen.tools.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome, Settings
+from pursue_gen.tools.simulation.people_orders import PeopleOrders
 from pursue_gen.tools.simulation.planner import SimulatedPlanner
 from pursue_gen.tools.simulation.promises import Promises
 from pursue_gen.tools.simulation.recorder import EPSILON, Judgement, Recorder
@@ -71,6 +72,7 @@ class SimulatedMission:
             agent: SimulatedAgent(stage, agent, self.events, self.fault_plan, name, self._report, stage.reaction)
             for agent in stage.reports
         }
+        self._orders = PeopleOrders(stage, self.events, name, self._order)
         self._latched: Optional[SystemState] = None
         self._plan: Optional[Dict[str, Any]] = None
         self._reachable = dict.fromkeys(stage.strategies, START)
@@ -87,6 +89,7 @@ class SimulatedMission:
         self._schedule_faults()
         events.schedule(START, lambda: self._observer.call("hear", "_start_"))
         self.recorder.on_word(START, "_start_", "UI")
+        self._orders.begin()
         while self._observer.mission.status not in ENDED and not self._complaints:
             moment = events.next_time()
             if moment is None or moment > end:
@@ -243,6 +246,11 @@ class SimulatedMission:
             self._observer.call("hear", text)
 
         self._connections.send(f"report:{agent}", 0.0, to_process(self._observer, deliver), self._machine_of(agent))
+
+    def _order(self, text: str) -> None:
+        """A person orders something."""
+        self._note(f"somebody orders {text}")
+        self._observer.call("order", text)
 
     def _machine_of(self, agent: str) -> str:
         return self._stage.controller_of(agent) or ""

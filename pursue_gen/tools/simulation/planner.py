@@ -54,9 +54,8 @@ class SimulatedPlanner:
             return {"won": False, "why": "the workspace has no planner"}
         from pursue_gen.tools.replanning import replan
 
-        what = {key: value for key, value in request._asdict().items() if key not in ("number", "stamp")}
         SEARCHES.set()
         try:
-            return dict(replan({"format": 1, "game": self._stage.request, **what}, STATES))
+            return dict(replan({"format": 1, "game": self._stage.request, **request.data()}, STATES))
         finally:
             SEARCHES.clear()

@@ -1,0 +1,46 @@
+"""What people order during a mission: events that happen only with a plan that is proven to keep all with them.
+
+Their automaton has a variable that is 0 in every game, so in none of them an order comes. An observer that takes an
+order sets it to 1 for this one event, together with the plan that was proven from the state behind it.
+"""
+
+from __future__ import annotations
+
+from typing import Iterator, Optional, Sequence, Tuple
+
+from pursue_gen.language import network_names as names
+from pursue_gen.language.scenario import Event, MostOpen, Scenario
+from pursue_gen.tga.network import Automaton, Clause, Edge, Guard, Location, Sync, Test
+from pursue_gen.tga.requests import fewer_open
+from pursue_gen.tga.rules import Turns
+
+
+def orders(scenario: Scenario) -> Tuple[Event, ...]:
+    """The events that people order, in the order of the scenario."""
+    return tuple(event for event in scenario.events if event.on_order)
+
+
+def order_desk(scenario: Scenario, in_turn: Sequence[Tuple[str, Turns]]) -> Optional[Automaton]:
+    """The automaton of what people order; None where they order nothing. `in_turn`: the variables of rules and counts,
+    with their turns."""
+    edges = tuple(_order(event, scenario, in_turn) for event in orders(scenario))
+    return Automaton(names.ORDER_DESK, (Location(names.LISTENING),), names.LISTENING, edges) if edges else None
+
+
+def _order(event: Event, scenario: Scenario, in_turn: Sequence[Tuple[str, Turns]]) -> Edge:
+    """The edge of an order: its turn in all rules that name it, and fewer of it open than there may be."""
+    turn = (
+        tuple(Test(variable, number) for number in turns[event.name])
+        for variable, turns in in_turn
+        if event.name in turns
+    )
+    clauses = ((Test(names.DESK_OPEN, 1),), *turn, *_free(event, scenario))
+    happens = Sync(names.event(event.name), sends=True)
+    closed = ((names.DESK_OPEN, 0),)
+    return Edge(names.LISTENING, names.LISTENING, Guard(integers=clauses), happens, closed, controllable=False)
+
+
+def _free(event: Event, scenario: Scenario) -> Iterator[Clause]:
+    """That an objective has room for one more of it."""
+    limits = (each for each in scenario.assumed if isinstance(each, MostOpen) and each.event.name == event.name)
+    yield from (fewer_open(each, scenario) for each in limits)

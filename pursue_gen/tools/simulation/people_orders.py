@@ -1,0 +1,43 @@
+"""People who order in a simulated mission: at any time, what the scenario lets them, as soon as they like."""
+
+from __future__ import annotations
+
+import random
+from typing import Callable, Dict
+
+from pursue_gen.language.refs import Ref
+from pursue_gen.language.scenario import Request, Respond
+from pursue_gen.tga.on_order import orders
+from pursue_gen.tools.simulation.event_queue import EventQueue
+from pursue_gen.tools.simulation.stage import Stage
+
+USUAL = 60.0
+"""Time units between orders where none has a deadline. Not measured."""
+
+
+class PeopleOrders:
+    """Orders of a mission, which `order` gets as texts: one after the other, at random times."""
+
+    def __init__(self, stage: Stage, events: EventQueue, seed: str, order: Callable[[str], None]) -> None:
+        self._menu = tuple(event.name for event in orders(stage.scenario))
+        self._deadlines: Dict[str, float] = {}
+        duties = (each for each in stage.scenario.safety if isinstance(each, (Respond, Request)))
+        timed = ((each.trigger.name, float(each.deadline)) for each in duties if isinstance(each.trigger, Ref))
+        for event, longest in timed:
+            if event in self._menu:
+                self._deadlines[event] = min(longest, self._deadlines.get(event, longest))
+        self._events, self._order = events, order
+        self._draw = random.Random(f"{seed}/orders")
+
+    def begin(self) -> None:
+        """Order from now on, where there is something to order."""
+        if self._menu:
+            longest = max(self._deadlines.values(), default=USUAL)
+            self._events.schedule(self._events.now + self._draw.uniform(0, longest), self._next)
+
+    def _next(self) -> None:
+        event = self._draw.choice(self._menu)
+        deadline = self._deadlines.get(event)
+        sooner = deadline is not None and self._draw.random() < 0.5
+        self._order(f"{event} within {self._draw.uniform(0.2, 1.0) * (deadline or 0):.1f}" if sooner else event)
+        self.begin()

@@ -1,0 +1,176 @@
+"""What people order while a mission is under way: texts, the queue of what is looked at, answers.
+
+An order is an event that no game has. It is accepted once a plan is proven that keeps all promises with it, from the
+state behind it. Times are seconds of ROS time, unless they are said to be time units.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Dict, List, NamedTuple, Optional, Tuple
+
+from pursue_runtime.model import Edge, Model, Move, Position
+from pursue_runtime.sentences import marked
+
+KIND = "orders"
+"""The kind of the automaton of what people order."""
+
+MOST_WAITING = 20
+"""So many orders wait for their answer at most: each takes a search of its own."""
+
+ATTEMPTS = 8
+"""So often a plan for an order is looked for, each time from another state, before the order is refused."""
+
+LEAD_TIME, WINDOW = 2.0, 2.0
+"""Seconds from the request for such a plan until it may come into force, and for how long it may."""
+
+_UNITS = {"": 0.0, "s": 1.0, "min": 60.0, "h": 3600.0}
+"""Units behind the time of an order, in seconds; without one it is in time units of the scenario."""
+
+_TEXT = re.compile(r"\s*([A-Za-z]\w*)(?:\s+within\s+(\d{1,9}(?:\.\d{1,6})?)\s*(s|min|h)?)?\s*", re.ASCII)
+
+EXPECTED = "the name of an order, perhaps with a time, as in: tea within 300 (time units), tea within 5 min"
+
+
+class PersonOrder(NamedTuple):
+    """An order as it came: its event, within how many time units it is to be answered (None: as the scenario promises),
+    when it came, and the text that it is called by."""
+
+    event: str
+    within: Optional[float]
+    came: float
+    text: str
+
+
+class OrderAnswer(NamedTuple):
+    """The answer to an order: whether it is accepted, by when it is answered at the latest (ROS time; 0: it has no
+    deadline, or is refused), within how many time units it could be promised (0: that is not known), and why it is
+    refused, a sentence."""
+
+    order: str
+    accepted: bool
+    by: float = 0.0
+    possible: float = 0.0
+    why: str = ""
+
+
+class Effect(NamedTuple):
+    """What an order does: the moves, and the clocks that it starts, with the value (time units) that they begin with,
+    more than 0 where it is to be answered sooner than the scenario promises."""
+
+    moves: Tuple[Move, ...]
+    clocks: Dict[str, float]
+    deadline: Optional[float]
+    """Time units until the first of its answers is due; None: none is."""
+
+    def after(self, position: Position, passed: float) -> Position:
+        """The position that it leads to, where so many time units have passed since it came."""
+        after = Model.after(self.moves, position)
+        return after._replace(clocks={**after.clocks, **{name: at + passed for name, at in self.clocks.items()}})
+
+
+class Refused(Exception):
+    """An order cannot be taken; its text, a sentence, says why."""
+
+
+def read_order(text: str, came: float, unit: float) -> PersonOrder:
+    """Read `event` or `event within 5 min`; `unit`: seconds per time unit. Raises Refused."""
+    match = _TEXT.fullmatch(text) if len(text) <= 200 else None
+    if match is None:
+        raise Refused(f"this is no order; expected {EXPECTED}")
+    event, number, unit_name = match.groups()
+    if number is None:
+        return PersonOrder(event, None, came, event)
+    seconds = _UNITS[unit_name or ""]
+    within = float(number) * seconds / unit if seconds else float(number)
+    return PersonOrder(event, within, came, " ".join(text.split()))
+
+
+def menu(model: Model) -> Tuple[str, ...]:
+    """Return what people can order, in the order of the scenario."""
+    return tuple(edge.word for automaton in model.of_kind(KIND) for edge in automaton.edges)
+
+
+def effect(model: Model, position: Position, order: PersonOrder) -> Effect:
+    """Return what an order does in this position. Raises Refused."""
+    orders = menu(model)
+    if order.event not in orders:
+        known = f"expected one of {', '.join(map(marked, orders))}" if orders else "this scenario has no orders"
+        raise Refused(f"nobody can order {order.event}; {known}")
+    (desk,) = model.of_kind(KIND)
+    closed = _edge(desk.edges, order.event).assign
+    open_ = position._replace(values={**position.values, **dict.fromkeys(closed, 1)})
+    moves = model.joint_move(open_, order.event, desk.name)
+    if moves is None:
+        raise Refused(f"{marked(order.event)} cannot be ordered now: it is not its turn, or as many wait as may")
+    limits = {
+        clock: bound.bound
+        for name, edge in moves
+        for bound in model.bounds_of(name, edge.target, open_.values)
+        for clock in edge.resets
+        if bound.left == clock
+    }
+    if len(moves) == 1 and any(_listens(automaton.edges, order.event) for automaton in model.of_kind("safety")):
+        raise Refused(f"{marked(order.event)} was ordered already, and waits for its answer")
+    if order.within is None:
+        return Effect(moves, dict.fromkeys(limits, 0.0), min(limits.values(), default=None))
+    if not limits:
+        raise Refused(f"the scenario gives {marked(order.event)} no deadline: order it without within")
+    if order.within > min(limits.values()):
+        most = f"{min(limits.values()):g}"
+        raise Refused(f"the scenario promises {marked(order.event)} within {most} time units: order it within that")
+    return Effect(moves, {clock: limit - order.within for clock, limit in limits.items()}, order.within)
+
+
+def _edge(edges: Tuple[Edge, ...], event: str) -> Edge:
+    return next(edge for edge in edges if edge.word == event)
+
+
+def _listens(edges: Tuple[Edge, ...], event: str) -> bool:
+    return any(edge.word == event and edge.sync == "receive" for edge in edges)
+
+
+class Ordering:
+    """The orders that wait for their answer, the first of which is looked at, and the answers that were given.
+
+    `attempts`: how often a plan was looked for with the first one.
+    """
+
+    def __init__(self) -> None:
+        self.waiting: List[PersonOrder] = []
+        self.attempts = 0
+        self._count = 0
+        self._answers: List[OrderAnswer] = []
+
+    @property
+    def first(self) -> Optional[PersonOrder]:
+        """Return the order that is looked at; None: there is none."""
+        return self.waiting[0] if self.waiting else None
+
+    @property
+    def revision(self) -> Tuple[int, int, int]:
+        """Return a value that changes with what is ordered and answered."""
+        return self._count, len(self.waiting), self.attempts
+
+    def add(self, order: PersonOrder) -> None:
+        """Take an order. Raises Refused where too many wait."""
+        if len(self.waiting) == MOST_WAITING:
+            raise Refused(f"{MOST_WAITING} orders wait for their answer already; order it again later")
+        self.waiting.append(order)
+        self._count += 1
+
+    def answer(self, answer: OrderAnswer) -> None:
+        """Answer the first order."""
+        self.waiting.pop(0)
+        self.attempts = 0
+        self.say(answer)
+
+    def say(self, answer: OrderAnswer) -> None:
+        """Give an answer to an order that was not taken."""
+        self._answers.append(answer)
+        self._count += 1
+
+    def drain(self) -> List[OrderAnswer]:
+        """Return the answers that were given since the last call."""
+        answers, self._answers = self._answers, []
+        return answers
