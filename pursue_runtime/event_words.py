@@ -11,6 +11,8 @@ PLAN = "pursue/plan"
 MARKERS = "pursue/markers"
 SEEN = "pursue/seen"
 PLAIN_WORDS = "pursue/plain_words"
+ORDERS, ANSWERS = "pursue/orders", "pursue/answers"
+"""What people order while a mission is under way, a topic and a service, and the answers."""
 
 START, PING, STOP, FINISH = "_start_", "_ping_", "_stop_", "Finish!"
 PLANNED = "_plan_"

@@ -109,7 +109,7 @@ def check_events(scenario: Scenario) -> Iterator[Diagnostic]:
             yield from _ordered(event, [ref for _, ref in (*doers, *partners)], scenario)
             continue
         if not doers:
-            hint = f"give it to an agent: can_do {event.name}, or delete the event; on_order if people order it"
+            hint = f"give it to an agent: can_do {event.name}, or delete the event"
             yield error("PML150", f"nobody can do {event.name}", event.span, hint)
         for agent, ref in doers:
             way = "way that it may take" if scenario.closed_to(agent.name) else "way"

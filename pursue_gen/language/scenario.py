@@ -148,6 +148,11 @@ class Scenario:
         """The states that are not known at first: the world says what they are, as it says what agents do."""
         return tuple(state.name for state in self.states if state.is_found_out)
 
+    @property
+    def orders(self) -> Tuple[Event, ...]:
+        """The events that people order during a mission."""
+        return tuple(event for event in self.events if event.on_order)
+
     def bound_by(self, rule: Rule) -> Tuple[Agent, ...]:
         """The agents that have a turn of their own in a rule for each of them; none where all have one turn."""
         named = {ref.name for ref in rule.events} if rule.each else set()

@@ -15,7 +15,10 @@ def unneeded(scenario: Scenario, strategy: Strategy) -> Tuple[Agent, ...]:
     """The controllable agents that the strategy never moves, and whose mere presence helps nobody.
 
     Who stands at a place of a patrol, is named in a condition, or may be needed by somebody else's event, is needed.
+    So are all where people may order something.
     """
+    if scenario.orders:
+        return ()
     moves = [move for block in strategy.blocks for command in block.commands for move in command.moves]
     moved = {move.automaton for move in moves}
     begun = {move.edge.channel for move in moves}

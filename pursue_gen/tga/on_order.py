@@ -15,15 +15,10 @@ from pursue_gen.tga.requests import fewer_open
 from pursue_gen.tga.rules import Turns
 
 
-def orders(scenario: Scenario) -> Tuple[Event, ...]:
-    """The events that people order, in the order of the scenario."""
-    return tuple(event for event in scenario.events if event.on_order)
-
-
 def order_desk(scenario: Scenario, in_turn: Sequence[Tuple[str, Turns]]) -> Optional[Automaton]:
     """The automaton of what people order; None where they order nothing. `in_turn`: the variables of rules and counts,
     with their turns."""
-    edges = tuple(_order(event, scenario, in_turn) for event in orders(scenario))
+    edges = tuple(_order(event, scenario, in_turn) for event in scenario.orders)
     return Automaton(names.ORDER_DESK, (Location(names.LISTENING),), names.LISTENING, edges) if edges else None
 
 

@@ -51,7 +51,7 @@ def model_data(network: Network, objective: Objective, scenario: Scenario, react
 
 def _format(has_partners: bool, scenario: Scenario, objective: Objective) -> int:
     """The format of model.yaml, the oldest that can say all of it."""
-    if any(event.on_order for event in scenario.events):
+    if scenario.orders:
         return 7
     if any(event.split for event in scenario.events) or any(agent.is_somewhere for agent in scenario.agents):
         return 6

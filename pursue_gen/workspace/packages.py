@@ -141,6 +141,7 @@ def files_of(
     own = _templates_of(templates / package.kind)
     context["folders"] = sorted({*context["folders"], *_folders(own)})
     context["messages"] = [Path(path).name for path in own if path.endswith(".msg")]
+    context["services"] = [Path(path).name for path in own if path.endswith(".srv")]
     for path, template in {**_templates_of(templates / _COMMON), **own}.items():
         files[path] = _content(template, context, jinja, templates)
     _check_manifest(files["package.xml"], f"src/{package.name}/package.xml")

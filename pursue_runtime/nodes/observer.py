@@ -13,7 +13,7 @@ import os
 import threading
 import time
 from functools import partial
-from typing import Any, Dict, List, Mapping
+from typing import Any, Dict, List, Mapping, Optional
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -39,6 +39,7 @@ from pursue_runtime.nodes.node import (
     start_thread,
     subscribe,
 )
+from pursue_runtime.nodes.order_desk import OrderDesk
 from pursue_runtime.nodes.plain_words import PlainWords
 from pursue_runtime.nodes.process import restart_process
 from pursue_runtime.nodes.publishing import ServedFirst, is_connected
@@ -47,6 +48,7 @@ from pursue_runtime.nodes.state_printer import StatePrinter
 from pursue_runtime.nodes.witness import Witnesses
 from pursue_runtime.observer.journal import Journal, last_mission
 from pursue_runtime.observer.mission import Mission
+from pursue_runtime.observer.ordering import menu
 from pursue_runtime.observer.planner import Planner, PlannerAnswer
 from pursue_runtime.observer.returning import Inbox, take_up
 from pursue_runtime.observer.settings import ARGUMENTS, read_settings
@@ -62,6 +64,9 @@ CLOCK = 10.0
 
 class Observer:
     """The mission on ROS: one lock, so that events are taken one by one, in the order of their arrival."""
+
+    desk: Optional[OrderDesk] = None
+    """Where people order; None where the scenario has no orders, and before the first state was published."""
 
     def __init__(self, package: Package, told: Mapping[str, str]) -> None:
         self.package = package
@@ -99,6 +104,9 @@ class Observer:
         self.witnesses.await_subscribers(self.states)
         returning = self.inbox.returning
         self.publish([self.mission.state(returning.floor if returning else self.now())])
+        self.mission.ordering.drain()  # those of before a restart
+        if menu(self.mission.model):
+            self.desk = OrderDesk(partial(self.call, "order"), self.now, self.ending)
         self.witnesses.follow(self.on_seen)
         self.words = subscribe(EVENTS, String, self.on_word, self.ending, tcp_nodelay=True)
         pulses = subscribe("/diagnostics", DiagnosticArray, self.on_diagnostics, self.ending, queue_size=100)
@@ -222,8 +230,7 @@ class Observer:
 
     def answer(self, answer: PlannerAnswer) -> None:
         """Handle the planner's answer."""
-        number, plan, why = answer
-        self.call(*(("unplanned", number, why) if plan is None else ("planned", number, plan)))
+        self.call(*answer)
 
     def on_diagnostics(self, message: DiagnosticArray) -> None:
         """Handle reports of nodes; a controller that does not have this mission counts as silent."""
@@ -293,6 +300,8 @@ class Observer:
             self.proposed = proposal["plan"]
             self.send(self.plans, json.dumps({**proposal, "mission": self.mission.name}))
         self.journal.sync_soon()
+        if self.desk is not None:
+            self.desk.answer(self.mission.ordering.drain())
         self.planner.request_plan(self.mission.plan_request)
         moment, real = self.inbox.next_moments(self.now())
         reals = [each for each in (real, self.repeats.next_moment()) if each is not None]

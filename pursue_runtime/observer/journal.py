@@ -31,6 +31,7 @@ CALLS: Mapping[str, Callable[..., List[SystemState]]] = {
     "back": Mission.on_controller_back,
     "planned": Mission.on_plan,
     "unplanned": Mission.on_no_plan,
+    "refused": Mission.on_refused,
     "searching": Mission.on_long_search,
     "stop": Mission.stop,
     "restarted": Mission.on_restart,

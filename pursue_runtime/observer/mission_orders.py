@@ -8,18 +8,23 @@ from pursue_runtime.model import Move
 from pursue_runtime.observer.mission_status import MissionStatus
 from pursue_runtime.observer.ordering import (
     ATTEMPTS,
-    LEAD_TIME,
+    PATIENCE,
     WINDOW,
     Effect,
     OrderAnswer,
     PersonOrder,
     Refused,
+    called,
     effect,
     read_order,
 )
 from pursue_runtime.observer.planning import Ordered, PlanRequest, Proposal, covers
 from pursue_runtime.sentences import as_sentence, in_words
 from pursue_runtime.state import LIVE, RUNNING, SystemState
+from pursue_runtime.zones import INFINITY
+
+BUSY = "what is under way changes faster than plans are found; order it again later"
+"""Why an order is refused that no plan came for in time."""
 
 NOTHING: Mapping[str, float] = {}
 
@@ -40,7 +45,7 @@ class MissionOrders(MissionStatus):
             effect(self.model, self.position(now), order)
             self.ordering.add(order)
         except Refused as refusal:
-            self._refuse(text.strip()[:80], str(refusal))
+            self._refuse(called(text), str(refusal))
             return []
         self._log("info", f"ordered: {order.text}")
         return self._status_changes(now)
@@ -72,8 +77,12 @@ class MissionOrders(MissionStatus):
         if done.deadline is not None and passed >= done.deadline:
             raise Refused("its time was over before a plan was found")
         ends = [delay for name, delay in self._bounds(self.position(now)) if name not in self.late | set(self.lost)]
-        lead = max(LEAD_TIME, self._planning.lead_time) / self._unit
-        ahead = max(0.0, min([lead, *ends]))
+        ahead = max(self._planning.lead_time, self.ordering.lead_time) / self._unit
+        if min(ends, default=INFINITY) < ahead:
+            if now > order.came + PATIENCE:
+                raise Refused(BUSY)
+            self._planning.reset()
+            return  # something ends before a plan can come: then the order is looked at again
         ordered = Ordered(order.event, order.came, done.clocks, WINDOW / self._unit)
         excused = frozenset(self.late | set(self.lost))
         place = self.counts["taken"], order.came
@@ -84,15 +93,20 @@ class MissionOrders(MissionStatus):
         request = self._planning.request
         self.ordering.attempts += request is not None and request is not before
         if self._planning.no_plan_reason or self.ordering.attempts > ATTEMPTS:
-            raise Refused(f"what is under way changes faster than plans are found ({ATTEMPTS} attempts)")
+            raise Refused(BUSY)
 
     def on_no_plan(self, number: int, why: str, now: float) -> List[SystemState]:
         """Take that there is no plan for the request of this number: an order is refused, or as in MissionStatus."""
+        return self.on_refused(number, why, 0.0, now)
+
+    def on_refused(self, number: int, why: str, more: float, now: float) -> List[SystemState]:
+        """The same; `more`: so many time units later than it is wanted the order could be promised, 0: that is not
+        known."""
         request, order = self._planning.request, self.ordering.first
         if request is None or request.number != number or request.order is None or order is None:
             return super().on_no_plan(number, why, now)
         self._planning.reset()
-        self._refuse(order.text, why)
+        self._refuse(order.text, why, (order.within or 0.0) + more if more else 0.0)
         return self._status_changes(now)
 
     # Taking it --------------------------------------------------------------------------------------------------------
@@ -123,6 +137,7 @@ class MissionOrders(MissionStatus):
         late = now > begin + ordered.window * self._unit + 1e-9
         if late or not covers(proposal.cover, position, self._tolerance):
             self._planning.expire(proposal, now)
+            self.ordering.lead_time = self._planning.lead_time
             return self._status_changes(now)
         return self._accept(proposal, order, done, now)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from typing import Dict, List, NamedTuple, Optional, Tuple
 
+from pursue_runtime.event_words import one_line
 from pursue_runtime.model import Edge, Model, Move, Position
 from pursue_runtime.sentences import marked
 
@@ -18,11 +19,14 @@ KIND = "orders"
 MOST_WAITING = 20
 """So many orders wait for their answer at most: each takes a search of its own."""
 
-ATTEMPTS = 8
+ATTEMPTS = 20
 """So often a plan for an order is looked for, each time from another state, before the order is refused."""
 
-LEAD_TIME, WINDOW = 2.0, 2.0
-"""Seconds from the request for such a plan until it may come into force, and for how long it may."""
+WINDOW = 2.0
+"""Seconds for which such a plan may come into force, from its begin on."""
+
+PATIENCE = 60.0
+"""Seconds for which an order waits at most for a moment in which nothing ends before a plan can come."""
 
 _UNITS = {"": 0.0, "s": 1.0, "min": 60.0, "h": 3600.0}
 """Units behind the time of an order, in seconds; without one it is in time units of the scenario."""
@@ -53,6 +57,13 @@ class OrderAnswer(NamedTuple):
     possible: float = 0.0
     why: str = ""
 
+    def text(self, now: float) -> str:
+        """Return the answer as a sentence at the time `now`, with names in braces."""
+        if self.accepted:
+            return "accepted" + (f": answered in {max(0.0, self.by - now):.0f} s at the latest" if self.by else "")
+        could = f"; it could be promised within {self.possible:g} time units" if self.possible else ""
+        return f"refused: {self.why}{could}"
+
 
 class Effect(NamedTuple):
     """What an order does: the moves, and the clocks that it starts, with the value (time units) that they begin with,
@@ -79,11 +90,14 @@ def read_order(text: str, came: float, unit: float) -> PersonOrder:
     if match is None:
         raise Refused(f"this is no order; expected {EXPECTED}")
     event, number, unit_name = match.groups()
-    if number is None:
-        return PersonOrder(event, None, came, event)
     seconds = _UNITS[unit_name or ""]
-    within = float(number) * seconds / unit if seconds else float(number)
-    return PersonOrder(event, within, came, " ".join(text.split()))
+    within = None if number is None else float(number) * seconds / unit if seconds else float(number)
+    return PersonOrder(event, within, came, called(text))
+
+
+def called(text: str) -> str:
+    """Return what an order is called by in its answer: its text on one line."""
+    return one_line(text)[:80]
 
 
 def menu(model: Model) -> Tuple[str, ...]:
@@ -133,12 +147,12 @@ def _listens(edges: Tuple[Edge, ...], event: str) -> bool:
 class Ordering:
     """The orders that wait for their answer, the first of which is looked at, and the answers that were given.
 
-    `attempts`: how often a plan was looked for with the first one.
+    `attempts`: how often a plan was looked for with the first one; `lead_time`: seconds that this has taken so far.
     """
 
     def __init__(self) -> None:
         self.waiting: List[PersonOrder] = []
-        self.attempts = 0
+        self.attempts, self.lead_time = 0, 0.0
         self._count = 0
         self._answers: List[OrderAnswer] = []
 
@@ -162,7 +176,7 @@ class Ordering:
     def answer(self, answer: OrderAnswer) -> None:
         """Answer the first order."""
         self.waiting.pop(0)
-        self.attempts = 0
+        self.attempts, self.lead_time = 0, 0.0
         self.say(answer)
 
     def say(self, answer: OrderAnswer) -> None:

@@ -10,13 +10,22 @@ import signal
 import subprocess
 import threading
 import time
-from typing import Any, Callable, Dict, Mapping, Optional, Tuple
+from typing import Any, Callable, Mapping, Optional, Tuple
 
 from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.observer.planning import PlanRequest
 
-PlannerAnswer = Tuple[int, Optional[Dict[str, Any]], str]
-"""The number of the request, the plan or None, and why there is none."""
+PlannerAnswer = Tuple[Any, ...]
+"""The name of a call of the mission (see journal.CALLS), and its arguments: a plan, or that there is none."""
+
+ORDER_LIMIT = 5.0
+"""Seconds of real time that the planner may take for an order of a person, who waits for the answer."""
+
+
+def no_plan(number: int, why: str, more: float = 0.0) -> PlannerAnswer:
+    """The answer that there is no plan for the request of this number, and why; `more`: so many time units later than
+    it is wanted an order could be promised, 0: that is not known."""
+    return ("refused", number, why, more) if more else ("unplanned", number, why)
 
 
 class Planner:
@@ -63,21 +72,23 @@ class Planner:
             threading.Thread(target=self._run, args=(request,), name="planner", daemon=True).start()
 
     def _run(self, request: PlanRequest) -> None:
-        plan, why = self._run_command(request)
+        answer = self._run_command(request)
         with self._lock:
             if request.number == self._number:
                 self._start = None
-        self._done((request.number, plan, why))
+        self._done(answer)
 
-    def _run_command(self, request: PlanRequest) -> Tuple[Optional[Dict[str, Any]], str]:
-        """The plan, or None and why there is none."""
+    def _run_command(self, request: PlanRequest) -> PlannerAnswer:
+        """The plan, or why there is none."""
+        number = request.number
         if not self._command:
-            return None, "planning is switched off (--planner)"
-        text = json.dumps({"format": 1, "game": self._game, **request.data()})
+            return no_plan(number, "planning is switched off (--planner)")
+        limit = {} if request.order is None else {"limit": ORDER_LIMIT}
+        text = json.dumps({"format": 1, "game": self._game, **request.data(), **limit})
         try:
             with self._lock:
                 if request.number != self._number:
-                    return None, "another plan has been requested"
+                    return no_plan(number, "another plan has been requested")
                 self._process = process = subprocess.Popen(
                     self._command,
                     stdin=subprocess.PIPE,
@@ -86,14 +97,15 @@ class Planner:
                     start_new_session=True,
                 )
         except OSError as problem:
-            return None, f"{self._command[0]} cannot be run here: {problem}; name another with planner:= or --planner"
+            why = f"{self._command[0]} cannot be run here: {problem}; name another with planner:= or --planner"
+            return no_plan(number, why)
         ended = threading.Event()
         threading.Thread(target=self._watch, args=(request.number, ended), name="search", daemon=True).start()
         try:
             output, errors = process.communicate(text.encode())
         finally:
             ended.set()
-        return _read(output, errors, process.returncode)
+        return _read(number, output, errors, process.returncode)
 
     def _watch(self, number: int, ended: threading.Event) -> None:
         """Report the search for this request, each time later, until it has ended."""
@@ -113,11 +125,13 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
         os.killpg(process.pid, signal.SIGKILL)
 
 
-def _read(output: bytes, errors: bytes, status: int) -> Tuple[Optional[Dict[str, Any]], str]:
+def _read(number: int, output: bytes, errors: bytes, status: int) -> PlannerAnswer:
     try:
         answer = read_json(output)
-        return (answer, "") if answer["won"] else (None, str(answer["why"]))
-    except (BadText, KeyError, TypeError) as problem:
+        if answer["won"]:
+            return "planned", number, answer
+        return no_plan(number, str(answer["why"]), float(answer.get("possible", 0.0)))
+    except (BadText, KeyError, TypeError, ValueError) as problem:
         lines = errors.decode(errors="replace").strip().splitlines()
         why = lines[-1] if lines else f"its answer cannot be used: {problem}" if output else ""
-        return None, f"the planner failed (status {status})" + (f": {why}" if why else "")
+        return no_plan(number, f"the planner failed (status {status})" + (f": {why}" if why else ""))

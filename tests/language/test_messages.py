@@ -208,8 +208,8 @@ def test_no_nonsense_follows_from_a_syntax_error() -> None:
 
 def test_an_expected_list_reads_like_a_sentence() -> None:
     (finding,) = syntax_errors('event "e" e')
-    parts = "`label`, `collaborative`, `location`, `duration`, `may_stop`, `takes`, `gives`, `mounts`, `needs`"
-    assert f"expected {parts}, `at_most`, `in`, `only_if` or the end" in finding.message
+    parts = "`label`, `collaborative`, `location`, `duration`, `on_order`, `may_stop`, `takes`, `gives`, `mounts`"
+    assert f"expected {parts}, `needs`, `at_most`, `in`, `only_if` or the end" in finding.message
 
 
 BEFORE = '''poi "a"

@@ -129,6 +129,11 @@ def as_stored_manifest(folder: Path, text: str) -> None:
     manifest(str(folder), digest)
 
 
+def as_planner_answer(text: str) -> None:
+    name, _, said = read_answer(1, text.encode(), b"", 0)
+    refusing(None if name == "unplanned" else said, str(said))
+
+
 def as_planner_request(folder: Path, text: str) -> None:
     command = [sys.executable, "-m", "pursue_gen", "replan"]
     done = subprocess.run(command, input=text.encode(), capture_output=True, timeout=PATIENCE, check=False, cwd=ROOT)
@@ -138,7 +143,7 @@ def as_planner_request(folder: Path, text: str) -> None:
 
 JSON_READERS: Dict[str, Callable[[Path, str], object]] = {
     "a new plan": lambda _, text: parse_plan(f'{{"format": 1, "plan": 1, "x": {text}}}'),
-    "a planner's answer": lambda _, text: refusing(*read_answer(f'{{"won": true, "x": {text}}}'.encode(), b"", 0)),
+    "a planner's answer": lambda _, text: as_planner_answer(f'{{"won": true, "x": {text}}}'),
     "a planner's request": lambda folder, text: as_planner_request(folder, f'{{"format": 1, "x": {text}}}'),
     "a bundle's manifest": lambda folder, text: as_manifest(folder, f'{{"format": 1, "x": {text}}}'),
     "an order": lambda folder, text: as_order(folder, f'{{"format": 1, "x": {text}}}'),

@@ -40,7 +40,7 @@ MODEL = Model(data())
 
 
 def test_an_older_run_time_refuses_it() -> None:
-    assert data()["format"] == 6 == NEWEST["model.yaml"]
+    assert data()["format"] == 6 <= NEWEST["model.yaml"]
 
 
 def begun() -> Mission:

@@ -167,8 +167,8 @@ def test_what_cmake_names_is_there_and_everything_is_installed(generated: Dict[s
         named = set(re.findall(r"(?:scripts|test)/[\w.]+", cmake))
         assert named <= inside
         assert {p for p in inside if p.startswith("scripts/")} <= named
-        assert all(p[len("msg/") :] in cmake for p in inside if p.startswith("msg/"))
-        folders = {p.split("/")[0] for p in inside if "/" in p} - {"scripts", "src", "msg"}
+        assert all(p[len("msg/") :] in cmake for p in inside if p.startswith(("msg/", "srv/")))
+        folders = {p.split("/")[0] for p in inside if "/" in p} - {"scripts", "src", "msg", "srv"}
         for folder in folders:
             assert re.search(rf"install\(DIRECTORY[^)]*\b{folder}\b", cmake), f"{name}/{folder} is not installed"
 

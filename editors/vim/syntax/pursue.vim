@@ -13,9 +13,9 @@ syntax keyword pursueKeyword after agents all always and answered any apart at a
 syntax keyword pursueKeyword can_do capacity carries charges collaborative controllable distance do does doing duration
 syntax keyword pursueKeyword each ends escort every except false_if from gives has holds hour human if in inflation
 syntax keyword pursueKeyword initially is label lasts leaves location may_stop metre minute mobile mounts needs never
-syntax keyword pursueKeyword never_with no none not of on_way one_way only_if open or order parts patrol per place
-syntax keyword pursueKeyword radius reaches reacts_to recharges robot robots second seen_at shown_by speed stays takes
-syntax keyword pursueKeyword then times to together tolerance true_if twice two unknown uses waits way when within
+syntax keyword pursueKeyword never_with no none not of on_order on_way one_way only_if open or order parts patrol per
+syntax keyword pursueKeyword place radius reaches reacts_to recharges robot robots second seen_at shown_by speed stays
+syntax keyword pursueKeyword takes then times to together tolerance true_if twice two unknown uses waits way when within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*\%([ \t]\+\%(s\|min\|h\|c\?m\)\>\%([ \t]\+\d[0-9.]*[ \t]\+\%(s\|min\|h\|c\?m\)\>\)*\)\?"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

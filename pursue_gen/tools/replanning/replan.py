@@ -44,6 +44,9 @@ _LITTLE = 100_000_000
 """The work of a search that is not for the game as it is alone: some five seconds. Not measured."""
 
 
+_FOR_AN_ORDER = 20_000_000
+"""The work of each search for an order of a person, who waits: some second. Not measured."""
+
 _FEW = 2_000
 """Where many places are patrolled only so many states are looked at if states are counted: each takes long. Measured on
 a patrol of six rooms by two robots."""
@@ -69,6 +72,7 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
     start = time.monotonic()
     request = read_request(data)
     limits = Limits(states=states) if states else Limits(request.seconds, careful_memory(), wall=True).since(start)
+    limits = replace(limits, work=_FOR_AN_ORDER if request.window else 0)
     answer = _answer(request, limits, states)
     if not answer["won"] and any(request.sooner.values()):
         later = longer(request, lambda more: bool(_answer(more, limits.since(start), states)["won"]))
@@ -88,7 +92,7 @@ def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
     if reason:
         return _lost(reason)
     own = followers(game, request)
-    start = limits.now()
+    start, little = limits.now(), limits.work or _LITTLE
     options = SolveOptions(limits)
     try:
         on = tours_from_here(game, objective, own, request, options)
@@ -101,10 +105,10 @@ def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
             most = replace(limits, states=min(states, _FEW))
             verdict = solve(network, objective, request.rules.reaction, limits=most.since(start))
         else:
-            shared = _won_in_shares(network, objective, request.rules.reaction, options)
+            shared = _won_in_shares(network, objective, request.rules.reaction, options, little)
             if shared is not None:
                 return _won(shared, network, request, None)
-            free = won_without_pauses(network, objective, request.rules.reaction, _LITTLE, options, states or LIMIT)
+            free = won_without_pauses(network, objective, request.rules.reaction, little, options, states or LIMIT)
             if free is not None:
                 return _won(free.strategy, network, request, None if states else objective)
             verdict = _verdict(network, objective, request.rules.reaction, limits.since(start))
@@ -126,12 +130,12 @@ def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
 
 
 def _won_in_shares(
-    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
+    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions, work: int
 ) -> Optional[Strategy]:
-    """A proven strategy in shares that little work finds; None where it finds none."""
+    """A proven strategy in shares that so much work finds; None where it finds none."""
     if not can_be_shared(network, objective):
         return None
-    little = replace(options, limits=replace(options.limits, work=_LITTLE))
+    little = replace(options, limits=replace(options.limits, work=work))
     found = won_in_shares(network, objective, reaction, little)
     return None if found is None else found.strategy
 
@@ -147,7 +151,7 @@ def _verdict(network: Network, objective: Objective, reaction: Fraction, limits:
     start = limits.now()
     if pauses(network):
         try:
-            return verdict_of(Budget(replace(limits, work=_LITTLE)), network, objective, reaction)
+            return verdict_of(Budget(replace(limits, work=limits.work or _LITTLE)), network, objective, reaction)
         except LimitHit:
             pass
     return solve(network, objective, reaction, limits=limits.since(start))

@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations
 from math import ceil
-from typing import AbstractSet, Dict, List, Mapping, Optional, Tuple, TypeVar
+from typing import AbstractSet, Dict, Iterator, List, Mapping, Optional, Tuple, TypeVar
 
 from pursue_gen.language.network_names import agent_clock, agent_position, going
 from pursue_gen.language.numbers import Number
@@ -50,7 +50,19 @@ def network_from(network: Network, request: Request, told_apart: bool = False) -
     reaction = request.rules.reaction
     grid = least_common_multiple((_FINEST, common_denominator([reaction, *there.times])))
     beyond = {name: value + 1 for name, value in clocks.items()} if told_apart else _beyond(there, ceil(reaction))
-    return replace(there, start=around(region(clocks, beyond, grid), Fraction(0), request.window))
+    start = around(region(clocks, beyond, grid), Fraction(0), request.window)
+    return replace(there, start=(*start, *_within_invariants(there, clocks)) if request.window else start)
+
+
+def _within_invariants(network: Network, clocks: Mapping[str, Fraction]) -> Iterator[Constraint]:
+    """That no clock is above the invariants that hold for these values in the initial locations: a plan that comes into
+    force later does so before an event that is due."""
+    for automaton in network.automata:
+        for location in automaton.locations:
+            if location.name == automaton.initial:
+                for bound in location.invariant:
+                    if _holds(bound, clocks):
+                        yield Constraint(bound.clock, None, Fraction(bound.bound), bound.op == "<")
 
 
 def start_clocks(network: Network, request: Request) -> Dict[str, Fraction]:

@@ -11,6 +11,7 @@ from typing import Any, Mapping, Optional, Tuple
 from pursue_gen.diagnostics import PursueError, error
 from pursue_gen.files import LARGEST_TEXT, read_text
 from pursue_gen.language import parse
+from pursue_gen.language.network_names import LOSE
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.partition import partition
@@ -56,9 +57,11 @@ class Game:
         return "" if self.given else " (if the workspace has another strategy than a new solution: --workspace)"
 
     def is_deadline(self, agent: str, edge: Edge) -> bool:
-        """True for a step by which an objective itself becomes broken, or a battery full or empty."""
-        passes = role_of(agent) is Role.SAFETY and not edge.controllable
-        return edge.sync is None and (passes or (agent, edge.target) in self.objective.bad)
+        """True for a step by which an objective itself, or a watcher, becomes broken, or a battery full or empty."""
+        role = role_of(agent)
+        passes = role is Role.SAFETY and not edge.controllable
+        broken = role is Role.WATCHER and edge.target == LOSE  # of a strategy that another one has replaced
+        return edge.sync is None and (passes or broken or (agent, edge.target) in self.objective.bad)
 
     @cached_property
     def moves(self) -> Moves:

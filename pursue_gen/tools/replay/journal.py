@@ -18,7 +18,7 @@ from pursue_runtime.observer.records import parse_record
 from pursue_runtime.state import LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 
 FORMATS = (1, 2)
-CALLS = ("hear", "tick", "silent", "back", "planned", "unplanned", "searching", "stop", "restarted", "adopted")
+CALLS = tuple("hear order tick silent back planned unplanned refused searching stop restarted adopted".split())
 END = "told"
 """Closes a journal: the end of the mission was published."""
 

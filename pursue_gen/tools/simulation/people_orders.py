@@ -7,7 +7,6 @@ from typing import Callable, Dict
 
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.scenario import Request, Respond
-from pursue_gen.tga.on_order import orders
 from pursue_gen.tools.simulation.event_queue import EventQueue
 from pursue_gen.tools.simulation.stage import Stage
 
@@ -19,7 +18,7 @@ class PeopleOrders:
     """Orders of a mission, which `order` gets as texts: one after the other, at random times."""
 
     def __init__(self, stage: Stage, events: EventQueue, seed: str, order: Callable[[str], None]) -> None:
-        self._menu = tuple(event.name for event in orders(stage.scenario))
+        self._menu = tuple(event.name for event in stage.scenario.orders)
         self._deadlines: Dict[str, float] = {}
         duties = (each for each in stage.scenario.safety if isinstance(each, (Respond, Request)))
         timed = ((each.trigger.name, float(each.deadline)) for each in duties if isinstance(each.trigger, Ref))

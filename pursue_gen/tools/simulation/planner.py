@@ -8,6 +8,7 @@ from typing import Any, Callable, Dict, Optional
 
 from pursue_gen.tools.simulation.event_queue import EventQueue
 from pursue_gen.tools.simulation.stage import Stage
+from pursue_runtime.observer.planner import no_plan
 from pursue_runtime.observer.planning import PlanRequest
 
 MIN_TIME, MAX_TIME = 0.2, 3.0
@@ -47,7 +48,7 @@ class SimulatedPlanner:
         if found.get("won"):
             self._answer("planned", request.number, found)
         else:
-            self._answer("unplanned", request.number, str(found["why"]))
+            self._answer(*no_plan(request.number, str(found["why"]), found.get("possible", 0.0)))
 
     def _replan(self, request: PlanRequest) -> Dict[str, Any]:
         if self._stage.request is None:

@@ -12,8 +12,8 @@ from typing import Any, List, Tuple
 
 import pytest
 
-from pursue_runtime.observer.planner import Planner
-from pursue_runtime.observer.planning import PlanRequest
+from pursue_runtime.observer.planner import ORDER_LIMIT, Planner
+from pursue_runtime.observer.planning import Ordered, PlanRequest
 from tests.runtime.test_again import gone
 from tests.waiting import PATIENCE, until
 
@@ -34,9 +34,9 @@ class Office:
         report = lambda number, seconds: self.searching.put((number, seconds))
         self.planner = Planner(command, {"name": "chase"}, limit, self.answers.put, report)
 
-    def ask(self, number: int = 1) -> Tuple[int, Any, str]:
+    def ask(self, number: int = 1) -> Tuple[str, int, Any]:
         self.planner.request_plan(request(number))
-        answer: Tuple[int, Any, str] = self.answers.get(timeout=2 * PATIENCE)
+        answer: Tuple[str, int, Any] = self.answers.get(timeout=2 * PATIENCE)
         return answer
 
 
@@ -51,7 +51,7 @@ def thrown(monkeypatch: pytest.MonkeyPatch) -> List[Any]:
 def test_it_is_asked_from_where_the_mission_is_and_its_plan_is_read(tmp_path: Path) -> None:
     copy = tmp_path / "request"
     program = f"import sys; open({str(copy)!r}, 'w').write(sys.stdin.read()); print({json.dumps(FOUND)!r})"
-    assert Office(program).ask(7) == (7, FOUND, "")
+    assert Office(program).ask(7) == ("planned", 7, FOUND)
     assert json.loads(copy.read_text()) == {
         "format": 1, "game": {"name": "chase"}, "locations": {"bot": "a"}, "values": {"Pbot": 1},
         "clocks": {"Cbot": 2.5}, "ahead": 1.5, "excused": ["dog"], "blocked": [["a", "b"]], "turning": ["cat"],
@@ -71,8 +71,19 @@ def test_it_is_asked_from_where_the_mission_is_and_its_plan_is_read(tmp_path: Pa
     ],
 )
 def test_without_a_plan_it_says_why(program: str, why: str, thrown: List[Any]) -> None:
-    number, plan, said = Office(program).ask()
-    assert (number, plan) == (1, None) and why in said
+    name, number, said = Office(program).ask()
+    assert (name, number) == ("unplanned", 1) and why in said
+
+
+def test_an_order_is_asked_with_a_limit_and_what_could_be_promised_is_told(tmp_path: Path) -> None:
+    copy = tmp_path / "request"
+    answer = json.dumps({"won": False, "why": "too soon", "possible": 12.5})
+    program = f"import sys; open({str(copy)!r}, 'w').write(sys.stdin.read()); print({answer!r})"
+    office = Office(program)
+    office.planner.request_plan(request(3)._replace(order=Ordered("tea", 1.0, {"Cobj": 20.0}, 2.0)))
+    assert office.answers.get(timeout=2 * PATIENCE) == ("refused", 3, "too soon", 12.5)
+    asked = json.loads(copy.read_text())
+    assert (asked["limit"], asked["window"], asked["sooner"]) == (ORDER_LIMIT, 2.0, {"Cobj": 20.0})
     assert not thrown
 
 
@@ -87,7 +98,7 @@ def test_one_that_takes_longer_than_the_limit_goes_on_and_says_so_each_time_late
     assert [office.searching.get(timeout=PATIENCE) for _ in range(3)] == [(5, 0.1), (5, 0.2), (5, 0.4)]
     assert office.planner.seconds >= 0.4
     leave.touch()
-    assert office.answers.get(timeout=PATIENCE) == (5, FOUND, "")
+    assert office.answers.get(timeout=PATIENCE) == ("planned", 5, FOUND)
     assert office.planner.seconds == 0.0
 
 
@@ -115,5 +126,5 @@ def test_who_is_not_wanted_any_more_is_killed(tmp_path: Path, thrown: List[Any])
     first, second = (int(number) for number in note.read_text().split())
     assert gone(first) and gone(second)
     answers = [office.answers.get(timeout=PATIENCE) for _ in range(2)]
-    assert sorted(number for number, _, _ in answers) == [1, 2] and all(plan is None for _, plan, _ in answers)
+    assert sorted(number for _, number, _ in answers) == [1, 2] and {name for name, *_ in answers} == {"unplanned"}
     assert not thrown, thrown

@@ -1,0 +1,64 @@
+"""People order while a mission is under way: accepted with a plan that is proven, refused with the reason."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+from launched_mission import LaunchedMission, launched
+from ros_world import Ros, lay_over
+
+from pursue_gen.language import parse
+from pursue_gen.solving.rules import DEFAULT
+from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.workspace import Options, write_workspace
+
+pytestmark = pytest.mark.ros
+
+TEA = """\
+poi "kitchen"
+poi "room1"
+poi "room2"
+connect kitchen and room1 distance 10
+connect kitchen and room2 distance 15
+event "tea1" on_order
+event "tea2" on_order
+event "serve1" location room1 duration 3
+event "serve2" location room2 duration 3
+agent "bot" controllable mobile 1 location kitchen can_do serve1, serve2
+objective: if tea1 then serve1 within 200
+objective: if tea2 then serve2 within 200
+"""
+
+PLANNER = f"env PYTHONPATH={Path(__file__).resolve().parents[2]} {sys.executable} -m pursue_gen replan"
+"""The real one, of these sources."""
+
+PUBLISH = "rostopic pub -1 pursue/orders std_msgs/String 'data: {}'"
+CALL = "rosservice call pursue/orders '{{order: {}}}'"
+
+
+def ask(run: LaunchedMission, command: str) -> str:
+    """The output of a command in the graph of the mission."""
+    with run.program(f"source devel/setup.bash; exec {command}", "asked") as program:
+        program.wait()
+        return program.output()
+
+
+def test_orders_are_accepted_with_a_plan_or_refused_with_the_reason(ros: Ros, tmp_path: Path) -> None:
+    read = parse(TEA, "tea.pur", "tea")
+    won, options = solve_scenario(read, DEFAULT), Options(reaction=DEFAULT.reaction)
+    folder = write_workspace(read, won.network, won.objective, won.strategy, options, tmp_path / "ws")
+    with launched(ros, lay_over(ros, folder), tmp_path, ("bot",), planner=PLANNER, time_unit=0.2) as run:
+        run.until(lambda: run.now()["status"] == "running")
+        assert "refused: nobody can order coffee; expected one of tea1, tea2" in ask(run, CALL.format("coffee"))
+        accepted = ask(run, CALL.format("tea1"))
+        assert "accepted: True" in accepted and "s at the latest" in accepted
+        assert run.now()["places"]["obj"] == "atRisk" and run.now()["plan"] == "1"
+        refused = ask(run, CALL.format("tea2 within 2"))
+        assert "accepted: False" in refused and "possible: " in refused and "possible: 0.0" not in refused
+        assert run.now()["places"]["obj2"] == "idle"
+        ask(run, PUBLISH.format("tea2"))
+        run.until(lambda: run.steps().count("serve1DONE") and run.steps().count("serve2DONE"))
+        assert run.now()["places"]["obj"] == run.now()["places"]["obj2"] == "idle"
+        assert run.now()["status"] == "running"

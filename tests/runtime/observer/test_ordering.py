@@ -1,0 +1,229 @@
+"""A mission that takes orders of people: with a plan that is proven with them, and no other."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List
+
+import pytest
+
+from pursue_gen.language import parse
+from pursue_gen.partition.strategy_data import cover_data
+from pursue_gen.solving.rules import DEFAULT
+from pursue_gen.solving.solution import Solution, solve_scenario
+from pursue_gen.tools.replanning import replan
+from pursue_gen.workspace.model_file import model_data
+from pursue_runtime.model import Model
+from pursue_runtime.observer.mission import Mission
+from pursue_runtime.observer.ordering import MOST_WAITING, WINDOW, OrderAnswer, Refused, read_order
+from pursue_runtime.strategy import read_cover
+
+TEA = """\
+poi "kitchen"
+poi "room1"
+poi "room2"
+connect kitchen and room1 distance 10
+connect kitchen and room2 distance 15
+event "tea1" on_order
+event "tea2" on_order
+event "serve1" location room1 duration 3
+event "serve2" location room2 duration 3
+agent "bot" controllable mobile 1 location kitchen can_do serve1, serve2
+objective: if tea1 then serve1 within 60
+objective: if tea2 then serve2 within 60
+"""
+
+STORY = parse(TEA, "tea.pur", "tea")
+WON: Solution = solve_scenario(STORY, DEFAULT)
+GAME = {
+    "format": 1, "name": "tea", "rules": {"ends": "reported", "reaction": "0.1"}, "controllers": "distributed",
+    "reach_obj": "dedicated", "scenario": TEA,
+}  # fmt: skip
+
+
+def plain(data: Any) -> Any:
+    """Data as a file holds them."""
+    if isinstance(data, dict):
+        return {key: plain(value) for key, value in data.items()}
+    return [plain(value) for value in data] if isinstance(data, (list, tuple)) else data
+
+
+class Counter:
+    """A mission under way, and people who order."""
+
+    def __init__(self) -> None:
+        model = Model(plain(model_data(WON.network, WON.objective, STORY, DEFAULT.reaction)))
+        cover = read_cover(plain(cover_data(WON.strategy)))
+        self.log: List[str] = []
+        self.mission = Mission(
+            model, cover, lambda _, text: self.log.append(text), on_uncovered="plan", controllers=("controller_bot",)
+        )
+        self.now = 100.0
+        self.mission.on_word("_start_", self.now)
+
+    def order(self, text: str) -> None:
+        self.mission.on_order(text, self.now)
+
+    def plan(self) -> Dict[str, Any]:
+        """What the planner answers to the request of now."""
+        request = self.mission.plan_request
+        assert request is not None
+        return replan({"format": 1, "game": GAME, **plain(request.data())}, states=5000)
+
+    def answered(self, after: float = 1.0) -> List[OrderAnswer]:
+        """The answers once the planner has answered, the controller has the plan, and it may come into force."""
+        request, answer = self.mission.plan_request, self.plan()
+        assert request is not None
+        self.now += after
+        if answer["won"]:
+            self.mission.on_plan(request.number, answer, self.now)
+            self.mission.on_word(f"controller_bot:_plan_@{request.number}", self.now)
+        else:
+            self.mission.on_refused(request.number, answer["why"], answer.get("possible", 0.0), self.now)
+        return self.tick()
+
+    def tick(self) -> List[OrderAnswer]:
+        self.mission.on_time(self.now)
+        return self.mission.ordering.drain()
+
+    def refusal(self, text: str) -> str:
+        self.order(text)
+        (answer,) = self.mission.ordering.drain()
+        assert not answer.accepted and self.mission.ordering.first is None
+        return answer.why
+
+
+@pytest.fixture
+def counter() -> Counter:
+    return Counter()
+
+
+def test_an_order_is_taken_with_its_plan_in_one_state(counter: Counter) -> None:
+    counter.order("tea1")
+    before = counter.mission.state(counter.now)
+    assert (before.locations["obj"], before.plan) == ("idle", 0)  # nothing is promised yet
+    (answer,) = counter.answered()
+    state = counter.mission.state(counter.now)
+    assert answer == OrderAnswer("tea1", True, 160.0)
+    assert (state.event, state.agent, state.locations["obj"], state.plan) == ("tea1", "order_desk", "atRisk", 1)
+    assert state.seq == before.seq + 1 and state.clocks["Cobj"] == 1.0  # it counts from when it was ordered
+    assert state.status == "running" and state.values["order_desk_open"] == 0
+
+
+def test_who_wants_it_sooner_gets_it_sooner(counter: Counter) -> None:
+    counter.order("tea1 within 30")
+    (answer,) = counter.answered()
+    assert (answer.accepted, answer.by) == (True, 130.0)
+    assert counter.mission.state(counter.now).clocks["Cobj"] == 31.0
+
+
+def test_what_cannot_be_promised_is_refused_with_what_could_be(counter: Counter) -> None:
+    counter.order("tea2 within 10")
+    (answer,) = counter.answered()
+    assert not answer.accepted and 20 < answer.possible < 30
+    assert "cannot be promised beside all that is promised already" in answer.why
+    state = counter.mission.state(counter.now)
+    assert (state.status, state.plan, state.locations["obj2"], state.seq) == ("running", 0, "idle", 1)
+    counter.order(f"tea2 within {answer.possible:g}")
+    assert counter.answered()[0].accepted
+
+
+def test_a_plan_comes_into_force_when_its_proof_begins_and_no_later_than_that_holds(counter: Counter) -> None:
+    counter.order("tea1")
+    request = counter.mission.plan_request
+    assert request is not None
+    assert counter.answered(0.5) == []
+    assert counter.mission.next_moment(counter.now) == request.stamp + request.ahead
+    counter.now = request.stamp + request.ahead + WINDOW + 0.1
+    assert counter.tick() == [] and counter.mission.state(counter.now).plan == 0
+    again = counter.mission.plan_request
+    assert again is not None and again.number > request.number and again.ahead > request.ahead
+    assert again.clocks["Cobj"] == pytest.approx(counter.now - 100.0)
+
+
+def test_what_happens_meanwhile_is_looked_at_again(counter: Counter) -> None:
+    counter.order("tea1")
+    counter.answered()
+    counter.order("tea2")
+    first = counter.mission.plan_request
+    counter.now += 0.5
+    counter.mission.on_word(f"bot:bot_kitchen2room1@{counter.mission.seq}", counter.now)
+    second = counter.mission.plan_request
+    assert first is not None and second is not None and second.number > first.number
+    assert second.locations["bot"] == "going_kitchen_to_room1"
+    assert counter.answered()[0].accepted
+
+
+def test_orders_are_looked_at_one_after_the_other(counter: Counter) -> None:
+    counter.order("tea1")
+    counter.order("tea2")
+    assert [each.order for each in counter.answered()] == ["tea1"]
+    assert [each.order for each in counter.answered()] == ["tea2"]
+    assert counter.mission.state(counter.now).plan == 2 and counter.mission.plan_request is None
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("coffee", "nobody can order coffee; expected one of {tea1}, {tea2}"),
+        ("serve1", "nobody can order serve1"),
+        ("tea1 within", "this is no order; expected the name of an order"),
+        ("tea1 within 5 days", "this is no order"),
+        ("", "this is no order"),
+        ("tea1 " * 100, "this is no order"),
+        ("tea1 within 61", "the scenario promises {tea1} within 60 time units"),
+    ],
+)
+def test_what_cannot_be_ordered_is_said_at_once(counter: Counter, text: str, why: str) -> None:
+    assert counter.refusal(text).startswith(why)
+
+
+def test_what_waits_for_its_answer_is_not_ordered_again(counter: Counter) -> None:
+    counter.order("tea1")
+    counter.answered()
+    assert counter.refusal("tea1") == "{tea1} was ordered already, and waits for its answer"
+
+
+def test_nothing_is_ordered_before_the_start_while_it_holds_and_after_the_end(counter: Counter) -> None:
+    counter.mission.on_controller_silent("controller_bot", counter.now)
+    assert "the mission is holding: controller_bot is silent" in counter.refusal("tea1")
+    counter.mission.on_controller_back("controller_bot", counter.now)
+    counter.order("tea1")
+    counter.mission.stop("enough", counter.now)
+    (answer,) = counter.mission.ordering.drain()
+    assert (answer.order, answer.accepted, answer.why) == ("tea1", False, "the mission is stopped")
+    assert "the mission is stopped" in counter.refusal("tea2")
+
+
+def test_too_many_orders_are_refused(counter: Counter) -> None:
+    for _ in range(MOST_WAITING):
+        counter.order("tea1")
+    assert counter.mission.ordering.drain() == []
+    counter.order("tea2")
+    assert [each.order for each in counter.mission.ordering.drain()] == ["tea2"]
+
+
+def test_a_command_for_the_state_before_is_stale(counter: Counter) -> None:
+    counter.order("tea1")
+    counter.answered()
+    old = counter.mission.seq - 1
+    counter.mission.on_word(f"bot:bot_kitchen2room1@{old}", counter.now)
+    assert counter.mission.counts["stale"] == 1 and counter.mission.state(counter.now).locations["bot"] == "kitchen"
+
+
+def test_an_answer_is_a_sentence() -> None:
+    assert OrderAnswer("tea", True, 160.0).text(100.0) == "accepted: answered in 60 s at the latest"
+    assert OrderAnswer("lamp", True).text(100.0) == "accepted"
+    assert OrderAnswer("tea", False, why="no", possible=9.5).text(0) == (
+        "refused: no; it could be promised within 9.5 time units"
+    )
+
+
+@pytest.mark.parametrize(("text", "within"), [("tea", None), ("tea within 90", 90), (" tea  within 3 min ", 90)])
+def test_times_have_units(text: str, within: Any) -> None:
+    assert read_order(text, 1.0, unit=2.0).within == within
+
+
+def test_no_text_is_taken_for_an_order() -> None:
+    for text in ("tea within -3", "tea within 1e3", "tea; rm", "tea\n\nwithin", "Tea within 3 minutes", "7"):
+        with pytest.raises(Refused):
+            read_order(text, 1.0, unit=1.0)
