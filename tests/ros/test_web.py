@@ -205,7 +205,7 @@ def test_a_person_gets_instructions_and_says_when_it_is_done(ros: Ros, tmp_path:
     options = Options(reaction=Rules().reaction)
     folder = write_workspace(scenario, won.network, won.objective, won.strategy, options, tmp_path / "ward")
     workspace = lay_over(ros, folder)
-    planned = "document.querySelector('#tasks .task-time').textContent.match(/for ([0-9.]+) now; planned: ([0-9.]+)/)"
+    planned = "document.querySelector('#tasks .task-time').textContent.match(/for ([0-9.]+); planned ([0-9.]+)/)"
     given = "time_unit:=0.8", "stay:=false", "/simulator/reports '[bot1]'"
     with mission(ros, workspace, tmp_path, "ward", *given) as (page, launched, _):
         page.wait("document.getElementById('status').textContent === 'ready'")
