@@ -40,11 +40,11 @@ def courses(scenario: Scenario, network: Network) -> Tuple[Status, ...]:
     for rule in (rule for rule in scenario.rules if not rule.each):
         automaton = network.automaton(rule.name)
         texts = {place.name: _turn(scenario, automaton, place.name) for place in automaton.locations}
-        found.append(Status(rule.name, rule.name, texts))
+        found.append(Status(rule.name, rule.name, texts, inside=True))
     for own in own_turns(scenario):
         order = own.order
         texts = {str(k): _turn(scenario, order, place.name) for k, place in enumerate(order.locations)}
-        found.append(Status(own.variable, own.name, texts))
+        found.append(Status(own.variable, own.name, texts, inside=True))
     variables = {name for name, _ in network.variables}
     for state in scenario.states:
         if names.state_value(state.name) in variables:
@@ -86,10 +86,10 @@ def _own(scenario: Scenario, network: Network) -> Iterator[Status]:
 def _assumptions(scenario: Scenario) -> Iterator[Status]:
     for number, assumption in enumerate(scenario.assumed, start=1):
         holds = {"1": "assumed", "0": "broken: not assumed any more"}
-        yield Status(names.assumption(number), assumption.clause, holds)
+        yield Status(names.assumption(number), assumption.clause, holds, inside=True)
         label, done = assumption.counted
         if done:
-            yield Status(names.assumption_count(number), label, dict(done))
+            yield Status(names.assumption_count(number), label, dict(done), inside=True)
 
 
 def _turns_of(request: Request, name: str) -> Iterator[Status]:
@@ -97,9 +97,9 @@ def _turns_of(request: Request, name: str) -> Iterator[Status]:
     if request.number == 0:
         places = [each.which for each in request.each]
         free = {str(k): f"the next one is {which}" for k, which in enumerate(places)}
-        yield Status(Role.SAFETY_TURN(name), request.text, {**free, str(len(places)): "no more may come"})
+        yield Status(Role.SAFETY_TURN(name), request.text, {**free, str(len(places)): "no more may come"}, inside=True)
         oldest = {str(k): f"next to be answered: {which}" for k, which in enumerate(places)}
-        yield Status(Role.SAFETY_OLDEST(name), request.text, oldest)
+        yield Status(Role.SAFETY_OLDEST(name), request.text, oldest, inside=True)
 
 
 def _objectives(scenario: Scenario, network: Network) -> Iterator[Status]:
@@ -109,10 +109,10 @@ def _objectives(scenario: Scenario, network: Network) -> Iterator[Status]:
             yield from _turns_of(objective, name)
         elif objective.order and names.rule_turn(name) in variables:
             following = {str(k): f"next: {scenario.shown(place)}" for k, place in enumerate(objective.order)}
-            yield Status(names.rule_turn(name), objective.text, following)
+            yield Status(names.rule_turn(name), objective.text, following, inside=True)
         if isinstance(objective, Pause):
             begun = f"{objective.following.shown} has begun too soon"
             said = {"0": "no pause", "1": f"since the end of {objective.event.shown}", "2": begun}
-            yield Status(Role.SAFETY_PAUSE(name), objective.text, said)
+            yield Status(Role.SAFETY_PAUSE(name), objective.text, said, inside=True)
         texts = {place.name: objective.status(place.name) for place in network.automaton(name).locations}
         yield Status(name, objective.text + objective.words.which, texts)

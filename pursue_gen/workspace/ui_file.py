@@ -17,6 +17,7 @@ from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.solving.answers import told
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.objectives import stated
+from pursue_gen.vocabulary.promises import promise_names, short_name
 from pursue_gen.vocabulary.statuses import statuses
 from pursue_gen.workspace.context import Options
 from pursue_gen.workspace.spots import Placing
@@ -58,7 +59,10 @@ def render(
     if idle:
         data["not_needed"] = inline(idle)
     data["statuses"] = [
-        inline({"of": each.of, "label": each.label, "texts": dict(each.texts)}) for each in statuses(scenario, network)
+        inline(
+            {"of": each.of, "label": each.label, "texts": dict(each.texts), **({"inside": True} if each.inside else {})}
+        )
+        for each in statuses(scenario, network)
     ]
     head = f"Written by pursue-gen {generator} for the UI and the simulator of {scenario.name}."
     return yaml_text(data, [head]).encode()
@@ -99,13 +103,13 @@ def _connection(way: Connection) -> List[Any]:
 
 
 def _objectives(scenario: Scenario, answers: Mapping[str, Fraction]) -> List[Dict[str, Any]]:
-    """What is to be achieved: a sentence for each statement, and the automata that watch it; none if it is given up.
-    Where it is known for all of these, how late it is kept at worst."""
-    watched = stated(scenario)
+    """What is to be achieved: a sentence for each statement, a short name, and the automata that watch it; none if it
+    is given up. Where it is known for all of these, how late it is kept at worst."""
+    watched, names = stated(scenario), promise_names(scenario)
     found: List[Dict[str, Any]] = []
     for sentence, statement in zip(objective_words(scenario), scenario.statements):
         automata = [name for name, objective in watched.items() if any(objective is each for each in statement)]
-        found.append({"says": sentence, "of": automata})
+        found.append({"name": short_name([names[name] for name in automata]), "says": sentence, "of": automata})
         due = [(answers[name], watched[name]) for name in automata if name in answers]
         times = [told(worst, each) for worst, each in due]
         if times and len(times) == len(automata):

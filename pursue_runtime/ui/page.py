@@ -95,7 +95,9 @@ class Page:
         self._statuses = statuses
         self._promise = promise
         watching = {name for objective in promise.objectives for name in objective.of}
-        self._others = [status for status in statuses if status.of not in watching]  # than those of objectives
+        others = [status for status in statuses if status.of not in watching]  # than those of objectives
+        self._others = [status for status in others if not status.inside]
+        self._inside = [status for status in others if status.inside]
         self._guarantee = Guarantee(promise, model)
         self._outlook = Outlook(model, statuses, strategies)
         self._plan = plan
@@ -145,11 +147,13 @@ class Page:
             "reason": in_words(state.reason, self._model.shown),
             "verdict": facts.verdict[1] if facts.verdict else "", "good": bool(facts.verdict and not facts.verdict[0]),
             "at": _round(facts.at), "now": _round(facts.now), "live": state.status in LIVE, "unit": state.unit,
-            "turn": self._turn(agents, state), "agents": agents, "open": opens, "tasks": self._tasks(state, agents),
+            "turn": self._turn(agents, state, sight.planned), "agents": agents, "open": opens,
+            "tasks": self._tasks(state, agents),
             "objectives": objectives_now(self._promise, self._statuses, self._model, state, facts.at),
             "guarantee": self._guarantee.now(state), "next": sight.next, "planned": sight.planned,
             "clocks": {name: _round(value) for name, value in state.clocks.items()},
-            "statuses": status_texts(self._others, self._model, state, facts.at),
+            "statuses": {**self._broken(state), **status_texts(self._others, self._model, state, facts.at)},
+            "inside": status_texts(self._inside, self._model, state, facts.at),
             "rest": {**{name: state.locations.get(name, "") for name in others}, **state.values},
             "seq": state.seq, "plan": state.plan, "lost": list(state.lost),
             "answers": facts.answers, "received": _round(facts.received),
@@ -220,6 +224,11 @@ class Page:
             agent.update(since=_round(since), low=_round(since + window.low), high=_end(since, window.high))
         return agent
 
+    def _broken(self, state: SystemState) -> Dict[str, str]:
+        """The assumptions that are broken."""
+        broken = [each.says for each in self._model.assumptions if state.values.get(each.variable) == 0]
+        return dict.fromkeys(broken, "broken: not assumed any more")
+
     def _notes(self, state: SystemState) -> Sequence[Tuple[str, Sequence[str]]]:
         """What has to be known of agents besides, and of which."""
         return (
@@ -233,6 +242,8 @@ class Page:
         """The point of interest where that is, and the one that it leads to ("" where there is none)."""
         if location in self._plan.places:
             return location, ""
+        if location in TO_BE_SAID:
+            return "", ""  # nobody has said yet where it is
         end = next((edge.target for edge in automaton.edges_from(location) if is_end(location, edge.target)), "")
         begin = begin_of(automaton, location)
         if is_movement(location) and begin is not None and end:
@@ -240,8 +251,8 @@ class Page:
         # An action ends where it began; it may be on a way.
         return self._where(automaton, end) if end and end != location and not is_action(end) else ("", "")
 
-    def _turn(self, agents: Sequence[Mapping[str, Any]], state: SystemState) -> str:
-        """Whom the mission waits for, in a sentence."""
+    def _turn(self, agents: Sequence[Mapping[str, Any]], state: SystemState, planned: bool) -> str:
+        """Whom the mission waits for, in a sentence; "" where it is nobody, and what is next is said anyhow."""
         if state.status == HOLDING:
             return "No commands are sent while the mission holds."
         if state.status != RUNNING:
@@ -251,6 +262,8 @@ class Page:
         under_way = [f"{shown(agent['name'])} to {agent['awaited']}" for agent in present if agent["awaited"]]
         if under_way:
             return f"Waits for {listed(under_way)}."
+        if planned:
+            return ""
         alone = {automaton.name for automaton in self._model.of_kind("agent")}
         free = [shown(agent["name"]) for agent in present if agent["name"] in alone and agent["next"]]
         others = f", or for what {listed(free, 'or')} may do" if free else ""

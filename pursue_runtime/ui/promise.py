@@ -14,7 +14,7 @@ from pursue_runtime.model import Model
 from pursue_runtime.sentences import listed
 from pursue_runtime.simulator.simulator import ACTING, end_window
 from pursue_runtime.state import HOLDING, LIVE, SystemState
-from pursue_runtime.ui.statuses import Status, status_texts
+from pursue_runtime.ui.statuses import Status, deadline
 
 REACHED, KEPT, BROKEN, OPEN, NOT_PROMISED = "reached", "kept", "broken", "open", "not promised"
 """What has become of an objective: `open` is what is still to be reached, `kept` what has to hold until the end."""
@@ -25,11 +25,13 @@ TOLERANCE = 0.2
 
 class Objective(NamedTuple):
     """An objective as a sentence, and the automata that watch it; none where the mission does not promise it. `worst`:
-    how late, in time units, the workspace's own strategy keeps it at worst; None where that is not known."""
+    how late, in time units, the workspace's own strategy keeps it at worst; None where that is not known. `name`: a
+    short one, which tells it from the others; "" where there is none."""
 
     says: str
     of: Tuple[str, ...]
     worst: Optional[float] = None
+    name: str = ""
 
     def now(self, state: SystemState, counts: str = "") -> str:
         """The sentence, with that time while the workspace's own strategy is in force. `counts`: as in `Promise`."""
@@ -68,21 +70,28 @@ def read_promise(settings: Mapping[str, Any]) -> Promise:
 
 def _objective(data: Mapping[str, Any]) -> Objective:
     worst = data.get("worst")
-    return Objective(str(data["says"]), tuple(map(str, data["of"])), None if worst is None else float(worst))
+    number = None if worst is None else float(worst)
+    return Objective(str(data["says"]), tuple(map(str, data["of"])), number, str(data.get("name", "")))
 
 
 def objectives_now(
     promise: Promise, statuses: Sequence[Status], model: Model, state: SystemState, at: float
-) -> List[Dict[str, str]]:
-    """What has become of each objective in a state that began at `at`: its sentence, one of the words above, and what
-    it is at, in words ("" where that says no more)."""
+) -> List[Dict[str, Any]]:
+    """What has become of each objective in a state that began at `at`: its name and its sentence, one of the words
+    above, what it is at, in words ("" where that says no more), when the first of what is due has to come (`due`), and
+    how long that may take in all (`limit`; both None where nothing is due)."""
     found = []
     for objective in promise.objectives:
         own = [status for status in statuses if status.of in objective.of]
-        texts = dict.fromkeys(status_texts(own, model, state, at).values())
+        texts = dict.fromkeys(status.text(state.locations, state.values) for status in own)
         become = _become(objective, model, state)
-        now = [text for text in texts if text != become]
-        found.append({"says": objective.now(state, promise.counts), "is": become, "now": "; ".join(now)})
+        now = [text for text in texts if text is not None and text != become]
+        ends = [deadline(name, model, state, at) for name in objective.of] if become in (OPEN, KEPT) else []
+        due = min((each for each in ends if each is not None), default=None)
+        found.append({
+            "name": objective.name, "says": objective.now(state, promise.counts), "is": become, "now": "; ".join(now),
+            "due": None if due is None else round(due.moment, 3), "limit": None if due is None else due.limit,
+        })  # fmt: skip
     return found
 
 

@@ -17,6 +17,7 @@ from pursue_runtime.strategy import Command, Strategy
 from pursue_runtime.ui.statuses import Status
 from pursue_runtime.vocabulary import deed, place
 
+_NEXT = "next: "
 _SHOWN = 2
 """So many reasons are said."""
 
@@ -71,6 +72,8 @@ def _text(
     if not _acts(automata, name):
         status = words.get(name)
         text = status and status.text(state.locations, state.values)
+        if status and status.inside and text and text.startswith(_NEXT):
+            return f"{text[len(_NEXT):]} is next"  # whatever the rule is called
         return f"{status.label}: {text}" if status and text else ""
     automaton = automata[name]
     text = f"{model.shown(name)} is {place(model, automaton, state.locations[name])}"

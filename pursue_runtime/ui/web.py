@@ -30,12 +30,11 @@ from tornado.websocket import WebSocketClosedError, WebSocketHandler
 from pursue_runtime.http_server import LimitedServer, drop_chunks
 from pursue_runtime.slots import Slots, is_loopback
 
-SCRIPTS = ("agents", "confirm", "connection", "missions", "objectives", "page", "plan", "timeline")
+SCRIPTS = ("agents", "confirm", "connection", "missions", "objectives", "page", "plan", "press", "timeline")
 FILES = {
     "/": ("index.html", "text/html"),
     **{f"/{name}.js": (f"{name}.js", "text/javascript") for name in SCRIPTS},
-    "/page.css": ("page.css", "text/css"),
-    "/missions.css": ("missions.css", "text/css"),
+    **{f"/{name}.css": (f"{name}.css", "text/css") for name in ("layout", "missions", "page")},
 }
 TICK = 0.5  # real seconds between two words on what time it is
 LAST_WORDS = 3.0  # real seconds for which one who closes the server waits for what was sent before

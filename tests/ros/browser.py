@@ -145,6 +145,13 @@ class Browser:
                 raise AssertionError(f"not within {patience} s: {expression}\n{self.complaints}\n{seen}")
             time.sleep(0.05)
 
+    def axe(self, file: str) -> List[str]:
+        """What axe-core (the file of its program) finds that keeps people from using the page."""
+        self._call("Runtime.evaluate", expression=Path(file).read_text(encoding="utf-8"))
+        where = "one.nodes.map((node) => node.target).join(' ')"
+        found = f"({{violations}}) => violations.map((one) => `${{one.id}}: ${{{where}}}`)"
+        return list(self.value(f"axe.run(document, {{resultTypes: ['violations']}}).then({found})"))
+
     def picture(self, whole: bool = False) -> bytes:
         """A PNG of what is seen, or of the whole page."""
         return base64.b64decode(self._call("Page.captureScreenshot", captureBeyondViewport=whole)["data"])

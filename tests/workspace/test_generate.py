@@ -487,7 +487,7 @@ def test_the_simulator_tells_the_ends_that_no_controller_decides() -> None:
 
 def test_the_page_gets_the_objectives_in_words_and_the_guaranteed_time() -> None:
     settings = read(files("thesis/catch_the_thief")["src/UI/config/ui.yaml"])
-    assert settings["objectives"] == [{"says": "catch happens.", "of": ["reachObj"]}]
+    assert settings["objectives"] == [{"name": "catch", "says": "catch happens.", "of": ["reachObj"]}]
     assert "guarantee" not in settings, "nobody has found it out"
     known = generate(*world("thesis/catch_the_thief"), Options(reaction=REACTION, guarantee=Fraction(43, 2)))
     assert read(known["src/UI/config/ui.yaml"])["guarantee"] == 21.5

@@ -1,4 +1,5 @@
-"""A mission as a timeline: a lane for each agent, and for states, turns, batteries, conditions, deadlines and plans."""
+"""A mission as a timeline: a lane for each agent and for each objective, and for states, turns, batteries, conditions,
+pauses and plans."""
 
 from __future__ import annotations
 
@@ -7,7 +8,7 @@ from typing import Dict, Iterator, List, Mapping, Sequence, Tuple
 
 from pursue_gen.drawing.look import AgentLook, agent_looks, mark, patterns, safe, svg, tag, text
 from pursue_gen.language import network_names as names
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.conditions import Holds
 from pursue_gen.language.symbols import UNDER_WAY, Role, Symbol, role_of
 from pursue_gen.language.times import unit_name
 from pursue_gen.tga.event_words import event_word
@@ -16,6 +17,7 @@ from pursue_gen.tga.objectives import stated
 from pursue_gen.tools.report.html import Section, table
 from pursue_gen.tools.report.recording import Recording, Stay, Step, ending_text, lasting, status_text, stays
 from pursue_gen.tools.report.statuses import broken, changes, conditions, holding, paused, pauses
+from pursue_gen.vocabulary.promises import promise_names
 from pursue_gen.vocabulary.statuses import courses
 from pursue_gen.vocabulary.words import Words, words_of
 from pursue_runtime.state import HOLDING
@@ -26,6 +28,7 @@ _ROW, _BAR, _TOP = 54.0, 16.0, 54.0
 _SIDE, _RIGHT = 24.0, 30.0
 _LETTER, _BOLD = 7.0, 8.0  # px, a generous guess at how wide a small letter is, and a bold one
 _TICK = 70.0  # px between two marks of the time axis, at least
+_LETTERS = 24  # of the name of a lane
 _LABELLED = 0.8  # this part of the bars gets room for its whole label, if the picture is not too wide then
 
 _OVER = (Role.IDLE, Role.LOSE, Role.WIN, Role.LATE)
@@ -73,7 +76,8 @@ def draw(recording: Recording, ident: str = _ID) -> str:
         y = _TOP + _ROW * number
         look = looks.get(lane.agent)
         head = [mark(look, 20, y + 27, 8.0)] if look else []
-        head.append(text(36 if look else 12, y + 32, _short(lane.name, 170 / 8), "pg-strong", "start"))
+        head.append(text(36 if look else 12, y + 32, _short(lane.name, _LETTERS + 1), "pg-strong", "start"))
+        head += [tag("title", safe(lane.name))] if len(lane.name) > _LETTERS else []
         inner = tag("g", *lane.parts, transform=f"translate(0 {y:.0f})")
         body.append(tag("g", *head, inner, class_="lane", data_lane=lane.name))
     body += _end(recording, scale, _TOP + _ROW * len(rows))
@@ -112,7 +116,7 @@ def section(recording: Recording, ident: str = _ID) -> Section:
 
 def _scale(recording: Recording) -> Scale:
     longest = max(map(len, _names(recording)), default=4)
-    left = _SIDE + 30 + 8.4 * min(longest, 21)
+    left = _SIDE + 30 + 8.4 * min(longest, _LETTERS)
     end = max(recording.end, 1.0)
     bars = (
         (len(_bar_label(recording, stay.what)) + 1) * _BOLD / (stay.end - stay.start)
@@ -138,7 +142,7 @@ def _bar_label(recording: Recording, location: str) -> str:
 def _names(recording: Recording) -> List[str]:
     scenario = recording.scenario
     lanes = [*map(scenario.shown, recording.agents), *(each.label for each in courses(scenario, recording.network))]
-    return [*lanes, *conditions(scenario), *_due(scenario).values(), *pauses(scenario)]
+    return [*lanes, *conditions(scenario), *promise_names(scenario).values(), *pauses(scenario)]
 
 
 def _axis(scale: Scale, bottom: float) -> Iterator[str]:
@@ -172,6 +176,7 @@ def _lanes(recording: Recording, looks: Mapping[str, AgentLook], scale: Scale, i
         fill = f"url(#{ident}-fill-{number})"
         bars = tuple(_agent(recording, scale, agent, looks[agent], fill))
         lanes.append(Lane(recording.scenario.shown(agent), bars, agent))
+    lanes += _promises(recording, scale)
     for status in courses(recording.scenario, recording.network):
         texts = ((step.at, status.text(step.locations, step.values) or "") for step in recording.steps)
         found = lasting(recording, texts)
@@ -180,9 +185,10 @@ def _lanes(recording: Recording, looks: Mapping[str, AgentLook], scale: Scale, i
         how = (_box(scale, stay, "true") if stay.what == "true" else _line(scale, stay, stay.what) for stay in shown)
         lanes.append(Lane(status.label, tuple(how)))
     for words_of_it, condition in conditions(recording.scenario).items():
+        if isinstance(condition, Holds):
+            continue  # its state has a lane
         parts = [_box(scale, stay, "holds", f"{words_of_it} holds") for stay in holding(recording, condition)]
         lanes.append(Lane(words_of_it, tuple(parts)))
-    lanes += _deadlines(recording, scale)
     for name, pause in pauses(recording.scenario).items():
         due = [(stay, f"not before {_time(until)}") for stay, until in paused(recording, pause)]
         lanes.append(Lane(name, tuple(_box(scale, stay, says, f"{name} {says}") for stay, says in due)))
@@ -221,12 +227,18 @@ def _agent(recording: Recording, scale: Scale, agent: str, look: AgentLook, fill
         yield tag("g", tooltip, drawn, under, class_="instant")
 
 
-def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:
-    """When the clocks of `within` and `every` objectives ran, and when they would have run out."""
-    objectives = stated(recording.scenario)
-    for automaton, name in _due(recording.scenario).items():
+def _promises(recording: Recording, scale: Scale) -> Iterator[Lane]:
+    """Each objective: when it was kept, reached or broken; of one with a limit, when its clock ran, and when that would
+    have run out."""
+    scenario = recording.scenario
+    objectives, others = stated(scenario), {each.label for each in courses(scenario, recording.network)}
+    for automaton, promised in promise_names(scenario).items():
+        name = f"objective: {promised}" if promised in others else promised
         found, objective = stays(recording, automaton), objectives[automaton]
-        words, limit = objective.words, float(objective.limit or 0)
+        if objective.limit is None:
+            yield Lane(name, tuple(_course_of(scale, stay, objective.status(stay.what)) for stay in found if stay.what))
+            continue
+        words, limit = objective.words, float(objective.limit)
         there = [stay for stay in found if stay.what == names.IDLE]
         risks = [stay for stay in found if role_of(stay.what) not in _OVER]
         if objective.once:
@@ -236,11 +248,9 @@ def _deadlines(recording: Recording, scale: Scale) -> Iterator[Lane]:
         yield Lane(name, lines + _deadline(recording, scale, due, words.due))
 
 
-def _due(scenario: Scenario) -> Dict[str, str]:
-    """The automata of objectives with deadlines, and the names of their lanes; what is due, where there are several."""
-    words = {name: each.words for name, each in stated(scenario).items() if each.limit is not None}
-    found = {name: each.lane or f"deadline: {each.due}" for name, each in words.items()}
-    return found if len(found) > 1 else dict.fromkeys(found, "deadline")
+def _course_of(scale: Scale, stay: Stay, says: str) -> str:
+    """What an objective without a limit was at: a box where it was broken, else a line."""
+    return (_box if role_of(stay.what) is Role.LOSE else _line)(scale, stay, says)
 
 
 def _deadline(recording: Recording, scale: Scale, risks: Sequence[Tuple[Stay, float]], what: str) -> Tuple[str, ...]:

@@ -20,7 +20,7 @@ function showAgent(widget, agent, now) {
   widget.row.classList.toggle("lost", agent.lost);
   widget.row.classList.toggle("late", late);
   say(widget.doing, [agent.doing, ...agent.notes].join("; "));
-  widget.progress.style.visibility = agent.since === null || !view.live ? "hidden" : "visible";
+  widget.progress.hidden = agent.since === null || !view.live;
   widget.progress.value = share(agent, now);
   say(widget.why, !view.live ? "" : widget.kind === "agent" ? answers(agent, now) : whyAndThen(agent, now));
   say(widget.next, !view.live ? "" : agent.awaited ? ending(widget, agent, now, late) : widget.kind === "agent" ? mayDo(agent, now) : "");

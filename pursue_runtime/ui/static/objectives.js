@@ -1,29 +1,71 @@
 "use strict";
-// What is to be achieved, what of it is achieved, and the time that the strategy guarantees.
+// What is to be achieved: what is due soonest comes first, with the time that is left, and the time that is guaranteed.
 
 const BECOME = { reached: "reached", kept: "kept so far", broken: "broken", open: "to be reached", "not promised": "not promised" };
+const SOON = 0.25; // of its limit: what has less time left is marked
+let promises = []; // the rows, in the order of the scenario
 
 function setObjectives() {
-  const list = $("objectives"), known = view.objectives;
+  const known = view.objectives;
   $("goal").hidden = known.length === 0;
-  while (list.children.length > known.length) list.lastChild.remove();
-  while (list.children.length < known.length) {
-    const row = make("li");
-    row.append(make("span", "become"), " ", make("span", "says"), make("div", "now"));
-    list.append(row);
+  if (promises.length !== known.length) {
+    promises = known.map(() => promiseRow());
+    $("objectives").replaceChildren(...promises.map(({ row }) => row));
   }
-  known.forEach(({ says, is, now }, number) => {
-    const row = list.children[number];
+  known.forEach(({ name, says, is, now }, number) => {
+    const { row, parts } = promises[number];
     row.dataset.is = is;
-    say(row.querySelector(".become"), is === "kept" && view.status === "won" ? "kept" : BECOME[is] || is);
-    say(row.querySelector(".says"), says);
-    say(row.querySelector(".now"), now);
+    say(parts.become, is === "kept" && view.status === "won" ? "kept" : BECOME[is] || is);
+    say(parts.name, name);
+    say(parts.says, says);
+    say(parts.now, now === `${name} to be done` ? "" : now);
   });
+  sortObjectives();
+}
+
+function promiseRow() { // a press shows the whole sentence
+  const row = make("li"), whole = make("details"), line = make("summary"), parts = {};
+  for (const kind of ["become", "left", "name", "now", "says"]) {
+    parts[kind] = make("span", kind);
+    line.append(parts[kind], " ");
+  }
+  whole.append(line);
+  row.append(whole);
+  return { row, parts };
+}
+
+function sortObjectives() { // broken, then by what is due first, then as they are written
+  const rank = ({ is, due }) => (is === "broken" ? -1e300 : due !== null ? due : is === "open" ? 1e299 : 1e300);
+  const order = view.objectives.map((each, number) => [rank(each), number]).sort(([a, i], [b, j]) => a - b || i - j);
+  const rows = order.map(([, number]) => promises[number].row), list = $("objectives");
+  if (rows.some((row, place) => list.children[place] !== row)) list.append(...rows);
 }
 
 function showObjectives(now) {
+  view.objectives.forEach((objective, number) => {
+    const { row, parts } = promises[number], left = leftOf(objective, now);
+    row.dataset.left = left.how;
+    say(parts.left, left.text);
+  });
+  const soonest = view.objectives.filter((each) => each.due !== null).reduce((one, other) => (one && one.due <= other.due ? one : other), null);
+  const left = soonest ? leftOf(soonest, now) : { how: "", text: "" };
+  $("urgent").dataset.left = left.how;
+  say($("urgent"), left.text ? `${soonest.name || soonest.says}: ${left.text}` : "");
   say($("next"), view.status === "running" && view.planned ? next(now) : "");
   say($("guarantee"), guarantee(now));
+}
+
+function leftOf({ due, limit }, now) { // how long until something has to come; said, and shown by a colour
+  if (due === null || !view.live) return { how: "", text: "" };
+  const left = due - now;
+  if (left < 0) return { how: "late", text: `${lasting(-left)} late` };
+  return { how: left < SOON * limit ? "soon" : "due", text: `due in ${lasting(left)}` };
+}
+
+function lasting(time) { // a time, in minutes and seconds where it counts seconds and is long
+  const whole = Math.floor(time);
+  if (scene.counts !== "seconds" || whole < 100) return units(time);
+  return whole < 3600 ? `${Math.floor(whole / 60)} min ${whole % 60} s` : `${Math.floor(whole / 3600)} h ${Math.floor(whole / 60) % 60} min`;
 }
 
 function next(now) { // what the strategy does, as long as others begin nothing

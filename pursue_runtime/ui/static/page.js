@@ -4,7 +4,6 @@
 
 const SVG = "http://www.w3.org/2000/svg";
 const MARGIN = 0.05; // time units inside a bound that something must be to count as possible, as in ui/mission_view.py
-const SETTLED = 300; // ms for which buttons that have just appeared do nothing: the press was meant for what was there
 const $ = (id) => document.getElementById(id);
 
 let scene = null; // what stays: map, agents, buttons
@@ -12,7 +11,7 @@ let view = null; // what changes
 let clock = { now: 0, seen: 0, rate: 0 }; // time units since the start, when that was heard (ms), units per second
 let heard = 0; // number of the last entry of the log
 let following = true; // whether the end of the log is kept in sight
-const widgets = { buttons: new Map(), rows: new Map(), tasks: new Map(), groups: [], clocks: new Map(), rest: new Map(), statuses: new Map() };
+const widgets = { buttons: new Map(), rows: new Map(), tasks: new Map(), groups: [], clocks: new Map(), rest: new Map(), rules: new Map(), statuses: new Map() };
 
 function make(tag, kind, text) {
   const made = document.createElement(tag);
@@ -113,84 +112,6 @@ function setScene(fresh) {
   setMap();
 }
 
-function setTasks() {
-  const reporters = scene.agents.filter((agent) => scene.reporters.includes(agent.name));
-  widgets.tasks.clear();
-  setTaskList("people", "tasks", reporters.filter((agent) => agent.kind === "human"));
-  setTaskList("others", "ends", reporters.filter((agent) => agent.kind !== "human"));
-}
-
-function setTaskList(section, list, agents) {
-  $(section).hidden = agents.length === 0;
-  $(list).replaceChildren(...agents.map((agent) => {
-    const row = make("li", "idle"), text = make("span", "task"), time = make("span", "task-time"), done = make("button", "done", "Done");
-    done.type = "button";
-    if (agent.kind === "human") text.setAttribute("aria-live", "assertive"); // the text alone: times change all the while
-    const idle = agent.kind === "human" ? "nothing to do now" : "not under way";
-    const task = { row, text, time, done, idle, word: "", pressed: "" };
-    onPress(done, () => {
-      const now = present(), given = view.tasks.find((each) => each.agent === agent.name), message = { do: "done", word: task.word, seq: view.seq };
-      const report = () => {
-        ask(message);
-        task.pressed = message.word; // a second press would mean what comes next
-        setTimeout(() => { task.pressed = ""; refresh(); }, 2000);
-        refresh();
-      };
-      if (isEarly(given, now)) confirmed(earlyText(given, now), "It has ended", "Not yet", report);
-      else report();
-    });
-    row.append(text, time, done);
-    widgets.tasks.set(agent.name, task);
-    return row;
-  }));
-}
-
-function setButtons() { // only those are shown that are possible where their agent is
-  const groups = new Map();
-  widgets.buttons.clear();
-  for (const { agent, word, label, from } of scene.buttons) {
-    if (!groups.has(agent)) {
-      const group = make("div", "group"), inside = make("div"), none = make("p", "none", "nothing now");
-      group.setAttribute("role", "group");
-      group.setAttribute("aria-label", `${shown(agent)}: what it may do`);
-      group.append(make("span", "tag agent", shown(agent)), inside);
-      inside.append(none);
-      groups.set(agent, { group, inside, none, words: [], counts: new Map(), there: "", since: -Infinity });
-    }
-    const known = groups.get(agent), button = make("button"), time = make("small");
-    button.type = "button";
-    button.hidden = true;
-    button.dataset.word = word;
-    button.setAttribute("aria-disabled", "true");
-    button.append(make("span", "", label), time);
-    onPress(button, () => ask({ do: "say", word, seq: view.seq }));
-    known.inside.append(button);
-    known.words.push(word);
-    for (const place of from) known.counts.set(place, (known.counts.get(place) || 0) + 1);
-    widgets.buttons.set(word, { button, time, group: known });
-  }
-  widgets.groups = [...groups.values()];
-  for (const { inside, counts } of widgets.groups) inside.dataset.rows = String(Math.min(6, Math.ceil(Math.max(...counts.values()) / 2)));
-  $("free").hidden = groups.size === 0;
-  $("buttons").replaceChildren(...widgets.groups.map(({ group }) => group));
-}
-
-function showButtons(now, here) {
-  for (const group of widgets.groups) {
-    const there = group.words.filter((word) => view.open[word]).join(" ");
-    if (there !== group.there) Object.assign(group, { there, since: performance.now() });
-    group.none.hidden = there !== "";
-  }
-  for (const [word, { button, time, group }] of widgets.buttons) {
-    const [opens, closes] = view.open[word] || [Infinity, null];
-    const possible = opens <= now + MARGIN && (closes === null || now <= closes);
-    const settled = performance.now() - group.since >= SETTLED;
-    button.hidden = !view.open[word];
-    enable(button, here && possible && settled);
-    say(time, possible ? (closes === null ? "now" : `now, for ${units(closes - now)}`) : opens > now && opens < Infinity ? `in ${units(opens - now)}` : "");
-  }
-}
-
 // What changes -------------------------------------------------------------------------------------------------------
 
 function setView(fresh) {
@@ -212,10 +133,12 @@ function setView(fresh) {
   setObjectives();
   pairs(widgets.rest, $("rest"), Object.keys(view.rest));
   pairs(widgets.clocks, $("clocks"), Object.keys(view.clocks));
+  pairs(widgets.rules, $("rules"), Object.keys(view.inside));
   pairs(widgets.statuses, $("statuses"), Object.keys(view.statuses));
   $("stands").hidden = widgets.statuses.size === 0;
-  for (const [name, text] of Object.entries(view.statuses)) say(widgets.statuses.get(name), text);
-  for (const [name, value] of Object.entries(view.rest)) say(widgets.rest.get(name), String(value));
+  for (const [list, values] of [["statuses", view.statuses], ["rules", view.inside], ["rest", view.rest]]) {
+    for (const [name, value] of Object.entries(values)) say(widgets[list].get(name), String(value));
+  }
   refresh();
   if (!map.moving) animate(performance.now());
 }
@@ -246,16 +169,6 @@ function refresh() { // what changes while nothing happens: times, and what is p
   showTimeline();
   for (const agent of view.agents) showAgent(widgets.rows.get(agent.name), agent, now);
   for (const [name, widget] of widgets.tasks) showTask(widget, name, view.tasks.find((task) => task.agent === name), now, here);
-}
-
-function showTask(widget, name, task, now, here) {
-  widget.row.classList.toggle("idle", !task);
-  widget.word = task ? task.word : "";
-  say(widget.text, task ? `${shown(name)}: ${task.text}` : `${shown(name)}: ${widget.idle}`);
-  say(widget.done, task ? task.label : widget.done.textContent);
-  say(widget.time, task && task.low !== null ? `for ${units(now - task.since)} now; planned: ${units(task.low - task.since)} to ${units(task.high - task.since)}` : "");
-  widget.done.setAttribute("aria-label", task ? `${task.label}: ${shown(name)}, ${task.text}` : widget.done.textContent);
-  enable(widget.done, here && Boolean(task) && widget.pressed !== widget.word);
 }
 
 function forgetLog() {
@@ -290,9 +203,9 @@ $("log").addEventListener("scroll", () => {
   const log = $("log");
   following = log.scrollHeight - log.scrollTop - log.clientHeight < 40;
 });
-window.addEventListener("resize", () => {
-  if (scene && $("map").clientWidth !== map.width) setMap();
-  follow();
-});
+new ResizeObserver(() => {
+  if (scene && ($("map").clientWidth !== map.width || $("map").clientHeight !== map.height)) setMap();
+}).observe($("map"));
+new ResizeObserver(follow).observe($("log"));
 setInterval(refresh, 200);
 window.addEventListener("DOMContentLoaded", connect); // when all scripts are there

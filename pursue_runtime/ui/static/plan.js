@@ -2,31 +2,35 @@
 // The map: places, ways, and where everybody is. Labels go where they cover no other label (see arranged).
 
 const ROW = 24; // pixels from one label to the next above it
-const POI = 14; // half the height of a point of interest
 const AROUND = 1.5; // metres of floor plan that are shown around the places
+const CROWD = 12; // places from which on a name that has no room right beside its place is left out
+const SMALL = 40; // pixels by pixels for each letter of a name: on a map with less room letters are smaller
+let POI = 14; // half the height of a point of interest
 const map = { points: new Map(), marks: new Map(), places: [], lengths: [], moving: false, last: 0, width: 0, height: 0 };
 let positions = new Map(); // robot → where it really is: x, y in metres, yaw in radians
 let paths = new Map(); // robot → what its navigation has planned: points in metres, and of which of its movements that is
 const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
 
 function setMap() {
-  const names = Object.keys(scene.places), width = $("map").clientWidth;
+  const names = Object.keys(scene.places), width = $("map").clientWidth, high = $("map").clientHeight;
   map.points.clear();
   map.marks.clear();
   $("where").hidden = names.length === 0;
-  if (!names.length || !width) return;
+  if (!names.length || !width || !high) return;
+  const letters = names.reduce((sum, name) => sum + 4 + short(shown(name)).length, 0), crowded = width * high < SMALL * SMALL * letters;
+  POI = crowded ? 10 : 14;
   const longest = Math.max(...[...names, ...scene.agents.map((agent) => agent.name)].map((name) => short(shown(name)).length));
-  const above = 2 * POI + ROW * Math.min(3, scene.agents.length), below = 2 * POI + ROW, side = Math.min(width / 4, 16 + 4.2 * longest);
-  const room = scene.floor ? AROUND : 0;
+  const above = 2 * POI + ROW, below = POI + ROW, side = Math.min(width / 4, 16 + 4.2 * longest);
+  const around = scene.floor ? AROUND : 0;
   const seen = [...Object.values(scene.places), ...known().flatMap(([, , line]) => line)];
-  const xs = seen.flatMap(([x]) => [x - room, x + room]), ys = seen.flatMap(([, y]) => [y - room, y + room]);
+  const xs = seen.flatMap(([x]) => [x - around, x + around]), ys = seen.flatMap(([, y]) => [y - around, y + around]);
   const across = Math.max(...xs) - Math.min(...xs), up = Math.max(...ys) - Math.min(...ys);
-  const scale = Math.min((width - 2 * side) / (across || 1e-6), 420 / (up || 1e-6), across || up ? Infinity : 1);
-  const left = (width - scale * across) / 2, high = Math.max(above + below + scale * up, 200);
-  const top = above + (high - above - below - scale * up) / 2;
+  const room = Math.max(1, high - above - below);
+  const scale = Math.min((width - 2 * side) / (across || 1e-6), room / (up || 1e-6), across || up ? Infinity : 1);
+  const left = (width - scale * across) / 2, top = above + (room - scale * up) / 2;
   const picture = document.createElementNS(SVG, "svg");
   picture.setAttribute("viewBox", `0 0 ${width} ${high}`);
-  picture.setAttribute("height", high);
+  picture.setAttribute("class", crowded ? "small" : "");
   picture.setAttribute("role", "img");
   picture.setAttribute("aria-label", `Map of ${scene.scenario}; the list "Who does what" says the same in words`);
   $("map").replaceChildren(picture);
@@ -81,17 +85,27 @@ function drawWays(picture) {
   for (const [a, b] of scene.one_ways) draw("polygon", picture, { class: "arrow", points: arrow(...lineOf(a, b).slice(-2)) });
 }
 
-function drawPlaces(picture, names, under) { // where two would cover each other, one is beside its point
+function drawPlaces(picture, names, under) { // where two would cover each other, one is beside its point, or is a point
   map.places = [];
-  for (const name of names) {
+  const spots = names.map((name) => ({ ...map.points.get(name), half: 5, tall: 5 })), rings = names.length > CROWD ? 1 : 3;
+  names.forEach((name, number) => {
     const point = map.points.get(name), lead = draw("line", under, { class: "lead" });
-    const group = labelled(picture, "poi", shown(name), 2 * POI, 14), { half, tall } = size(group);
-    const offsets = [{ x: 0, y: 0 }, ...around(half, tall, 2 * POI)];
-    const box = arranged(point, half, tall, offsets, map.places, 0).box || { ...point, half, tall };
-    map.places.push(box);
-    put(group, box);
-    join(lead, point, box);
-  }
+    const spot = draw("circle", under, { class: "spot", cx: point.x, cy: point.y, r: 5 });
+    draw("title", spot).textContent = shown(name);
+    const group = labelled(picture, "poi", shown(name), 2 * POI, POI), { half, tall } = size(group);
+    const offsets = [{ x: 0, y: 0 }, ...around(half, tall, 2 * POI, rings)];
+    const others = [...map.places, ...spots.filter((_, other) => other !== number)];
+    const { box } = arranged(point, half, tall, offsets, others, 0);
+    if (box) {
+      map.places.push(box);
+      put(group, box);
+      join(lead, point, box);
+    } else {
+      group.remove();
+      lead.remove();
+    }
+  });
+  map.places.push(...spots);
 }
 
 function drawLengths(picture) { // in the middle of the way, or where there is room; nowhere rather than over a name
@@ -203,9 +217,9 @@ function showDot(mark, agent, point, to, named) { // the point itself, with its 
 
 const covers = (a, b) => Math.abs(a.x - b.x) < a.half + b.half + 1 && Math.abs(a.y - b.y) < a.tall + b.tall + 1;
 
-function around(half, tall, away) { // where a label may be beside its point: above, below, at the sides, further away
+function around(half, tall, away, rings = 5) { // where a label may be beside its point: above, below, at the sides, further away
   const found = [];
-  for (let ring = 0; ring < 5; ring += 1) {
+  for (let ring = 0; ring < rings; ring += 1) {
     const up = away + tall - POI + ROW * ring, side = away - POI + half + 4 + ROW * ring;
     found.push({ x: 0, y: -up }, { x: 0, y: up }, { x: side, y: 0 }, { x: -side, y: 0 });
     found.push({ x: side, y: -up }, { x: -side, y: -up }, { x: side, y: up }, { x: -side, y: up });

@@ -42,12 +42,13 @@ PROMISE = read_promise(SETTINGS)
 def become(**places: str) -> List[str]:
     shown = objectives_now(PROMISE, STATUSES, MODEL, state(MODEL, 3, 120.0, {"Cobj": 8.5}, **places), 20.0)
     assert [each["says"] for each in shown] == [each["says"] for each in SETTINGS["objectives"]]
-    return [f"{each['is']}: {each['now']}" for each in shown]
+    due = ["" if each["due"] is None else f", at {each['due']:g} of {each['limit']:g}" for each in shown]
+    return [f"{each['is']}: {each['now']}{when}" for each, when in zip(shown, due)]
 
 
 def test_each_objective_is_said_with_what_has_become_of_it() -> None:
     assert become() == ["open: screw to be done", "kept: bot is there", "not promised: "]
-    assert become(obj="atRisk") == ["open: screw to be done", "kept: a visit is due, by 61.5", "not promised: "]
+    assert become(obj="atRisk") == ["open: screw to be done", "kept: a visit is due, at 61.5 of 50", "not promised: "]
     assert become(reachObj="win", obj="lose") == ["reached: ", "broken: ", "not promised: "]
 
 

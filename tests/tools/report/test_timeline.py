@@ -20,6 +20,7 @@ from pursue_gen.tools.replay.record import MissionRecord
 from pursue_gen.tools.report.html import page
 from pursue_gen.tools.report.recording import from_states, lasting, stays
 from pursue_gen.tools.report.timeline import draw, section
+from pursue_gen.vocabulary.promises import promise_names
 from pursue_runtime.state import HOLDING, RUNNING, WAITING, WON, SystemState
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -48,10 +49,29 @@ def words(svg: str) -> List[str]:
     return [element.text or "" for element in ElementTree.fromstring(svg).iter(f"{SVG}text")]
 
 
-def test_there_is_a_lane_for_each_agent_state_rule_and_the_deadline() -> None:
-    assert list(lanes(draw(mission("thesis/scenario_4")))) == ["bot1", "bot2", "bot3", "bot4", "rule1", "rule2"]
+def test_there_is_a_lane_for_each_agent_objective_state_and_rule() -> None:
+    four = lanes(draw(mission("thesis/scenario_4")))
+    assert list(four) == ["bot1", "bot2", "bot3", "bot4", "bot4_Finish", "rule1", "rule2"]
+    said = [turn.partition(",")[0] for turn in tooltips(four["bot4_Finish"], "turn")]
+    assert said[-2:] == ["bot4_Finish to be done", "reached"]
     assert list(lanes(draw(mission("ecobot/ecobot")))) == [
-        "ecoBot", "clerk", "bin", "makingTrash", "pickingUp", "throwingPaper", "deadline"]
+        "ecoBot", "clerk", "bin", "officeClean", "makingTrash", "pickingUp", "throwingPaper"]
+
+
+def test_objectives_are_called_by_what_differs() -> None:
+    found = list(lanes(draw(mission("hotel/two_bells"))))
+    assert {"serveEast", "serveWest"} <= set(found) and not [name for name in found if "deadline" in name]
+
+
+def test_an_objective_without_a_limit_is_kept_until_it_is_broken() -> None:
+    made = mission("office/library")
+    (kept,) = tooltips(lanes(draw(made))["place archive holds 1 robot"], "turn")
+    assert kept == "kept, 0 to the end"
+    (name,) = (name for name, text in promise_names(made.scenario).items() if text == "place archive holds 1 robot")
+    steps = [replace(each, locations={**each.locations, name: "lose"}) if each.at > 50 else each for each in made.steps]
+    lane = lanes(draw(replace(made, steps=tuple(steps))))["place archive holds 1 robot"]
+    (broken,) = tooltips(lane, "box")
+    assert broken.startswith("broken, ") and broken.endswith("to the end")
 
 
 def test_movements_actions_and_waits_stand_in_their_order() -> None:
@@ -78,7 +98,7 @@ def test_what_takes_no_time_is_a_mark() -> None:
 
 def test_deadlines_run_until_they_are_met() -> None:
     made = mission("ecobot/ecobot")
-    boxes = tooltips(lanes(draw(made))["deadline"], "box")
+    boxes = tooltips(lanes(draw(made))["officeClean"], "box")
     begun = [stay.start for stay in stays(made, "obj") if stay.what == "atRisk"]
     assert begun and len(boxes) == len(begun)
     for box, start in zip(boxes, begun):
@@ -96,6 +116,11 @@ def test_what_is_not_known_yet_is_told() -> None:
     lane = lanes(draw(mission("warehouse/which_shelf")))["onA"]
     (unknown,) = tooltips(lane, "turn")
     assert unknown.startswith("unknown, 0 to ")
+
+
+def test_a_state_has_one_lane_also_where_conditions_ask_for_it() -> None:
+    found = list(lanes(draw(mission("warehouse/which_shelf"))))
+    assert found.count("onA") == 1 and not [name for name in found if "is_true" in name]
 
 
 def test_a_pause_lasts_from_the_end_of_one_event() -> None:
@@ -197,7 +222,7 @@ def run(*words_: str) -> "subprocess.CompletedProcess[str]":
 def test_sim_draws_one_mission(tmp_path: Path) -> None:
     scenario, out = str(SCENARIOS / "thesis" / "scenario_1.pur"), tmp_path / "mission.svg"
     assert run("sim", scenario, "--runs", "1", "--timeline", str(out)).returncode == 0
-    assert list(lanes(out.read_text(encoding="utf-8"))) == ["bot1", "bot2", "rule1"]
+    assert list(lanes(out.read_text(encoding="utf-8"))) == ["bot1", "bot2", "bot2_ina", "rule1"]
     refused = run("sim", scenario, "--timeline", str(tmp_path / "other.svg"))
     assert refused.returncode == 2 and "--runs 1" in refused.stderr
     refused = run("sim", scenario, "--runs", "1", "--timeline", str(tmp_path / "mission.pdf"))
