@@ -10,6 +10,9 @@ from pursue_runtime.data import reading
 from pursue_runtime.locations import breaks_off, ends_part, is_end, part_of
 from pursue_runtime.zones import EPSILON, Zone, holds, parse_zone
 
+ORDER_DESK = "orders"
+"""The kind of the automaton of what people order."""
+
 
 class Edge(NamedTuple):
     """An edge: from `source` to `target` on `word`; `sync` is send, receive or own (a step without partners)."""
@@ -138,6 +141,11 @@ class Model:
             self.given_up = tuple(str(text) for text in objective.get("given_up") or ())
             """Optional objectives that the mission does not promise."""
         self._by_name = {automaton.name: automaton for automaton in self.automata}
+
+    @property
+    def orders(self) -> Tuple[str, ...]:
+        """What people can order, in the order of the scenario."""
+        return tuple(edge.word for automaton in self.of_kind(ORDER_DESK) for edge in automaton.edges)
 
     def automaton(self, name: str) -> Automaton:
         """The automaton of that name. Raises KeyError."""

@@ -48,7 +48,6 @@ from pursue_runtime.nodes.state_printer import StatePrinter
 from pursue_runtime.nodes.witness import Witnesses
 from pursue_runtime.observer.journal import Journal, last_mission
 from pursue_runtime.observer.mission import Mission
-from pursue_runtime.observer.ordering import menu
 from pursue_runtime.observer.planner import Planner, PlannerAnswer
 from pursue_runtime.observer.returning import Inbox, take_up
 from pursue_runtime.observer.settings import ARGUMENTS, read_settings
@@ -105,7 +104,7 @@ class Observer:
         returning = self.inbox.returning
         self.publish([self.mission.state(returning.floor if returning else self.now())])
         self.mission.ordering.drain()  # those of before a restart
-        if menu(self.mission.model):
+        if self.mission.model.orders:
             self.desk = OrderDesk(partial(self.call, "order"), self.now, self.ending)
         self.witnesses.follow(self.on_seen)
         self.words = subscribe(EVENTS, String, self.on_word, self.ending, tcp_nodelay=True)

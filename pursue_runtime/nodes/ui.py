@@ -138,6 +138,13 @@ class UI(UIState):
                 self.finish_received = time.monotonic()
                 self.act()
 
+    def on_answer(self, order: str, accepted: bool, text: str) -> None:
+        """Handle the answer to an order."""
+        with self.lock:
+            at = self.mission.elapsed(rospy.get_time())
+            self.terminal.line(f"{at:8.1f}  {order}: {text}", GOOD if accepted else BAD)
+            self.page.on_answer(at, order, accepted, text)
+
     # What is done -----------------------------------------------------------------------------------------------------
 
     def gathered(self) -> None:

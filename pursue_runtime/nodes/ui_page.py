@@ -112,6 +112,11 @@ class UIPage:
             if self._board is not None and ui.verdict is None:
                 self._board.on_trouble(ui.mission.elapsed(rospy.get_time()), text)
 
+    def on_answer(self, at: float, order: str, accepted: bool, text: str) -> None:
+        """Show the answer to an order."""
+        if self._board is not None:
+            self._board.on_answer(at, order, accepted, text)
+
     def on_recorder(self, file: str) -> None:
         """Take the name of the file that the recorder writes."""
         self._recording = file
@@ -155,7 +160,9 @@ class UIPage:
         if request.do == "start" and ui.can_start():
             ui.start()
             return ""
-        if not request.word or state is None:
+        if request.do == "order" and ui.is_running and ui.orders.order(request.word):
+            return ""
+        if not request.word or state is None or request.do == "order":
             return f"{request.word or request.do} is not possible now."
         self._typed.find()
         ends = {task.word for task in self._typed.given}

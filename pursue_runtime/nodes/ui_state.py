@@ -14,6 +14,7 @@ from pursue_runtime.event_words import EVENTS
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import Ending
+from pursue_runtime.nodes.ui_orders import UIOrders
 from pursue_runtime.ui.mission_view import Environment, MissionView, Readiness
 from pursue_runtime.ui.options import Options
 from pursue_runtime.ui.terminal import Terminal
@@ -39,7 +40,12 @@ class UIState:
         self.phase = GATHERING
         self.observer = ""
         self.verdict: Optional[Tuple[int, str]] = None
+        self.orders = UIOrders(model, ending, self.on_answer)
         self.events = rospy.Publisher(EVENTS, String, queue_size=100, tcp_nodelay=True)
+
+    def on_answer(self, order: str, accepted: bool, text: str) -> None:
+        """Show the answer to an order."""
+        raise NotImplementedError
 
     def start(self) -> None:
         """Start the mission."""

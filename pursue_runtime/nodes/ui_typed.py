@@ -57,6 +57,8 @@ class Typed:
                 ui.start()
             elif ui.is_running and not text.strip():
                 self.show(again=True)
+            elif ui.is_running and ui.orders.order(text.strip()):
+                pass  # its answer is shown when it comes
             else:
                 self.find()
                 word, answer_text = read_line(text, self.offers, self._words, self.given)

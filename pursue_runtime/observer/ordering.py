@@ -10,11 +10,8 @@ import re
 from typing import Dict, List, NamedTuple, Optional, Tuple
 
 from pursue_runtime.event_words import one_line
-from pursue_runtime.model import Edge, Model, Move, Position
+from pursue_runtime.model import ORDER_DESK, Edge, Model, Move, Position
 from pursue_runtime.sentences import marked
-
-KIND = "orders"
-"""The kind of the automaton of what people order."""
 
 MOST_WAITING = 20
 """So many orders wait for their answer at most: each takes a search of its own."""
@@ -100,18 +97,13 @@ def called(text: str) -> str:
     return one_line(text)[:80]
 
 
-def menu(model: Model) -> Tuple[str, ...]:
-    """Return what people can order, in the order of the scenario."""
-    return tuple(edge.word for automaton in model.of_kind(KIND) for edge in automaton.edges)
-
-
 def effect(model: Model, position: Position, order: PersonOrder) -> Effect:
     """Return what an order does in this position. Raises Refused."""
-    orders = menu(model)
+    orders = model.orders
     if order.event not in orders:
         known = f"expected one of {', '.join(map(marked, orders))}" if orders else "this scenario has no orders"
         raise Refused(f"nobody can order {order.event}; {known}")
-    (desk,) = model.of_kind(KIND)
+    (desk,) = model.of_kind(ORDER_DESK)
     closed = _edge(desk.edges, order.event).assign
     open_ = position._replace(values={**position.values, **dict.fromkeys(closed, 1)})
     moves = model.joint_move(open_, order.event, desk.name)

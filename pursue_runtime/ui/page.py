@@ -26,6 +26,7 @@ from pursue_runtime.ui.strategies import strategies_in
 from pursue_runtime.vocabulary import awaited, begin_of, deed, place, said_at_start, sentence, value_found, where
 
 MAX_ENTRIES = 300  # entries of the log
+SHOWN_ANSWERS = 4  # the newest answers to orders
 NOTE, GOOD, BAD = "note", "good", "bad"
 
 
@@ -106,6 +107,7 @@ class Page:
         self._acting = model.of_kind(*ACTING)
         self._last: Optional[SystemState] = None
         self._lanes = Lanes(model)
+        self._answers: List[Dict[str, Any]] = []
         self._number = 0
         self.log: List[Dict[str, Any]] = []
 
@@ -124,6 +126,7 @@ class Page:
             "agents": [{"name": automaton.name, "kind": automaton.kind} for automaton in self._acting],
             "start": {automaton.name: automaton.initial for automaton in self._acting},
             "reporters": [automaton.name for automaton in self._acting if automaton.name in self._reporters],
+            "orders": [{"word": word, "label": self._model.shown(word)} for word in self._model.orders],
             "buttons": [button for automaton in self._model.of_kind("agent") for button in self._buttons(automaton)],
         }
 
@@ -156,7 +159,7 @@ class Page:
             "inside": status_texts(self._inside, self._model, state, facts.at),
             "rest": {**{name: state.locations.get(name, "") for name in others}, **state.values},
             "seq": state.seq, "plan": state.plan, "lost": list(state.lost),
-            "answers": facts.answers, "received": _round(facts.received),
+            "ordered": self._answers, "answers": facts.answers, "received": _round(facts.received),
             "stays": facts.stays, "offers": list(facts.offers),
             "lanes": self._lanes.shown() if facts.verdict else None,
         }
@@ -193,6 +196,12 @@ class Page:
         if state.status == RUNNING and state.reason and (last is None or state.reason != last.reason):
             fresh.append(self.note(at, in_words(state.reason, self._model.shown)))
         return fresh
+
+    def on_answer(self, at: float, order: str, accepted: bool, text: str) -> None:
+        """Take the answer to an order."""
+        answer = {"at": _round(at), "order": order, "accepted": accepted, "text": in_words(text, self._model.shown)}
+        self._answers = [answer, *self._answers][:SHOWN_ANSWERS]
+        self.note(at, f"{order}: {answer['text']}", GOOD if accepted else BAD)
 
     def trouble(self, at: float, text: str) -> None:
         """Adds to the log what a node says of its robots."""

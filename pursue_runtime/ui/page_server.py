@@ -80,6 +80,11 @@ class PageServer:
         self._page.trouble(at, text)
         self.show()
 
+    def on_answer(self, at: float, order: str, accepted: bool, text: str) -> None:
+        """Show the answer to an order."""
+        self._page.on_answer(at, order, accepted, text)
+        self.show()
+
     def on_presence(self, at: float, answers: bool) -> None:
         """Show that the observer does not answer, or does again."""
         self._page.note(at, "the observer answers again" if answers else "the observer does not answer",

@@ -12,7 +12,8 @@ from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.event_words import parse_word
 from pursue_runtime.state import LIVE, SystemState
 
-REQUESTS = {"start": False, "stop": False, "finish": False, "next": False, "close": False, "say": True, "done": True}
+REQUESTS = {"start": False, "stop": False, "finish": False, "next": False, "close": False, "say": True, "done": True,
+            "order": True}
 """What a page may ask for, and whether a word, and the number of the state that the page shows, belong to it."""
 
 ANSWERED = 2.0

@@ -30,7 +30,7 @@ from tornado.websocket import WebSocketClosedError, WebSocketHandler
 from pursue_runtime.http_server import LimitedServer, drop_chunks
 from pursue_runtime.slots import Slots, is_loopback
 
-SCRIPTS = ("agents", "confirm", "connection", "missions", "objectives", "page", "plan", "press", "timeline")
+SCRIPTS = ("agents", "confirm", "connection", "missions", "objectives", "orders", "page", "plan", "press", "timeline")
 FILES = {
     "/": ("index.html", "text/html"),
     **{f"/{name}.js": (f"{name}.js", "text/javascript") for name in SCRIPTS},

@@ -26,6 +26,14 @@ def mover(name: str, kind: str, speed: int) -> Dict[str, Any]:
             "locations": {"a": [], "b": [], "going_a_to_b": late, "going_b_to_a": late}}
 
 
+def desk(*words: str) -> Dict[str, Any]:
+    """Where people order these events."""
+    edges = [{"from": "listening", "to": "listening", "word": word, "sync": "send", "if": [["order_desk_open=1"]],
+              "set": {"order_desk_open": 0}, "controllable": False} for word in words]
+    return {"name": "order_desk", "kind": "orders", "initial": "listening", "locations": {"listening": []},
+            "edges": edges}
+
+
 def worker(name: str, kind: str) -> Dict[str, Any]:
     """An agent that may screw (for 3 to 4 units, in its turn) at its station."""
     clock = f"C{name}"

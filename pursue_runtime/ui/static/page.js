@@ -109,6 +109,7 @@ function setScene(fresh) {
   setAgents();
   setTasks();
   setButtons();
+  setOrders();
   setMap();
 }
 
@@ -158,12 +159,13 @@ function refresh() { // what changes while nothing happens: times, and what is p
   if (!view) return;
   const now = present(), here = isCurrent(), over = view.verdict !== "";
   say($("now"), units(now));
-  for (const id of ["people", "others", "free"]) $(id).classList.toggle("over", over); // there is nothing to report any more
+  for (const id of ["people", "others", "menu", "free"]) $(id).classList.toggle("over", over); // there is nothing to report any more
   enable($("start"), here && !over && view.status === "waiting" && view.phase === "ready");
   enable($("finish"), isConnected() && !over && view.live);
   enable($("stop"), isConnected() && !over); // it is carried out when the observer answers
   for (const [name, value] of Object.entries(view.clocks)) say(widgets.clocks.get(name), units(value + now - view.at));
   showButtons(now, here);
+  showOrders(here);
   showObjectives(now);
   showAfter();
   showTimeline();

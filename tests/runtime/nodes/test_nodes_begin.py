@@ -68,7 +68,7 @@ def test_an_observer_begins_with_the_mission_of_its_source(monkeypatch: pytest.M
     parts = ("read_settings", "Ending", "Later", "own_source", "Missions", "Newest", "Witnesses", "Mission", "Model",
              "read_cover", "Journal", "Planner", "ServedFirst", "StatePrinter", "Alarm", "StateRepeats", "subscribe",
              "start_thread", "Links", "Diagnostics", "take_up", "Inbox", "PlainWords", "last_mission", "mission_seen",
-             "message_of", "format_state", "OrderDesk", "menu")  # fmt: skip
+             "message_of", "format_state", "OrderDesk")  # fmt: skip
     replaced(monkeypatch, observer, parts)
     source = SimpleNamespace(mission="m1", read=lambda name: {"controllers": ["controller_bot1"]})
     monkeypatch.setattr(observer.Observer, "_source", lambda _: source)

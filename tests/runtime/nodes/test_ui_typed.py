@@ -36,7 +36,14 @@ class Screen:
         self.events = SimpleNamespace(publish=self.published.append)
         self.terminal = SimpleNamespace(line=self.shown.append)
         self.starts = 0
+        self.ordered: List[str] = []
+        self.orders = SimpleNamespace(order=self.take)
         self.typed = Typed(self, ["nurse"])  # type: ignore[arg-type]
+
+    def take(self, text: str) -> bool:
+        if text.startswith("tea"):
+            self.ordered.append(text)
+        return text.startswith("tea")
 
     def can_start(self) -> bool:
         return not self.is_running
@@ -58,6 +65,15 @@ def test_a_number_is_what_is_offered_in_the_state_of_now() -> None:
     screen.mission.state = state(MODEL, 8, 100.0, {"Cthief": 5.0}, thief="b")
     screen.typed.on_line("1")
     assert screen.published == ["thief_a2b", "thief_b2a"]
+
+
+def test_an_order_is_passed_on_once_the_mission_runs() -> None:
+    screen = Screen()
+    screen.typed.on_line(" tea within 5 min ")
+    assert (screen.ordered, screen.published, screen.shown) == (["tea within 5 min"], [], [])
+    ready = Screen(running=False)
+    ready.typed.on_line("tea")
+    assert ready.ordered == []
 
 
 def test_an_end_carries_the_number_of_the_state_and_another_word_does_not() -> None:

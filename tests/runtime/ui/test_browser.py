@@ -20,7 +20,7 @@ from pursue_runtime.ui.mission_view import reporters
 from pursue_runtime.ui.page import Facts, FloorPlan, Page
 from pursue_runtime.ui.promise import Objective, Promise
 from pursue_runtime.ui.statuses import Status
-from tests.runtime.models import model_data, mover, state, worker
+from tests.runtime.models import desk, model_data, mover, state, worker
 
 pytest.importorskip("tornado", reason="tornado is not installed")
 sys.path.append(str(Path(__file__).resolve().parents[2] / "ros"))
@@ -593,6 +593,35 @@ def test_what_is_possible_in_a_while_becomes_possible(page: Browser, show: Calla
     page.click("[data-word=thief_a2b]")
     says(page, "#remark", "as you like")
     assert node.wanted == [("say", "thief_a2b", 1)]
+
+
+def test_an_order_is_sent_once_with_the_time_that_is_wanted_and_its_answer_is_shown(
+    page: Browser, show: Callable[..., Node]
+) -> None:
+    node = show(*everybody(), desk("tea", "coffee"), labels={"tea": HOSTILE})
+    says(page, "#order-buttons", HOSTILE)
+    page.click("#order-buttons [data-word=coffee]")  # nothing runs yet
+    node.show(1, 0.0, event="_start_")
+    page.wait("document.querySelector('[data-word=coffee]').getAttribute('aria-disabled') === 'false'")
+    page.click("#order-buttons [data-word=coffee]")
+    page.click("#order-buttons [data-word=coffee]")
+    page.wait("document.querySelector('[data-word=coffee]').getAttribute('aria-disabled') === 'true'")
+    page.value("document.getElementById('within').value = '90'")
+    page.click("#order-buttons [data-word=tea]")
+    says(page, "#remark", "as you like")
+    assert node.wanted == [("order", "coffee", 1), ("order", "tea within 90", 1)]
+    node.board.on_answer(3.0, "coffee", True, "accepted: answered in 40 s at the latest")
+    node.board.on_answer(4.0, "tea within 90", False, "refused: {tea} is too late")
+    page.wait("document.querySelectorAll('#answers li').length === 2")
+    says(page, "#answers .good", "coffee: accepted: answered in 40 s at the latest")
+    says(page, "#answers .bad", f"refused: {HOSTILE} is too late")
+    says(page, "#log", "coffee: accepted")
+    assert not page.value("window.hacked || false") and page.complaints == []
+
+
+def test_there_is_no_panel_of_orders_where_nothing_can_be_ordered(page: Browser, show: Callable[..., Node]) -> None:
+    show(*everybody())
+    assert page.value("document.getElementById('menu').hidden")
 
 
 @pytest.mark.parametrize("status", ["won", "lost", "stopped"])

@@ -25,6 +25,7 @@ def labels(text: str, kind: str = "") -> List[str]:
 
 
 WHOLE = SMALL + "{}"
+WHERE = ["collaborative", "location", "duration"]
 MOVES = ["may_stop", "takes", "gives", "mounts", "needs"]
 SIZE = ["speed", "radius", "tolerance", "inflation", "carries", "has"]
 
@@ -109,8 +110,8 @@ def test_a_robots_pose_begins_with_that_of_the_place() -> None:
     ("line", "words"),
     [
         ("connect a |", ["and"]),
-        ('event "new" |', ["label", "collaborative", "location", "duration", *MOVES, "at_most", "in", "only_if"]),
-        ('event "new" collaborative loc|', ["together", "location", "duration", *MOVES, "at_most", "in", "only_if"]),
+        ('event "new" |', ["label", *WHERE, "on_order", *MOVES, "at_most", "in", "only_if"]),
+        ('event "new" collaborative loc|', ["together", *WHERE[1:], *MOVES, "at_most", "in", "only_if"]),
         ('event "new" collaborative together |', ["location", "duration", *MOVES, "at_most", "in", "only_if"]),
         ('agent "new" |', ["label", "location", "human", "controllable", "mobile", *SIZE]),
         ('agent "new" label "a" |', ["location", "human", "controllable", "mobile", *SIZE]),
