@@ -22,6 +22,7 @@ from pursue_gen.language.occurrences import GROUP, MEMBERS, VARIABLE, Occurrence
 from pursue_gen.language.scenario import (
     Agent,
     Both,
+    Door,
     Event,
     Poi,
     Ref,
@@ -126,6 +127,7 @@ def _about(scenario: Scenario, kind: str, name: str) -> Optional[str]:
         "state": (scenario.states, _state),
         "agent": (scenario.agents, _agent),
         "thing": (scenario.things, _thing),
+        "door": (scenario.doors, _door),
     }
     found, explain = parts[kind]
     part = next((part for part in found if getattr(part, "name", None) == name), None)
@@ -226,11 +228,16 @@ def _thing(scenario: Scenario, thing: Thing) -> List[str]:
     return [head, "", *_said(scenario, "thing", thing.name)]
 
 
+def _door(scenario: Scenario, door: Door) -> List[str]:
+    head = f"**{door.name}**: a door that opens by itself{_read_as(door.label)}"
+    return [head, "", *_said(scenario, "door", door.name)]
+
+
 def _said(scenario: Scenario, kind: str, name: str) -> List[str]:
     """What statements say of a thing that another one declares."""
     parts: Tuple[Written, ...] = (
-        *scenario.pois, *scenario.rules, *scenario.dependencies, *scenario.connections, *scenario.events,
-        *scenario.states, *scenario.batteries, *scenario.assumptions, *scenario.objectives,
+        *scenario.pois, *scenario.doors, *scenario.rules, *scenario.dependencies, *scenario.connections,
+        *scenario.events, *scenario.states, *scenario.batteries, *scenario.assumptions, *scenario.objectives,
     )  # fmt: skip
     return [f"- {line}" for part in parts for line in part.about(kind, name, partial(in_markdown, scenario))]
 
