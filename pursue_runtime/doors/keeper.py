@@ -14,7 +14,7 @@ REPEAT = 1.0
 
 SETTLE = 1.0
 """Seconds for which a door that was open when it was asked to open has to stay open: what it reported before may be
-older than an order to close."""
+older than an order to close. Half of the time in which it opens, where that is less."""
 
 AskedBy = Mapping[str, Collection[str]]
 """Agent → the locations of the agent in which it needs a door: it is on a way through it."""
@@ -44,6 +44,7 @@ class _Door:
     """A door. `is_open`: what it reported last, None: nothing; `asked`: what it was asked last, and when."""
 
     needed_in: Dict[str, FrozenSet[str]]
+    settle: float = SETTLE
     wanted_by: FrozenSet[str] = frozenset()
     is_open: Optional[bool] = None
     reported: float = 0.0
@@ -61,7 +62,7 @@ class _Door:
         """Return from when on it counts as open, as things stand; None: it does not."""
         if not self.wanted or not self.asked or not self.is_open:
             return None
-        return self.asked_since if self.reported > self.asked_since else self.asked_since + SETTLE
+        return self.asked_since if self.reported > self.asked_since else self.asked_since + self.settle
 
 
 class DoorKeeper:
@@ -71,17 +72,19 @@ class DoorKeeper:
     to close while somebody is on the way, also if the mission is over, or holds.
     """
 
-    def __init__(self, asked_by: Mapping[str, AskedBy]) -> None:
+    def __init__(self, doors: Mapping[str, DoorData]) -> None:
+        self._within = {name: door.within for name, door in doors.items()}
         self._doors = {
-            name: _Door({agent: frozenset(locations) for agent, locations in agents.items()})
-            for name, agents in asked_by.items()
+            name: _Door({agent: frozenset(locations) for agent, locations in door.asked_by.items()})
+            for name, door in doors.items()
         }
         self._mission, self._seq = "", -1
 
     def on_state(self, state: SystemState, now: float) -> None:
         """Take a state of the mission."""
         self._mission, self._seq = state.mission, state.seq
-        for door in self._doors.values():
+        for name, door in self._doors.items():
+            door.settle = min(SETTLE, self._within[name] * state.unit / 2)
             on_way = (agent for agent, where in door.needed_in.items() if state.locations.get(agent) in where)
             door.wanted_by = frozenset(on_way)
             if door.asked != door.wanted and (door.wanted or door.asked is not None or state.seq > 0):

@@ -41,7 +41,7 @@ class DoorsNode:
         doors = read_doors(self.membership.source.read("ui.yaml"))
         settings = {name: read_door_settings(name, given) for name in doors}
         self.within = {name: door.within for name, door in doors.items()}
-        self.keeper = DoorKeeper({name: door.asked_by for name, door in doors.items()})
+        self.keeper = DoorKeeper(doors)
         self.lock = threading.RLock()
         self.state: Optional[SystemState] = None
         self.opened = NONE_OPENED

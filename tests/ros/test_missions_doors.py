@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
+import yaml
 from launched_mission import PLAYED, LaunchedMission, launched
 from ros_world import Ros, lay_over
 
@@ -25,6 +27,7 @@ agent "bot" controllable mobile 1 location hall can_do fetch
 reach_objective: do fetch
 """
 DOOR = Path(__file__).with_name("fake_door.py")
+FAKE = DOOR.with_name("fake_move_base.py")
 CALM = {"mode": "still", "on_uncovered": "warn", "lost_after": 1000}
 
 RMF = '''
@@ -50,11 +53,18 @@ def made(ros: Ros, folder: Path) -> Path:
     return lay_over(ros, write_workspace(read, won.network, won.objective, won.strategy, options, folder / "ws"))
 
 
+def need_messages(ros: Ros) -> None:
+    wanted = "move_base_msgs.msg, actionlib_msgs.msg, tf2_ros"
+    if ros.run(f"python3 -c 'import {wanted}'", ros.home).returncode:
+        pytest.skip(f"not all of {wanted} is here")
+
+
 def passes(run: LaunchedMission, kind: str, *topics: str) -> None:
     """The robot sets off, and gets its goal when the door, which is started then, reports that it is open."""
     run.until_step("bot_hall2lab")
     command = f"source devel/setup.bash; exec python3 {DOOR} {kind} {' '.join(topics)}"
     run.until(lambda: run.values("doors").get("waited_for") == "d1")
+    run.until_back("doors", run.kill("doors"))
     assert run.orders() == [], "the door has reported nothing"
     with run.program(command, "door") as door:
         run.until(lambda: ("bot", "[4.0, 0.0]") in run.orders())
@@ -77,6 +87,22 @@ def test_a_robot_passes_a_door_when_that_reports_that_it_is_open(
     over = made(ros, tmp_path)
     with launched(ros, over, tmp_path / "run", ("bot",), **PLAYED, **CALM, doors=adapter) as run:
         passes(run, kind, "pursue/doors/d1/command", "pursue/doors/d1/state")
+
+
+def test_a_robot_with_move_base_waits_in_front_of_the_door(ros: Ros, tmp_path: Path) -> None:
+    need_messages(ros)
+    over = made(ros, tmp_path)
+    bot = {"start": [0.0, 0.0], "travel": 2.0, "acts": 2.2, "plays": ["succeed"]}
+    (tmp_path / "fake.yaml").write_text(yaml.safe_dump({"robots": {"bot": bot}}))
+    fake = f"rosparam load {tmp_path}/fake.yaml /fake_move_base && exec python3 {FAKE}"
+    door = f"source devel/setup.bash; exec python3 {DOOR} Bool pursue/doors/d1/command pursue/doors/d1/state"
+    arguments = {**PLAYED, **CALM, "goals": "action", "ends": "result"}
+    with launched(ros, over, tmp_path / "run", ("bot",), **arguments) as run, run.program(fake, "fake") as robot:
+        run.until(lambda: "bot stands 1.00 0.00" in robot.output())
+        assert "bot goal 4.00 0.00" not in robot.output()
+        with run.program(door, "door"):
+            assert run.until_over() == "won", run.output()
+    assert re.findall("bot goal (.*)", robot.output()) == ["1.00 0.00", "4.00 0.00"]
 
 
 def test_a_door_of_open_rmf_is_asked_by_its_messages(ros: Ros, tmp_path: Path) -> None:

@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_runtime.data import DataError
-from pursue_runtime.doors.keeper import REPEAT, SETTLE, DoorKeeper, read_doors
+from pursue_runtime.doors.keeper import REPEAT, SETTLE, DoorData, DoorKeeper, read_doors
 from pursue_runtime.state import RUNNING, WAITING, SystemState
 
 WAYS = ("going_hall_to_lab", "going_lab_to_hall")
-ASKED_BY = {"d1": {"bot1": WAYS, "bot2": WAYS}}
+DOORS = {"d1": DoorData(8.0, {"bot1": WAYS, "bot2": WAYS})}
 
 
 def state(seq: int, bot1: str = "hall", bot2: str = "lab", status: str = RUNNING) -> SystemState:
@@ -24,7 +24,7 @@ class World:
     """A keeper with a clock."""
 
     def __init__(self) -> None:
-        self.keeper = DoorKeeper(ASKED_BY)
+        self.keeper = DoorKeeper(DOORS)
         self.now = 100.0
 
     def see(self, *args: object, **more: object) -> List[Tuple[str, bool]]:
@@ -70,6 +70,13 @@ def test_what_it_reported_before_it_was_asked_counts_when_it_has_stayed_so() -> 
     assert world.open_for() == {"bot1"}
     world.keeper.on_report("d1", False, world.now)
     assert world.open_for() == frozenset()
+
+
+def test_a_door_that_opens_quickly_is_not_watched_for_longer_than_it_may_take() -> None:
+    keeper = DoorKeeper({"d1": DoorData(0.5, {"bot1": WAYS})})
+    keeper.on_report("d1", True, 90.0)
+    keeper.on_state(state(1, bot1=WAYS[0]), 100.0)
+    assert not keeper.opened(100.2).doors and keeper.opened(100.25).doors == {"d1": {"bot1"}}
 
 
 def test_it_is_asked_again_until_it_has_done_it() -> None:
