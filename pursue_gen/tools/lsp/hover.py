@@ -152,7 +152,8 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
         only = f", only while {in_markdown(scenario, condition_words(way.only_if))}" if way.only_if is not None else ""
         whom = f", {in_markdown(scenario, way.whom_words)}" if way.whom_words else ""
         words += f": distance {written_time(way.distance)}"
-        lines.append(f"- {words}" + (f" ({times})" if times else "") + whom + only)
+        doors = "".join(f", through {in_markdown(scenario, door.in_words)}" for door in scenario.doors_on(way))
+        lines.append(f"- {words}" + (f" ({times})" if times else "") + doors + whom + only)
     lines = [*lines[:2], *_listed(lines[2:])]
     if not ways:
         lines.append("- no way leads here")
