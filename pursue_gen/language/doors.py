@@ -27,8 +27,8 @@ def check_doors(scenario: Scenario) -> Iterator[Diagnostic]:
     for door in scenario.doors:
         if door.name not in used:
             hint = f"write through {door.name} behind the distance of a way, or delete this line"
-            yield warning("PML451", f"no way leads through {door.name}", door.span, hint)
+            yield warning("PML461", f"no way leads through {door.name}", door.span, hint)
         elif posed and door.pose is None:
             message = f"{door.name} has no pose, but places do: robots would wait for it where they set off"
             hint = "write the pose of its middle behind it: //[x, y, z, qx, qy, qz, qw]"
-            yield warning("PML452", message, door.span, hint)
+            yield warning("PML462", message, door.span, hint)

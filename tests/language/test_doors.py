@@ -86,17 +86,17 @@ def test_a_quicker_door_is_a_change_that_explanations_try() -> None:
 @pytest.mark.parametrize(
     ("text", "finding"),
     [
-        (lab('door "d1" opens within 0'), ("PML450", "d1 would be open at once, always")),
-        (lab(through=" through d1, d1"), ("PML450", "d1 stands twice behind through")),
+        (lab('door "d1" opens within 0'), ("PML460", "d1 would be open at once, always")),
+        (lab(through=" through d1, d1"), ("PML460", "d1 stands twice behind through")),
         (lab(through=" through hall"), ("PML110", "hall is a POI, but a door is needed here")),
-        (lab(through=""), ("PML451", "no way leads through d1")),
+        (lab(through=""), ("PML461", "no way leads through d1")),
         (
             lab('door "d1" opens within 8 //[2, 0, 0, 0, 0, 0, 1] bot [1, 0, 0, 0, 0, 0, 1]'),
-            ("PML450", "a door has one pose, and bot has another one here"),
+            ("PML460", "a door has one pose, and bot has another one here"),
         ),
         (
             lab().replace('poi "lab"', 'poi "lab" //[4, 0, 0, 0, 0, 0, 1]'),
-            ("PML452", "d1 has no pose, but places do: robots would wait for it where they set off"),
+            ("PML462", "d1 has no pose, but places do: robots would wait for it where they set off"),
         ),
     ],
 )

@@ -95,5 +95,5 @@ class Connection(ForSome):
         if self.a == self.b:
             yield error("PML145", f"this connects {self.a} with itself", self.span, "name two different places")
         for ref in twice(self.through):
-            yield error("PML450", f"{ref.name} stands twice behind through", ref.span, "delete one of the two")
+            yield error("PML460", f"{ref.name} stands twice behind through", ref.span, "delete one of the two")
         yield from self.check_whom(f"the way between {self.a} and {self.b}")

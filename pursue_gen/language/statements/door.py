@@ -19,7 +19,7 @@ def _read_pose(reader: TreeReader, comment: Any) -> Optional[Pose]:
     pose, spots = read_poses(str(comment), reader.at(comment), reader.findings)
     for spot in spots:
         message = f"a door has one pose, and {spot.robot.name} has another one here"
-        reader.findings.append(error("PML450", message, spot.robot.span, "delete it: robots find their own side"))
+        reader.findings.append(error("PML460", message, spot.robot.span, "delete it: robots find their own side"))
     return pose
 
 
@@ -66,4 +66,4 @@ class Door(Labelled):
     def check(self) -> Iterator[Diagnostic]:
         if self.opens_within <= 0:
             message = f"{self.name} would be open at once, always"
-            yield error("PML450", message, self.span, "write how long it takes to open, such as opens within 5")
+            yield error("PML460", message, self.span, "write how long it takes to open, such as opens within 5")
