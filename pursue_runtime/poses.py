@@ -2,13 +2,14 @@
 
 `poses` has a pose for each place, for every robot that commands of this package are for. `robots` (format 2) has, by
 robot and place, those that differ: two robots at one place stand side by side. `spare` (format 3) has, by robot and
-place, where this robot alone may stand instead, if its navigation cannot bring it to its pose.
+place, where this robot alone may stand instead, if its navigation cannot bring it to its pose. `doors` (format 4) has,
+by robot and location, the doors of a way, and where the robot waits for them.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any, Dict, Iterable, List, Mapping, NamedTuple
+from typing import Any, Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional
 
 from pursue_runtime.data import DataError
 
@@ -19,12 +20,24 @@ Table = Dict[str, List[float]]
 """place → x, y, z, qx, qy, qz, qw."""
 
 
+class Doorway(NamedTuple):
+    """The doors of a way; `wait`: the pose at which a robot waits for them, None: where it sets off."""
+
+    doors: FrozenSet[str]
+    wait: Optional[List[float]] = None
+
+
+Doorways = Dict[str, Doorway]
+"""The location in which the robot is on the way → the doors of the way."""
+
+
 class Poses(NamedTuple):
-    """The poses of the `places`, and by robot the ones of its `own` and its `spare` ones."""
+    """The poses of the `places`, and by robot the ones of its `own`, its `spare` ones, and its ways through doors."""
 
     places: Table
     own: Dict[str, Table]
     spare: Dict[str, Table]
+    doors: Dict[str, Doorways]
 
     def of(self, robots: Iterable[str]) -> Dict[str, Table]:
         """Return for each of the robots where it is sent: a pose for each place."""
@@ -37,7 +50,23 @@ def read_poses(data: Mapping[str, Any]) -> Poses:
     if not isinstance(places, dict):
         raise DataError("poses.yaml: expected poses: and a line for each place")
     where = _table(places, "")
-    return Poses(where, _of_robots(data, "robots", where), _of_robots(data, "spare", where))
+    return Poses(where, _of_robots(data, "robots", where), _of_robots(data, "spare", where), _doorways(data))
+
+
+def _doorways(data: Mapping[str, Any]) -> Dict[str, Doorways]:
+    robots = data.get("doors", {})
+    found: Dict[str, Doorways] = {}
+    if not isinstance(robots, dict) or not all(isinstance(ways, dict) for ways in robots.values()):
+        raise DataError("poses.yaml: expected doors: and a table for each robot")
+    for robot, ways in robots.items():
+        for location, way in ways.items():
+            what = f"poses.yaml: the doors of {robot} on {location}"
+            names = way.get("doors") if isinstance(way, dict) else None
+            if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
+                raise DataError(f"{what}: expected {{doors: [name], wait: [x, y, z, qx, qy, qz, qw]}}, got {way!r}")
+            wait = None if way.get("wait") is None else _pose(way["wait"], f"where {robot} waits on {location}")
+            found.setdefault(str(robot), {})[str(location)] = Doorway(frozenset(names), wait)
+    return found
 
 
 def _of_robots(data: Mapping[str, Any], key: str, places: Table) -> Dict[str, Table]:

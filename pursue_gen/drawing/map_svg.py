@@ -259,6 +259,8 @@ def _conditions(scenario: Scenario) -> Iterator[str]:
         lane = f" at distance {written_time(way.distance)}" if scenario.is_lane(way) else ""
         if way.whom_words:
             yield f"Between {ends}{lane} {way.whom_words}"
+        for door in scenario.doors_on(way):
+            yield f"Between {ends} through {door.in_words}"
         if way.only_if is not None:
             yield f"Between {ends} only while {condition_words(way.only_if)}"
     for event in scenario.events:

@@ -30,6 +30,7 @@ from pursue_gen.language.objectives.holds import Holds
 from pursue_gen.language.scenario import (
     Agent,
     Connection,
+    Door,
     Endurance,
     Event,
     Pause,
@@ -65,6 +66,8 @@ def _repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
         yield from _of_duration(scenario, event)
     for connection in scenario.connections:
         yield from _of_way(scenario, connection)
+    for door in scenario.doors:
+        yield from _of_door(scenario, door)
     controlled = [agent.name for agent in scenario.agents if agent.controllable]
     for part in (part for part in scenario.for_some if not all(map(part.admits, controlled))):
         if isinstance(part, Connection) and scenario.is_lane(part):
@@ -260,6 +263,16 @@ def _of_way(scenario: Scenario, way: Connection) -> Iterator[Repair]:
         label = f"a way between {ends} in both directions"
         freer = scenario.with_instead(way, replace(way, one_way=False))
         yield _switch("direction", ends, label, "one_way", freer, way.span)
+
+
+def _of_door(scenario: Scenario, door: Door) -> Iterator[Repair]:
+    now = door.opens_within
+    if now > 1:
+        yield Repair(
+            "door", door.name, f"{door.shown} opening sooner", now, whole_below(now, 1),
+            lambda k: scenario.with_instead(door, replace(door, opens_within=like(k, now))),
+            lambda k: f"{door.shown} opening within {instead(k, now)}", door.span,
+        )  # fmt: skip
 
 
 def _of_orders(scenario: Scenario) -> Iterator[Repair]:

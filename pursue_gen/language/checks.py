@@ -12,6 +12,7 @@ from pursue_gen.language.assumption_checks import check_assumptions
 from pursue_gen.language.batteries import check_batteries
 from pursue_gen.language.behaviour import check_events, check_rules, components
 from pursue_gen.language.condition_checks import check_conditions
+from pursue_gen.language.doors import check_doors
 from pursue_gen.language.labels import check_labels
 from pursue_gen.language.loads import check_loads
 from pursue_gen.language.names import check_names, check_references, events_used
@@ -84,6 +85,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
                 findings += check_conditions(scenario)
                 findings += check_assumptions(scenario)
             findings += check_poses(scenario)
+            findings += check_doors(scenario)
             findings += check_unknown(scenario)
             findings += check_batteries(scenario)
             findings += of_loads
@@ -127,7 +129,7 @@ def _doubtful(scenario: Scenario) -> FrozenSet[str]:
 def _alone(scenario: Scenario) -> Iterator[Diagnostic]:
     """What is wrong with single statements."""
     parts = (*scenario.pois, *scenario.connections, *scenario.events, *scenario.states, *scenario.agents)
-    for part in (*scenario.units, *scenario.rests, *parts, *scenario.travels):
+    for part in (*scenario.units, *scenario.rests, *scenario.doors, *parts, *scenario.travels):
         yield from part.check()
 
 

@@ -9,6 +9,7 @@ from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.statements.base import StatementKind
 from pursue_gen.language.statements.connect import Connection
 from pursue_gen.language.statements.dependency import Dependency
+from pursue_gen.language.statements.door import Door
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.statements.group import ForEach, Group
 from pursue_gen.language.statements.headed import Assume, Batteries, Objective, ReachObjective
@@ -28,6 +29,7 @@ STATEMENTS: Mapping[str, Type[StatementKind]] = {
         Unit,
         Rest,
         Poi,
+        Door,
         Connection,
         Thing,
         Event,

@@ -210,7 +210,8 @@ def name_meant(chunk: Sequence[Token], index: int) -> Tuple[str, Token]:
     """
     words = [chunk[index]]
     if chunk[0].type == "POI":
-        words += takewhile(lambda word: word.type == "WORD" and word.line == words[0].line, chunk[index + 1 :])
+        plain = {"WORD", *MAY_BE_NAMES} - {"LABEL", "EXCEPT"}
+        words += takewhile(lambda word: word.type in plain and word.line == words[0].line, chunk[index + 1 :])
     text = " ".join(words)
     return (text if chunk[index - 1].type == "LABEL" else proposal(text, RESERVED)), words[-1]
 

@@ -27,6 +27,7 @@ from pursue_gen.language.statements.base import Labelled
 from pursue_gen.language.statements.battery import Battery
 from pursue_gen.language.statements.connect import Connection
 from pursue_gen.language.statements.dependency import Dependency
+from pursue_gen.language.statements.door import Door
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.statements.mission import MissionEnd
 from pursue_gen.language.statements.poi import Poi
@@ -40,8 +41,8 @@ from pursue_gen.language.times import like
 
 __all__ = [
     "Agent", "AllOf", "AnyOf", "At", "AtMostOf", "Battery", "Both", "Choice", "Condition", "Connection", "Dependency",
-    "Doing", "Event", "Has", "Holds", "MissionEnd", "Not", "OnWay", "Poi", "Pose", "Ref", "Rest", "Rule", "RuleBody",
-    "Scenario", "Sequence", "Spot", "State", "Thing", "Travel", "Unit", "Who", "Window",
+    "Doing", "Door", "Event", "Has", "Holds", "MissionEnd", "Not", "OnWay", "Poi", "Pose", "Ref", "Rest", "Rule",
+    "RuleBody", "Scenario", "Sequence", "Spot", "State", "Thing", "Travel", "Unit", "Who", "Window",
 ]
 __all__ += kinds_of_assumptions.__all__
 __all__ += kinds_of_objectives.__all__
@@ -78,6 +79,7 @@ class Scenario:
     rests: Tuple[Rest, ...] = ()
     ends: Tuple[MissionEnd, ...] = ()
     things: Tuple[Thing, ...] = ()
+    doors: Tuple[Door, ...] = ()
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
         """Show it in a notebook."""
@@ -135,8 +137,8 @@ class Scenario:
 
     @cached_property
     def labels(self) -> Dict[str, str]:
-        """Name → what people read instead, of all places, events, agents and things with a label."""
-        parts: Tuple[Labelled, ...] = (*self.pois, *self.events, *self.agents, *self.things)
+        """Name → what people read instead, of all places, events, agents, things and doors with a label."""
+        parts: Tuple[Labelled, ...] = (*self.pois, *self.events, *self.agents, *self.things, *self.doors)
         return {part.name: part.label for part in reversed(parts) if part.label}
 
     def shown(self, name: str) -> str:
@@ -228,8 +230,18 @@ class Scenario:
         if agent.mobile is None:
             return {}
         own = {travel.way: travel.window for travel in self.travels if travel.agent.name == agent.name}
-        return {
-            way: own.get(way) or agent.window_on(connection.distance)
-            for connection in self.ways_of(agent.name)
-            for way in connection.directions
-        }
+        found = {}
+        for connection in self.ways_of(agent.name):
+            opening = self.opening(connection)
+            for way in connection.directions:
+                earliest, latest = own.get(way) or agent.window_on(connection.distance)
+                found[way] = earliest, exact(latest + opening) if opening else latest
+        return found
+
+    def opening(self, way: Connection) -> Number:
+        """The time units that whoever sets off on a way waits for its doors at most, all of which are asked at once."""
+        return max((door.opens_within for door in self.doors_on(way)), default=0)
+
+    def doors_on(self, way: Connection) -> Tuple[Door, ...]:
+        """The doors of a way, in the order in which they are declared."""
+        return tuple(door for door in self.doors if any(ref.name == door.name for ref in way.through))

@@ -32,7 +32,7 @@ MOST_WORDS = 100_000
 """The largest text that is read: many times a floor with 1,000 places, and still read in seconds."""
 
 COMMENTS = frozenset(("LINE_COMMENT", "BLOCK_COMMENT", "UNCLOSED_COMMENT"))
-"""The tokens that are comments; a POSE is one, too, where it stands anywhere but behind a point of interest."""
+"""The tokens that are comments; a POSE is one, too, where it does not stand behind a point of interest or a door."""
 
 _DEEPEST = 40
 """Brackets within brackets in a rule or a condition; beyond it is no scenario, and Python's own stack has an end."""
@@ -59,8 +59,10 @@ _ENDS = frozenset(
 """Tokens behind which no name can stand: one that opens the next line begins something else."""
 _LENGTHS = ("SECOND", "MINUTE", "HOUR", "NUMBER")
 """What a unit of time may be."""
-_OF_POIS = NAMES | {"NAME", "LABEL", "FOR", "EXCEPT", "COMMA"}
-"""What a point of interest consists of, before its pose."""
+_PLACED = ("POI", "DOOR")
+"""The tokens that begin what may have a pose."""
+_OF_POIS = NAMES | {"NAME", "LABEL", "FOR", "EXCEPT", "COMMA", "OPENS", "WITHIN", "NUMBER"}
+"""What a point of interest, or a door, consists of, before its pose."""
 
 
 @dataclass(frozen=True)
@@ -313,15 +315,15 @@ def accepts(tokens: Sequence[Token]) -> FrozenSet[str]:
 
 
 def _significant(tokens: Iterable[Token]) -> List[Token]:
-    """The tokens without comments: a pose is none behind a point of interest, on its line."""
+    """The tokens without comments: a pose is none behind a point of interest, or a door, on its line."""
     kept: List[Token] = []
     of_poi = False
     for token in tokens:
         if token.type in _BLANKS:
             continue
-        if token.type == "POSE" and not (of_poi and kept[-1].type != "POI" and kept[-1].line == token.line):
+        if token.type == "POSE" and not (of_poi and kept[-1].type not in _PLACED and kept[-1].line == token.line):
             continue
-        of_poi = token.type == "POI" or (of_poi and token.type in _OF_POIS)
+        of_poi = token.type in _PLACED or (of_poi and token.type in _OF_POIS)
         kept.append(token)
     return kept
 
@@ -366,7 +368,7 @@ def _chunks(tokens: List[Token]) -> List[List[Token]]:
             begins = following == "NUMBER" or (opens_line and ended)
         elif token.type == "MISSION":  # a name may be called so
             begins = following == "ENDS" or (opens_line and ended)
-        elif token.type in ("GROUP", "THING"):  # a name may be called so
+        elif token.type in ("GROUP", "THING", "DOOR"):  # a name may be called so
             begins = goes_on or (opens_line and ended)
         elif token.type in ("OBJECTIVE", "REACH_OBJECTIVE") and _opened(found):
             begins = False

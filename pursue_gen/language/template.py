@@ -75,10 +75,14 @@ def event_or_condition_text(what: Any) -> str:
 
 
 FILLINGS: Mapping[str, Filling] = {
-    **{kind: Filling("ref", TreeReader.ref, name_text, kind) for kind in ("agent", "event", "state", "thing", "POI")},
+    **{
+        kind: Filling("ref", TreeReader.ref, name_text, kind)
+        for kind in ("agent", "event", "state", "thing", "door", "POI")
+    },
     '"agent"': Filling("(ref | NAME)", TreeReader.agent_ref, lambda ref: f'"{ref.name}"', "agent"),
     "agents": Filling("refs", TreeReader.refs, names_text, "agent"),
     "POIs": Filling("refs", TreeReader.refs, names_text, "POI"),
+    "doors": Filling("refs", TreeReader.refs, names_text, "door"),
     "things": Filling("refs", TreeReader.refs, names_text, "thing"),
     "events": Filling("refs", TreeReader.refs, names_text, "event"),
     "event or condition": Filling(

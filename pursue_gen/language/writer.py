@@ -71,6 +71,8 @@ def _meaning(value: Any) -> Any:
         value = replace(value, file="", text="", given_up=(), safety=safety)
     elif isinstance(value, pml.Poi):
         value = replace(value, pose=None, spots=())
+    elif isinstance(value, pml.Door):
+        value = replace(value, pose=None)
     elif isinstance(value, Patrol):
         value = replace(value, least=None)
     elif isinstance(value, Ref):

@@ -123,7 +123,8 @@ def docker_files(jinja: jinja2.Environment, values: Mapping[str, Any], packages:
 def systemd_files(jinja: jinja2.Environment, values: Mapping[str, Any], machines: Machines) -> Dict[str, bytes]:
     """The folder systemd/: a unit for each node, one for the master, the file of variables, and how to install them."""
     services = [*_mission(values, robots=True), *(_of_machine(name) for name in _TRANSPORT)]
-    places = {service.node: machines.of(service.node).host for service in services if service.package not in _TRANSPORT}
+    nodes = [service.node for service in services if service.package not in _TRANSPORT]
+    places = {node: machines.of("UI" if node == "doors" else node).host for node in nodes}
     context = {
         **values,
         "services": services,
@@ -188,12 +189,14 @@ def _mission(values: Mapping[str, Any], robots: bool) -> List[Service]:
     robot = (*either, *(real if robots else ()))
     planner = Setting("planner", "off", "PURSUE_PLANNER", text=True)
     page = ("127.0.0.1:${PURSUE_PAGE_PORT:-8080}:8080",)
+    doors = Setting("adapter", "std_msgs" if robots else "simulated", "PURSUE_DOORS", text=True)
     bag = (Setting("file", "true"), without)
     return [
         Service("observer", "observer", "observer", (unit, planner, *shared), ("observer",), BASE),
         *(Service(name, name, name, (*robot, *shared), (name,), name) for name in controllers),
         Service("UI", "UI", "UI", (*ui, *shared), ("UI",), BASE, ports=page),
         *([] if robots else [Service("simulator", "UI", "simulator", shared, ("UI",), BASE)]),
+        *([Service("doors", "UI", "doors", (doors, *shared), ("UI",), BASE)] if values["doors"] else []),
         Service("recorder", "UI", "recorder", (*bag, *shared), ("UI",), BASE, profile="record"),
     ]
 

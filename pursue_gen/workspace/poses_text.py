@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from types import MappingProxyType
 from typing import Any, Dict, List, Mapping, Sequence
 
 from pursue_gen import __version__
 from pursue_gen.language.behaviour import robots_at
-from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.doors import doors_of
+from pursue_gen.language.scenario import Pose, Scenario
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.workspace.spots import Placing, Table
+from pursue_runtime.locations import movement
+
+DOOR_DISTANCE = 1.0
+"""Metres from the middle of a door at which a robot waits for it: room for a door that swings and half a robot. Not
+measured."""
 
 NOTHING: Mapping[str, Table] = MappingProxyType({})
 
@@ -20,7 +27,8 @@ def poses_text(
     """The text of poses.yaml for a package that sends these robots to their spots; without robots it has the places.
 
     One robot has a table of its own. Of several, those that differ from the places' poses are named (format 2). Those
-    that each robot alone may take if need be are named in any case (`spare`: robot → place → pose, format 3).
+    that each robot alone may take if need be are named in any case (`spare`: robot → place → pose, format 3), and so
+    are the doors of ways, and where a robot waits for them (format 4).
     """
     places, spots = placing.places, placing.spots
     head = [_title(scenario, robots)]
@@ -40,13 +48,45 @@ def poses_text(
         differ = {robot: {name: p for name, p in spots[robot].items() if p != places[name]} for robot in robots}
         own = {robot: table for robot, table in differ.items() if table}
     spare = {robot: spare[robot] for robot in robots if robot in spare}
-    form = 3 if spare else 2 if own else 1
+    doors = _doorways(scenario, places, own, robots)
+    form = 4 if doors else 3 if spare else 2 if own else 1
     data: Dict[str, Any] = {"format": form, "computed": placing.computed, "poses": _lines(places, alone)}
     if own:
         data["robots"] = {robot: _lines(table, _computed(scenario, robot)) for robot, table in own.items()}
     if spare:
         data["spare"] = {robot: _lines(table, ()) for robot, table in spare.items()}
+    if doors:
+        data["doors"] = doors
     return yaml_text(data, head).encode()
+
+
+def _doorways(scenario: Scenario, places: Table, own: Mapping[str, Table], robots: Sequence[str]) -> Dict[str, Any]:
+    """For each robot the location of each way through doors, the doors, and the pose at which it waits for them."""
+    found: Dict[str, Any] = {}
+    for agent in (agent for agent in scenario.agents if agent.name in robots):
+        for (a, b), doors in doors_of(scenario, agent).items():
+            start = own.get(agent.name, places).get(a, places[a])
+            way: Dict[str, Any] = {"doors": sorted(doors)}
+            poses = [door.pose for door in scenario.doors if door.name in doors and door.pose is not None]
+            if poses:
+                way["wait"] = in_front_of(min(poses, key=lambda pose: _apart(start, pose)), start)
+            found.setdefault(agent.name, {})[movement(a, b)] = inline(way)
+    return found
+
+
+def in_front_of(door: Pose, start: Pose) -> List[float]:
+    """The pose in front of a door, on the side from which a robot comes that starts there, looking at the door."""
+    yaw = 2 * math.atan2(door.qz, door.qw)
+    ahead = math.cos(yaw), math.sin(yaw)
+    if (door.x - start.x) * ahead[0] + (door.y - start.y) * ahead[1] < 0:
+        ahead, yaw = (-ahead[0], -ahead[1]), yaw + math.pi
+    distance = min(DOOR_DISTANCE, _apart(start, door))
+    at = (door.x - distance * ahead[0], door.y - distance * ahead[1], door.z)
+    return [round(number, 3) + 0.0 for number in (*at, 0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))]
+
+
+def _apart(one: Pose, other: Pose) -> float:
+    return math.dist((one.x, one.y, one.z), (other.x, other.y, other.z))
 
 
 def _title(scenario: Scenario, robots: Sequence[str]) -> str:

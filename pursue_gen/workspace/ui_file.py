@@ -8,6 +8,7 @@ from math import ceil
 from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from pursue_gen.drawing.floor import Floor
+from pursue_gen.language.doors import doors_of
 from pursue_gen.language.scenario import Connection, Scenario
 from pursue_gen.language.sentences import objective_sentence, objective_words
 from pursue_gen.language.times import unit_name
@@ -21,6 +22,7 @@ from pursue_gen.vocabulary.promises import promise_names, short_name
 from pursue_gen.vocabulary.statuses import statuses
 from pursue_gen.workspace.context import Options
 from pursue_gen.workspace.spots import Placing
+from pursue_runtime.locations import movement
 
 LARGEST = 2_000
 """States of strategies that a UI reads at most: it starts with the mission."""
@@ -54,6 +56,10 @@ def render(
     }
     if scenario.unit is not None:
         data["counts"] = unit_name(scenario.unit)
+    doors = _doors(scenario)
+    if doors:
+        data["nodes"] = inline(("observer", *controllers, "simulator", "doors"))
+        data["doors"] = {name: inline(door) for name, door in doors.items()}
     if options.guarantee is not None:
         data["guarantee"] = number(Fraction(ceil(options.guarantee * 1000), 1000))  # a decimal, and never too little
     if idle:
@@ -100,6 +106,18 @@ def floor_files(floor: Floor, generator: str) -> Dict[str, bytes]:
 def _connection(way: Connection) -> List[Any]:
     """A connection in ui.yaml: its ends, its length, and `one_way` where it goes from the first to the second only."""
     return [way.a, way.b, number(way.distance), *(["one_way"] if way.one_way else [])]
+
+
+def _doors(scenario: Scenario) -> Dict[str, Dict[str, Any]]:
+    """The doors in ui.yaml that are opened for somebody: within how many time units, and in which locations of whom."""
+    found: Dict[str, Dict[str, Any]] = {}
+    for agent in scenario.agents:
+        for way, doors in doors_of(scenario, agent).items():
+            for door in scenario.doors:
+                if door.name in doors:
+                    one = found.setdefault(door.name, {"within": number(door.opens_within), "asked_by": {}})
+                    one["asked_by"].setdefault(agent.name, []).append(movement(*way))
+    return found
 
 
 def _objectives(scenario: Scenario, answers: Mapping[str, Fraction]) -> List[Dict[str, Any]]:

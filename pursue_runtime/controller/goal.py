@@ -24,11 +24,14 @@ FIRST_WAIT, LAST_WAIT = 1.0, 8.0
 
 
 class Movement(NamedTuple):
-    """Where a robot is sent, and the location of the agent meanwhile; `spare`: where it may go at that place, too."""
+    """Where a robot is sent, and the location of the agent meanwhile; `spare`: where it may go at that place, too.
+    `doors`: what has to be open first; `wait`: where the robot waits for that, None: where it is."""
 
     location: str
     place: Place
     spare: Optional[Place] = None
+    doors: FrozenSet[str] = frozenset()
+    wait: Optional[Place] = None
 
 
 class Goal(NamedTuple):

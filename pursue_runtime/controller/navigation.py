@@ -14,6 +14,7 @@ from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.trip import Trip
 from pursue_runtime.controller.view import Due, View
 from pursue_runtime.controller.whereabouts import Position, Whereabouts
+from pursue_runtime.doors.opened import NONE_OPENED
 from pursue_runtime.event_words import BACK, BLOCKED, DISPLACED, FAILED, HELD, RESUME, STUCK, RobotReport, Word
 from pursue_runtime.locations import is_action, is_movement
 from pursue_runtime.orders import Order
@@ -35,7 +36,7 @@ class Navigation:
     place. A goal that a goal of another node has replaced is sent again, `~retries` times. One that another node has
     cancelled, or replaced once more, is sent again when the state has listed the robot as `held`, and does so no more.
     A goal that fails is sent again, `~retries` times, the last time to the robot's spare pose at the place if it has
-    one. No other robot is sent there.
+    one. No other robot is sent there. On a way through doors it waits in front of them until they are open for it.
     """
 
     def __init__(self, name: str, settings: Settings, log: Log) -> None:
@@ -55,6 +56,8 @@ class Navigation:
         self._report: Optional[RepeatedReport] = None
         self._doubt: Optional[float] = None  # since when it is not known to be where the state has it
         self._was_sent_away = False  # by another node, from where the state has it
+        self.opened = NONE_OPENED
+        """For whom which doors are open."""
 
     @property
     def goal(self) -> str:
@@ -104,7 +107,7 @@ class Navigation:
 
     def start(self, way: Movement, now: float) -> None:
         """Start a movement: its goal is due now."""
-        self._trip = Trip(way, now, goal_at=now)
+        self._trip = Trip(way, now, goal_at=now, waits_at_door=bool(way.doors))
 
     def act(self, order: Order) -> None:
         """Start an action: it is due as soon as the robot is known to be at its place."""
@@ -115,6 +118,8 @@ class Navigation:
         trip = self._trip
         if trip is None or trip.has_arrived or not self._goal.ends(answer):
             return
+        if trip.waits_at_door and answer.status not in CANCELLED:
+            return  # it is in front of the door, or as near as it comes
         if answer.status == SUCCEEDED:
             self._on_success(trip)
         elif answer.status in CANCELLED:
@@ -162,6 +167,8 @@ class Navigation:
                 self._arrive(trip)
             if trip.cancelled is not None and now >= trip.decided_at:
                 self._hold(trip, trip.cancelled)
+            if trip.waits_at_door and self.opened.all_for(self.name, trip.movement.doors, self._as_of):
+                trip.pass_doors(now)
             goal = self._due_goal(trip, now, real)
         for order in [order for order in self._actions if self._may_act(order, now)]:
             self._actions.remove(order)
@@ -238,7 +245,7 @@ class Navigation:
         """Return when the robot has arrived by its position, if it does not move until then."""
         if not self.settings.ends_by_position or trip.has_arrived or self._goal.is_active:
             return float("inf")  # move_base may still turn the robot, by less than amcl publishes
-        if not self._at.is_near(trip.movement.place):
+        if trip.waits_at_door or not self._at.is_near(trip.movement.place):
             return float("inf")
         return max(self._at.stands_at(), trip.since + self.settings.end_settle)
 
@@ -283,8 +290,17 @@ class Navigation:
             return self._goal.send_again(now, real)
         if now < self._goal_due_at(trip):
             return None
-        trip.attempts, trip.goal_at, trip.is_sent = trip.attempts + 1, None, True
-        goal = Goal(f"{self.name}-{trip.movement.location}-{trip.attempts}-{now:.6f}", trip.movement)
+        trip.goal_at = None
+        movement = trip.movement
+        if trip.waits_at_door:
+            doors = " and ".join(sorted(movement.doors))
+            self._log("info", f"{self.name} waits for {doors} to open")
+            if movement.wait is None or self.settings.ends == "words":  # who reports its ends itself would report this
+                return None
+            movement = movement._replace(place=movement.wait)
+        trip.attempts, trip.is_sent = trip.attempts + 1, True
+        number = f"{'door-' * trip.waits_at_door}{trip.attempts}"
+        goal = Goal(f"{self.name}-{movement.location}-{number}-{now:.6f}", movement)
         self._goal.send(goal, now, real)
         return goal
 

@@ -15,7 +15,7 @@ STATUS_WAIT = 2.0
 @dataclass
 class Trip:
     """A movement, or the way back to where the state has the robot; `attempts` is how many goals it took, `is_sent`:
-    this node has sent one.
+    this node has sent one. `waits_at_door`: the doors of the way are not known to be open yet.
 
     Its goal may be cancelled by another node. `cancelled` is that answer until it is known whether a goal of the other
     node has replaced ours (`replaced` counts how often), which is at `decided_at` at the latest.
@@ -28,6 +28,7 @@ class Trip:
     attempts: int = 0
     is_sent: bool = False
     has_arrived: bool = False
+    waits_at_door: bool = False
     is_held: bool = False  # it waits for a person
     cancelled: Optional[Answer] = None
     decided_at: float = 0.0
@@ -45,6 +46,10 @@ class Trip:
     def resume(self, now: float) -> None:
         """Note that a person lets the robot resume: a goal is due."""
         self.is_held, self.cancelled, self.replaced, self.goal_at = False, None, 0, now
+
+    def pass_doors(self, now: float) -> None:
+        """Note that the doors of the way are open: the goal behind them is due."""
+        self.waits_at_door, self.goal_at, self.attempts = False, now, 0
 
     def describe(self, how: str, text: str = "") -> str:
         """Return what has become of it, as part of a sentence; `text` is move_base's own."""

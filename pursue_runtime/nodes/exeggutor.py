@@ -6,6 +6,7 @@ import contextlib
 import threading
 import time
 from functools import partial
+from types import MappingProxyType
 from typing import Callable, Dict, List, Mapping, Optional, Sequence
 
 import rospy
@@ -16,15 +17,16 @@ from pursue_runtime.controller.navigation import Navigation
 from pursue_runtime.controller.settings import read_settings
 from pursue_runtime.controller.view import View
 from pursue_runtime.controller.whereabouts import Place, Position, place_of
+from pursue_runtime.doors.opened import DOORS, NONE_OPENED, read_opened
 from pursue_runtime.event_words import EVENTS, ORDERED, Word, format_word
 from pursue_runtime.locations import is_end, is_movement, is_under_way, movement
 from pursue_runtime.locations import place_of as poi_of
 from pursue_runtime.nodes.alarm import Alarm, Later
-from pursue_runtime.nodes.node import Ending
+from pursue_runtime.nodes.node import Ending, subscribe
 from pursue_runtime.nodes.publishing import Newcomers, ServedFirst, listeners
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.orders import Order, parse_orders
-from pursue_runtime.poses import Table
+from pursue_runtime.poses import Doorways, Table
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, LIVE, RUNNING, WON, SystemState
 from pursue_runtime.strategy import Command
@@ -55,10 +57,18 @@ class Exeggutor:
         self._log = self._log_lines.log
         self._next_look = 0.0  # on the monotonic clock
         self._alarm = Alarm(self._on_alarm, ending)
+        self._doors: Optional[rospy.Subscriber] = None  # where some way leads through a door
         rospy.on_shutdown(self._call_back)
 
-    def take_up(self, poses: Mapping[str, Table], reaction: float, spare: Mapping[str, Table]) -> None:
-        """Take these robots, each with its poses of the places, and `spare` ones; orders given before are over.
+    def take_up(
+        self,
+        poses: Mapping[str, Table],
+        reaction: float,
+        spare: Mapping[str, Table],
+        doors: Mapping[str, Doorways] = MappingProxyType({}),
+    ) -> None:
+        """Take these robots, each with its poses of the places, `spare` ones, and its ways through `doors`; orders
+        given before are over.
         `reaction`: the time units that the strategy allows a command. Raises DataError, with no robots, where the
         settings of one are wrong."""
         with self._lock:
@@ -69,7 +79,12 @@ class Exeggutor:
             positions = {name: robot.position for name, robot in self._robots.items()}
             self._robots, self._status = {}, RUNNING
             self._places = {robot: {poi: place_of(poi, pose) for poi, pose in poses[robot].items()} for robot in poses}
-            self._ways = {robot: _ways(places, spare.get(robot, {})) for robot, places in self._places.items()}
+            self._ways = {
+                robot: _ways(places, spare.get(robot, {}), doors.get(robot, {}))
+                for robot, places in self._places.items()
+            }
+            if any(doors.values()) and self._doors is None:
+                self._doors = subscribe(DOORS, String, self._on_doors, self._ending, queue_size=10, tcp_nodelay=True)
             given = rospy.get_param("~", {})
             settings = {robot: read_settings(robot, given) for robot in poses}
             for robot in set(self._links) - set(settings):
@@ -117,6 +132,8 @@ class Exeggutor:
                     self._call_back_one(name)
                 view = self._view(name, state)
                 robot.reaction = self._reaction * state.unit
+                if state.status not in LIVE:
+                    robot.opened = NONE_OPENED  # the numbers of states begin anew with the next mission
                 robot.on_state(view, rospy.get_time())
                 self._links[name].keep(view.location, robot.is_open, robot.goal)
             for order in orders:
@@ -190,6 +207,17 @@ class Exeggutor:
                 news(robot)
                 self._act()
 
+    def _on_doors(self, message: String) -> None:
+        """Take for whom doors are open."""
+        opened = read_opened(message.data)
+        if opened is None:
+            rospy.logwarn_throttle(10.0, f"not what is said of doors: {message.data[:80]!r}")
+            return
+        with self._lock:
+            for robot in self._robots.values():
+                robot.opened = opened
+            self._act()
+
     # What is due ------------------------------------------------------------------------------------------------------
 
     def _act(self) -> None:
@@ -242,7 +270,12 @@ class Exeggutor:
             self._links[name].cancel(robot.goal)
 
 
-def _ways(places: Mapping[str, Place], spare: Table) -> Dict[str, Movement]:
+def _ways(places: Mapping[str, Place], spare: Table, doorways: Doorways) -> Dict[str, Movement]:
     """A robot's movement for each location in which it is under way."""
     others = {poi: place_of(poi, pose) for poi, pose in spare.items()}
-    return {movement(x, y): Movement(movement(x, y), places[y], others.get(y)) for x in places for y in places}
+    ways = {movement(x, y): Movement(movement(x, y), places[y], others.get(y)) for x in places for y in places}
+    for location, (doors, pose) in doorways.items():
+        if location in ways:
+            wait = None if pose is None else place_of(" and ".join(sorted(doors)), pose)
+            ways[location] = ways[location]._replace(doors=doors, wait=wait)
+    return ways

@@ -21,7 +21,7 @@ SLIPS = [
     ('poi "a" label', "PML010", 14, "expected a name in quotes after `label`", "the form is"),
     ('poi "a" label b', "PML010", 15, "expected a name in quotes after `label`, found `b`", 'label "b"'),
     ('connect a and b distance 3 label "c"', "PML010", 28, "found `label`", "the form is"),
-    ("hello", "PML011", 1, "expected a statement", "a statement begins with unit, rest, poi, connect, thing"),
+    ("hello", "PML011", 1, "expected a statement", "a statement begins with unit, rest, poi, door, connect, thing"),
     (")", "PML011", 1, "expected a statement", "a statement begins with"),
     ("connect a b distance 3", "PML010", 11, "expected `and` after `a`, found `b`", "connect a and b distance 3"),
     ("connect a and b", "PML010", 16, "expected `distance` after `b`, but the", "connect a and b distance 3"),

@@ -21,7 +21,7 @@ Graph = Tuple[Dict[str, Set[str]], Dict[str, Set[str]]]
 
 pytestmark = pytest.mark.ros
 
-LAUNCH = "source devel/setup.bash; exec roslaunch scenario_1_bringup mission.launch autostart:=false"
+LAUNCH = "source devel/setup.bash; exec roslaunch {}_bringup mission.launch autostart:=false"
 
 
 def seen(uri: str) -> Graph:
@@ -36,8 +36,11 @@ def seen(uri: str) -> Graph:
     return named(publishers), named(subscribers)
 
 
-def test_the_master_knows_the_nodes_and_topics_of_the_report(ros: Ros, built: Build, tmp_path: Path) -> None:
-    scenario = load(str(SCENARIOS / "thesis" / "scenario_1.pur"))
+@pytest.mark.parametrize("name", ["thesis/scenario_1", "work_cell/clean_room"])
+def test_the_master_knows_the_nodes_and_topics_of_the_report(
+    ros: Ros, built: Build, tmp_path: Path, name: str
+) -> None:
+    scenario = load(str(SCENARIOS / f"{name}.pur"))
     won = solve_scenario(scenario, Rules())
     some = topics(scenario, partition(won.strategy, won.network, scenario.agents))
     expected = (
@@ -45,7 +48,7 @@ def test_the_master_knows_the_nodes_and_topics_of_the_report(ros: Ros, built: Bu
         {t.name: set(t.subscribers) for t in some if t.subscribers},
     )
     with ros.master() as there:
-        mission = ros.start(LAUNCH, built("thesis/scenario_1"), tmp_path / "log", **there)
+        mission = ros.start(LAUNCH.format(scenario.name), built(name), tmp_path / "log", **there)
         try:
             deadline = time.monotonic() + PATIENCE
             while seen(there["ROS_MASTER_URI"]) != expected and time.monotonic() < deadline:

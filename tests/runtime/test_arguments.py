@@ -81,7 +81,7 @@ SETTINGS = {
     "lost_after", "silence", "heartbeat", "planning_limit", "linger", "shared_ends", "mode", "seed", "wait", "pace",
     "nodes", "without", "also", "topics", "reports", "delays", "map_frame", "namespace", "path", "robot", "keep",
     "limit", "patience", "state_topic", "topicName", "connections", "robots", "times", "pause", "start", "actions",
-    "speed", "hold", "step", "units", "show", "print_state", "plain_words",
+    "speed", "hold", "step", "units", "show", "print_state", "plain_words", "adapter", "command", "state", "name",
 }  # fmt: skip
 READERS = {"number", "whole", "choice", "flag", "text", "names", "get_param", "get_param_cached", "search_param"}
 OWNERS = {"given", "params"}

@@ -8,14 +8,14 @@ from typing import Any, Dict
 import pytest
 
 from pursue_runtime.data import DataError, read_data
-from pursue_runtime.poses import Poses, read_poses
+from pursue_runtime.poses import Doorway, Poses, read_poses
 
 A, B, OWN = ([float(x), 2.0, 0.0, 0.0, 0.0, 0.0, 1.0] for x in (1, 5, 9))
 
 
 def test_without_poses_of_their_own_all_robots_have_those_of_the_places() -> None:
     poses = read_poses({"poses": {"a": A, "b": B}})
-    assert poses == Poses({"a": A, "b": B}, {}, {})
+    assert poses == Poses({"a": A, "b": B}, {}, {}, {})
     assert poses.of(["bot1", "bot2"]) == {"bot1": {"a": A, "b": B}, "bot2": {"a": A, "b": B}}
 
 
@@ -27,6 +27,25 @@ def test_a_pose_of_a_robot_replaces_that_of_the_place_for_this_robot_alone() -> 
 def test_spare_poses_are_of_single_robots_and_no_pose_of_a_place() -> None:
     poses = read_poses({"poses": {"a": A, "b": B}, "spare": {"bot2": {"a": OWN}}})
     assert poses.spare == {"bot2": {"a": OWN}} and poses.of(["bot2"]) == {"bot2": {"a": A, "b": B}}
+
+
+def test_ways_of_a_robot_may_have_doors_and_a_place_in_front_of_them() -> None:
+    ways = {"going_a_to_b": {"doors": ["d1"], "wait": OWN}, "going_b_to_a": {"doors": ["d1", "d2"]}}
+    poses = read_poses({"poses": {"a": A, "b": B}, "doors": {"bot2": ways}})
+    assert poses.doors == {
+        "bot2": {
+            "going_a_to_b": Doorway(frozenset({"d1"}), OWN), "going_b_to_a": Doorway(frozenset({"d1", "d2"}))
+        }
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "doors",
+    [7, {"b": 7}, {"b": {"x": ["d"]}}, {"b": {"x": {"doors": []}}}, {"b": {"x": {"doors": ["d"], "wait": [1]}}}],
+)
+def test_doors_that_cannot_be_read_are_refused(doors: object) -> None:
+    with pytest.raises(DataError, match="poses.yaml"):
+        read_poses({"poses": {"a": A}, "doors": doors})
 
 
 def test_whole_numbers_and_those_that_yaml_takes_for_a_text_count() -> None:
@@ -59,9 +78,9 @@ def test_what_is_no_table_of_poses_is_refused(data: Dict[str, Any], what: str) -
 
 def test_all_formats_of_the_file_are_read_and_a_newer_one_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "poses.yaml"
-    for number in (1, 2, 3):
+    for number in (1, 2, 3, 4):
         file.write_text(f"format: {number}\nposes: {{a: {A}}}\n")
         assert read_poses(read_data(str(file))).places == {"a": A}
-    file.write_text("format: 4\nposes: {}\n")
-    with pytest.raises(DataError, match=r"poses\.yaml has format 4, and pursue_runtime [\d.]+ reads format 3"):
+    file.write_text("format: 5\nposes: {}\n")
+    with pytest.raises(DataError, match=r"poses\.yaml has format 5, and pursue_runtime [\d.]+ reads format 4"):
         read_data(str(file))

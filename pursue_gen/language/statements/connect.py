@@ -8,7 +8,7 @@ from typing import Any, Callable, ClassVar, Iterator, Optional, Tuple
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.conditions import Condition, condition_words
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.refs import Ref
+from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.statements.base import ForSome
 from pursue_gen.language.template import Template
 from pursue_gen.language.times import written_time
@@ -22,7 +22,7 @@ class Connection(ForSome):
 
     `ends` are the places in the text where it names them. `one_way`: from `a` to `b` only, else in both directions.
     Agents set off only while `only_if` holds (None: always); `only_for` and `not_for` say which agents may, as in
-    `ForSome`.
+    `ForSome`. `through`: the doors that it passes.
     """
 
     a: str
@@ -34,6 +34,7 @@ class Connection(ForSome):
     only_if: Optional[Condition] = None
     only_for: Tuple[Ref, ...] = ()
     not_for: Tuple[Ref, ...] = ()
+    through: Tuple[Ref, ...] = ()
 
     listed_in: ClassVar[str] = "connections"
     symbol: ClassVar[str] = "Interface"
@@ -46,17 +47,19 @@ class Connection(ForSome):
         ),
         Word("distance", "How long the way is, in the unit of distance that you chose, or with its unit: 12 m."),
         Word("one_way", "From the first place to the second only. Without it, the way goes in both directions.", True),
+        Word("through", "The doors that the way leads through, each of which opens for whoever sets off.", True),
     )
     template: ClassVar[Template] = Template(
-        "connect {a:POI=a} and {b:POI=b} distance {distance=3} [one_way] "
+        "connect {a:POI=a} and {b:POI=b} distance {distance=3} [one_way] [through {through:doors}] "
         + ForSome.for_whom
         + " [only_if {only_if:condition=open is_true}]"
     )
-    note: ClassVar[str] = "one_way and only_if are optional; between them: for agv, cart, or except gerda"
+    note: ClassVar[str] = "one_way and only_if are optional; between them: through d1; for agv, cart, or except gerda"
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("a way between two places", "connect {POI} and {POI} distance {=1}"),
         Form("a way in one direction only", "connect {POI} and {POI} distance {=1} one_way"),
         Form("a way that is not always open", "connect {POI} and {POI} distance {=1} only_if {state} is_true"),
+        Form("a way through a door", "connect {POI} and {POI} distance {=1} through {door}"),
         Form("a way for some agents only", "connect {POI} and {POI} distance {=1} for {agent}"),
     )
     parts: ClassVar[Tuple[str, ...]] = template.begins
@@ -70,6 +73,7 @@ class Connection(ForSome):
     def names(self) -> Iterator[Tuple[str, Ref]]:
         yield from (("POI", Ref(name, span)) for name, span in zip((self.a, self.b), self.ends))
         yield from (("agent", ref) for ref in (*self.only_for, *self.not_for))
+        yield from (("door", ref) for ref in self.through)
 
     @property
     def directions(self) -> Tuple[Tuple[str, str], ...]:
@@ -79,6 +83,8 @@ class Connection(ForSome):
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if kind == "state" and self.only_if is not None and self.speaks_of(kind, name):
             yield f"between {self.a} and {self.b} only while {shown(condition_words(self.only_if))}"
+        if kind == "door" and any(ref.name == name for ref in self.through):
+            yield f"on the way between {self.a} and {self.b}"
         if kind == "agent" and not self.admits(name):
             yield f"never takes the way between {self.a} and {self.b} at distance {written_time(self.distance)}"
 
@@ -88,4 +94,6 @@ class Connection(ForSome):
             yield error("PML140", message, self.span, "write distance and a number above 0")
         if self.a == self.b:
             yield error("PML145", f"this connects {self.a} with itself", self.span, "name two different places")
+        for ref in twice(self.through):
+            yield error("PML460", f"{ref.name} stands twice behind through", ref.span, "delete one of the two")
         yield from self.check_whom(f"the way between {self.a} and {self.b}")

@@ -43,14 +43,14 @@ class Stop:
 @dataclass(frozen=True)
 class Track:
     """A way between two stops, `metres` long. `there`, `back`: the navigation graphs on which robots drive it from its
-    start to its end, and back; `doors`: names of those that it passes."""
+    start to its end, and back; `doors`: those that it passes."""
 
     start: Node
     end: Node
     metres: float
     there: FrozenSet[int]
     back: FrozenSet[int]
-    doors: Tuple[str, ...] = ()
+    doors: Tuple[Node, ...] = ()
 
     @property
     def graphs(self) -> FrozenSet[int]:
@@ -73,13 +73,26 @@ class RobotStart:
 
 
 @dataclass(frozen=True)
+class DoorPlace:
+    """A door: the middle of it, in metres as for a `Stop`, and in which direction one looks through it, in radians."""
+
+    name: str
+    x: float
+    y: float
+    z: float
+    yaw: float
+
+
+@dataclass(frozen=True)
 class FloorPlan:
-    """Places, ways, lifts (name → their cabins, from the lowest level up) and robots, in the order of the file."""
+    """Places, ways, lifts (name → their cabins, from the lowest level up) and robots, in the order of the file; the
+    doors that ways pass, by their level and their number there."""
 
     stops: Tuple[Stop, ...]
     tracks: Tuple[Track, ...]
     lifts: Mapping[str, Tuple[Node, ...]]
     robots: Tuple[RobotStart, ...]
+    doors: Mapping[Node, DoorPlace]
 
 
 def floor_plan(building: Building) -> FloorPlan:
@@ -104,7 +117,20 @@ def floor_plan(building: Building) -> FloorPlan:
         for name, some in lifts.items()
         if len(some) > 1
     }
-    return FloorPlan(tuple(stops), tuple(tracks), cabins, robots)
+    passed = {door for track in tracks for door in track.doors}
+    doors = {
+        (level.name, k): _door_place(level, door, where)
+        for level in building.levels
+        for k, door in enumerate(level.doors)
+        if (level.name, k) in passed
+    }
+    return FloorPlan(tuple(stops), tuple(tracks), cabins, robots, doors)
+
+
+def _door_place(level: Level, door: Edge, where: Mapping[Node, Tuple[float, float]]) -> DoorPlace:
+    (x1, y1), (x2, y2) = where[level.name, door.start], where[level.name, door.end]
+    yaw = math.atan2(y2 - y1, x2 - x1) + math.pi / 2
+    return DoorPlace(str(door.properties.get("name") or ""), (x1 + x2) / 2, (y1 + y2) / 2, level.elevation, yaw)
 
 
 def _is_place(vertex: Vertex) -> bool:
@@ -152,7 +178,7 @@ def _tracks(level: Level, where: Mapping[Node, Tuple[float, float]]) -> List[Tra
             continue
         track = found.get(frozenset({start, end}))
         if track is None:
-            doors = tuple(str(door.properties.get("name") or "") for door in level.doors if _crosses(level, lane, door))
+            doors = tuple((level.name, k) for k, door in enumerate(level.doors) if _crosses(level, lane, door))
             metres = math.dist(where[start], where[end])
             if metres > _LONGEST:
                 message = f"a lane would be {metres / 1000:.0f} km long"

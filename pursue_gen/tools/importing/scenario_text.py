@@ -21,6 +21,8 @@ _NO_VISITS = ("is_charger", "lift_cabin")
 
 _HANDLING = "30 s"
 """How long an action at a dispenser or an ingestor takes, until people write what it is. Not measured."""
+_OPENS = "10 s"
+"""Within which time a door opens, until people write what it is. Not measured."""
 _LIFT = "20 s to 60 s"
 """How long a robot takes from level to level, until people write what it is. Not measured."""
 
@@ -61,6 +63,9 @@ class _Writer:
         self._taken: Set[str] = set()
         self._shown = dict(_told_apart({stop.node: self._title(stop) for stop in self._stops}))
         self._places: Dict[Node, str] = {node: self._name(title) for node, title in self._shown.items()}
+        passed = {door for track in self._tracks for door in track.doors}
+        titles = {node: door.name or "door" for node, door in plan.doors.items() if node in passed}
+        self._doors = {node: (plan.doors[node], title, self._name(title)) for node, title in _told_apart(titles)}
         self._agents = {robot.name: self._name(robot.name) for robot in robots}
         self._groups = self._named_groups()
         self._reached = {robot.name: self._from(robot) for robot in robots}
@@ -68,7 +73,8 @@ class _Writer:
 
     def text(self, file: str) -> str:
         """All of it."""
-        parts = [self._head(), ["unit second"], self._poi_lines(), self._group_lines(), self._way_lines()]
+        parts = [self._head(), ["unit second"], self._poi_lines(), self._door_lines()]
+        parts += [self._group_lines(), self._way_lines()]
         parts += [self._lift_lines(), self._event_lines(), self._agent_lines(), self._objectives()]
         return format_text("\n\n".join("\n".join(part) for part in parts if part) + "\n", file)
 
@@ -139,6 +145,16 @@ class _Writer:
             lines.append(f'poi "{name}"{label} //[{pose}, 0, 0, 0, 1]')
         return lines
 
+    def _door_lines(self) -> List[str]:
+        lines = []
+        for door, title, name in self._doors.values():
+            label = f' label "{_one_line(title)}"' if title != name else ""
+            turned = math.sin(door.yaw / 2), math.cos(door.yaw / 2)
+            pose = ", ".join(f"{round(value, 2) + 0.0:.2f}" for value in (door.x, door.y, door.z))
+            turn = ", ".join(f"{round(value, 4) + 0.0:g}" for value in turned)
+            lines.append(f'door "{name}"{label} opens within {_OPENS} //[{pose}, 0, 0, {turn}]')
+        return lines
+
     def _group_lines(self) -> List[str]:
         return [f'group "{group}": {", ".join(self._agents_of(some))}' for some, group in self._groups.items()]
 
@@ -155,7 +171,7 @@ class _Writer:
             for graphs in (track.there, track.back)
         )
         metres = max(math.floor(track.metres * 10 + 0.5), 1) / 10
-        doors = f" // through {_one_line(' and '.join(track.doors))}" if any(track.doors) else ""
+        doors = f" through {', '.join(self._doors[door][2] for door in track.doors)}" if track.doors else ""
         for some, way, one_way in (
             (there & back, track, ""),
             (there - back, track, " one_way"),
@@ -163,7 +179,7 @@ class _Writer:
         ):
             if some:
                 ends = f"connect {self._places[way.start]} and {self._places[way.end]} distance {metres:g}"
-                yield f"{ends}{one_way}{self._for(some)}{doors}"
+                yield f"{ends}{one_way}{doors}{self._for(some)}"
 
     def _for(self, some: FrozenSet[str]) -> str:
         """For whom a way is, where it is not for all."""

@@ -77,6 +77,7 @@ _PROPOSERS: Dict[str, _Proposer] = {
     "PML344": meaning.fewer_things,
     "PML420": numbers.say_unit,
     "PML422": meaning.delete_statement,
+    "PML461": meaning.delete_statement,
 }
 
 

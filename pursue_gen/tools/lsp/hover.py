@@ -22,6 +22,7 @@ from pursue_gen.language.occurrences import GROUP, MEMBERS, VARIABLE, Occurrence
 from pursue_gen.language.scenario import (
     Agent,
     Both,
+    Door,
     Event,
     Poi,
     Ref,
@@ -126,6 +127,7 @@ def _about(scenario: Scenario, kind: str, name: str) -> Optional[str]:
         "state": (scenario.states, _state),
         "agent": (scenario.agents, _agent),
         "thing": (scenario.things, _thing),
+        "door": (scenario.doors, _door),
     }
     found, explain = parts[kind]
     part = next((part for part in found if getattr(part, "name", None) == name), None)
@@ -150,7 +152,8 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
         only = f", only while {in_markdown(scenario, condition_words(way.only_if))}" if way.only_if is not None else ""
         whom = f", {in_markdown(scenario, way.whom_words)}" if way.whom_words else ""
         words += f": distance {written_time(way.distance)}"
-        lines.append(f"- {words}" + (f" ({times})" if times else "") + whom + only)
+        doors = "".join(f", through {in_markdown(scenario, door.in_words)}" for door in scenario.doors_on(way))
+        lines.append(f"- {words}" + (f" ({times})" if times else "") + doors + whom + only)
     lines = [*lines[:2], *_listed(lines[2:])]
     if not ways:
         lines.append("- no way leads here")
@@ -226,11 +229,16 @@ def _thing(scenario: Scenario, thing: Thing) -> List[str]:
     return [head, "", *_said(scenario, "thing", thing.name)]
 
 
+def _door(scenario: Scenario, door: Door) -> List[str]:
+    head = f"**{door.name}**: a door that opens by itself{_read_as(door.label)}"
+    return [head, "", *_said(scenario, "door", door.name)]
+
+
 def _said(scenario: Scenario, kind: str, name: str) -> List[str]:
     """What statements say of a thing that another one declares."""
     parts: Tuple[Written, ...] = (
-        *scenario.pois, *scenario.rules, *scenario.dependencies, *scenario.connections, *scenario.events,
-        *scenario.states, *scenario.batteries, *scenario.assumptions, *scenario.objectives,
+        *scenario.pois, *scenario.doors, *scenario.rules, *scenario.dependencies, *scenario.connections,
+        *scenario.events, *scenario.states, *scenario.batteries, *scenario.assumptions, *scenario.objectives,
     )  # fmt: skip
     return [f"- {line}" for part in parts for line in part.about(kind, name, partial(in_markdown, scenario))]
 

@@ -10,7 +10,7 @@ from pursue_gen.explanation.policy import Window
 from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import condition_words
 from pursue_gen.language.numbers import time_text
-from pursue_gen.language.scenario import Connection
+from pursue_gen.language.scenario import Connection, Scenario
 from pursue_gen.language.symbols import Role, Symbol, role_of
 from pursue_gen.language.times import unit_name, written_time
 from pursue_gen.synthesis.game import Game
@@ -112,9 +112,11 @@ def ending(setup: Setup, play: PlayState) -> str:
     return f"Nothing can go on after {at}: {who} ought to move and cannot. The robots have not lost."
 
 
-def _only(way: Connection) -> str:
-    """Behind the length of a way: for whom it is, and while what it is open; nothing where it always is for all."""
-    whom = f", {way.whom_words}" if way.whom_words else ""
+def _only(scenario: Scenario, way: Connection) -> str:
+    """Behind the length of a way: its doors, for whom it is, and while what it is open; nothing where it always is for
+    all."""
+    whom = "".join(f", through {door.in_words}" for door in scenario.doors_on(way))
+    whom += f", {way.whom_words}" if way.whom_words else ""
     return whom if way.only_if is None else f"{whom}, only while {condition_words(way.only_if)}"
 
 
@@ -134,7 +136,7 @@ def overview(setup: Setup, words: Words, play: PlayState) -> Iterator[str]:
     widest = max((len(poi.shown) for poi in setup.scenario.pois), default=0)
     for poi in setup.scenario.pois:
         ways = [
-            f"{shown(to)} ({written_time(c.distance)}{_only(c)})"
+            f"{shown(to)} ({written_time(c.distance)}{_only(setup.scenario, c)})"
             for c in setup.scenario.connections
             for a, to in c.directions
             if a == poi.name

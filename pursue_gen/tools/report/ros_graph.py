@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, List, Sequence, Tuple
 
+from pursue_gen.language.doors import doors_of
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import SubStrategy
 from pursue_gen.partition.split import UI
@@ -13,11 +14,11 @@ from pursue_gen.tools.report.graphviz import Graph, arrow, node, quoted
 from pursue_gen.tools.report.html import Section, rendered
 
 EVENTS, STATE, TEXT, PLAN = "/pursue/events", "/pursue/state", "/pursue/system_state", "/pursue/plan"
-SEEN = "/pursue/seen"
+SEEN, DOORS = "/pursue/seen", "/pursue/doors"
 DIAGNOSTICS = "/diagnostics"
 _STATE = "pursue_msgs/SystemState"
 _STRING, _POSE, _STATUS = "std_msgs/String", "geometry_msgs/PoseStamped", "diagnostic_msgs/DiagnosticArray"
-_OBSERVER, _SIMULATOR = "/observer", "/simulator"
+_OBSERVER, _SIMULATOR, _DOORS = "/observer", "/simulator", "/doors"
 
 
 @dataclass(frozen=True)
@@ -37,15 +38,20 @@ def topics(scenario: Scenario, subs: Sequence[SubStrategy]) -> Tuple[Topic, ...]
     """
     controllers = tuple(f"/{sub.controller}" for sub in subs if sub.controller != UI)
     robots = {agent.name for agent in scenario.agents if agent.is_robot}
+    through = {agent.name for agent in scenario.agents if agent.is_robot and doors_of(scenario, agent)}
+    doors = (_DOORS,) if any(doors_of(scenario, agent) for agent in scenario.agents) else ()
     nodes = (_OBSERVER, *controllers, _SIMULATOR, f"/{UI}")
     result = [
         Topic(EVENTS, _STRING, nodes, (_OBSERVER, f"/{UI}")),
-        Topic(STATE, _STATE, (_OBSERVER,), (*controllers, _SIMULATOR, f"/{UI}")),
+        Topic(STATE, _STATE, (_OBSERVER,), (*controllers, _SIMULATOR, *doors, f"/{UI}")),
         Topic(TEXT, _STRING, (_OBSERVER,), ()),
         Topic(PLAN, _STRING, (_OBSERVER,), (*controllers, f"/{UI}")),
-        Topic(SEEN, _STATE, (*controllers, _SIMULATOR, f"/{UI}"), (_OBSERVER,)),
-        Topic(DIAGNOSTICS, _STATUS, nodes, (_OBSERVER, _SIMULATOR, f"/{UI}")),
+        Topic(SEEN, _STATE, (*controllers, _SIMULATOR, *doors, f"/{UI}"), (_OBSERVER,)),
+        Topic(DIAGNOSTICS, _STATUS, (*nodes, *doors), (_OBSERVER, _SIMULATOR, *doors, f"/{UI}")),
     ]
+    if doors:
+        waiting = tuple(f"/{sub.controller}" for sub in subs if sub.controller != UI and through & set(sub.agents))
+        result.append(Topic(DOORS, _STRING, doors, waiting))
     for sub in subs:
         for robot in (agent for agent in sub.agents if agent in robots and sub.controller != UI):
             for name, kind in ((f"/{robot}/move_base_simple/goal", _POSE), (f"/{robot}/pursue/actions", _STRING)):

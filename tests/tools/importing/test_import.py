@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Tuple
 
@@ -76,7 +77,8 @@ def test_the_scenario_is_won(tmp_path: Path) -> None:
 def test_bends_are_no_places_and_ways_are_as_long_as_their_lanes(tmp_path: Path) -> None:
     text = imported(tmp_path, OFFICE)
     assert "connect dock and v2 distance 10\n" in text
-    assert "connect v2 and pantry distance 6 // through pantry_door\n" in text
+    assert "connect v2 and pantry distance 6 through pantry_door\n" in text
+    assert re.search(r'door "pantry_door" opens within 10 s +//\[[-0-9., ]+\]\n', text)
     assert "connect lounge and v2 distance 10\n" in text  # a lane in each direction
 
 

@@ -186,3 +186,10 @@ def test_times_have_their_units_where_the_scenario_says_what_one_is() -> None:
     assert "It moves 0.5 metres in a second." in told("speed ", fast) and "- a to b: 6 s to 7 s" in told("speed ", fast)
     assert "A way of 3 m." in told("distance ", fast) and "moves 0.5 metres in a second" in told('agent "b', fast)
     assert told("within 2", timed.replace("unit second\n", "")) == ""
+
+
+def test_a_door_and_the_ways_through_it() -> None:
+    door = 'door "d1" label "glass door" opens within 8\n' + SMALL.replace("distance 3", "distance 3 through d1")
+    assert "to b: distance 3 (bot 6 to 15 units of time), through glass door" in told('poi "', door)
+    assert "a door that opens by itself" in told('door "', door) and "between a and b" in told("through d", door)
+    assert "takes up to 8 units of time longer" in told("opens within ", door)

@@ -35,7 +35,8 @@ def parsed(scenario: Scenario) -> Set[Tuple[str, int, int, bool]]:
             for field in value.__dataclass_fields__:
                 visit(getattr(value, field))
 
-    for parts in (scenario.pois, scenario.events, scenario.rules, scenario.states, scenario.agents, scenario.things):
+    declared = scenario.pois, scenario.doors, scenario.events, scenario.rules, scenario.states, scenario.agents
+    for parts in (*declared, scenario.things):
         for part in parts:  # type: ignore[attr-defined]
             found.add((part.name, part.span.line, part.span.column + 1, True))
     visit(scenario)
