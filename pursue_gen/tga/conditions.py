@@ -151,7 +151,10 @@ def _alternatives(condition: Condition, domains: Domains) -> Iterator[Clauses]:
     if isinstance(condition, AnyOf):
         yield from (clauses_of(part, domains) for part in condition.parts)
     elif isinstance(negated, AllOf):
-        yield from (clauses_of(part, domains, False) for part in negated.parts)
+        for part in negated.parts:
+            yield from _alternatives(Not(part), domains) if isinstance(part, AtMostOf) else [
+                clauses_of(part, domains, False)
+            ]
     elif isinstance(negated, AtMostOf):
         for some in combinations(domains.counted(negated).items(), negated.most + 1):
             yield simplified([{name: values} for name, values in some], domains)

@@ -25,6 +25,7 @@ def import_(
     speed: List[str] = typer.Option(
         [], metavar="[ROBOT=]M/S", help="The speed of all robots (0.5), or of this one; repeatable."
     ),
+    traffic: bool = typer.Option(False, "--traffic", help="Each place and each way holds one robot at a time."),
     output: Optional[Path] = typer.Option(
         None, "-o", "--output", metavar="FILE", help="Where to write; the building's name and .pur here by default."
     ),
@@ -51,7 +52,7 @@ def import_(
     speeds = speeds_of(speed, names)
     for name in speeds.keys() - set(names):
         raise usage_error(f"--speed: there is no robot {name}", f"there are: {', '.join(names)}")
-    text = scenario_text(read, plan, some, {**dict.fromkeys(names, _SPEED), **speeds}, str(file))
+    text = scenario_text(read, plan, some, {**dict.fromkeys(names, _SPEED), **speeds}, str(file), traffic)
     scenario = checked(text, str(file))
     write_texts({file: text})
     show(check(scenario))

@@ -40,19 +40,30 @@ def chosen(plan: FloorPlan, names: Optional[str]) -> Sequence[RobotStart]:
 
 
 def scenario_text(
-    building: Building, plan: FloorPlan, robots: Sequence[RobotStart], speeds: Mapping[str, float], file: str
+    building: Building,
+    plan: FloorPlan,
+    robots: Sequence[RobotStart],
+    speeds: Mapping[str, float],
+    file: str,
+    traffic: bool = False,
 ) -> str:
-    """The scenario, laid out; `speeds`: robot → metres per second; `file` is its name in messages."""
-    return _Writer(building, plan, robots, speeds).text(file)
+    """The scenario, laid out; `speeds`: robot → metres per second; `file` is its name in messages; `traffic`: places
+    and ways hold one robot each."""
+    return _Writer(building, plan, robots, speeds, traffic).text(file)
 
 
 class _Writer:
     """Gives everything its name, and writes the statements."""
 
     def __init__(
-        self, building: Building, plan: FloorPlan, robots: Sequence[RobotStart], speeds: Mapping[str, float]
+        self,
+        building: Building,
+        plan: FloorPlan,
+        robots: Sequence[RobotStart],
+        speeds: Mapping[str, float],
+        traffic: bool,
     ) -> None:
-        self._building, self._robots, self._speeds = building, robots, speeds
+        self._building, self._robots, self._speeds, self._traffic = building, robots, speeds, traffic
         self._used = frozenset(graph for robot in robots for graph in robot.graphs)
         self._tracks = [track for track in plan.tracks if track.graphs & self._used]
         ends = {node for track in self._tracks for node in (track.start, track.end)} | {robot.node for robot in robots}
@@ -202,7 +213,8 @@ class _Writer:
 
     def _objectives(self) -> List[str]:
         """What makes the scenario one that can be solved: each place that people have named is visited."""
-        lines = []
+        alone = self._traffic and len(self._robots) > 1
+        lines = [f"objective: every {room} holds 1 robot" for room in ("place", "way") if alone]
         for name, nodes in self._lifts.items():
             if len(nodes) > 1 and len(self._robots) > 1:
                 places = ", ".join(self._places[node] for node in nodes)

@@ -254,3 +254,11 @@ def distances(ways: Mapping[Any, List[Tuple[Any, float]]], start: Any) -> Dict[A
                     found[other], changed = found[node] + metres, True
     return found
 
+
+
+def test_with_traffic_places_and_ways_hold_one_robot(tmp_path: Path) -> None:
+    second = OFFICE.replace("lounge, {", "lounge, {spawn_robot_name: [1, bot2], ")
+    lines = "objective: every place holds 1 robot\nobjective: every way holds 1 robot\n"
+    assert lines in imported(tmp_path, second, "--traffic")
+    assert "holds" not in imported(tmp_path, second, "--force")
+    assert "holds" not in imported(tmp_path, second, "--force", "--traffic", "--robots", "bot2"), "nobody to meet"
