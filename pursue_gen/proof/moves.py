@@ -68,9 +68,12 @@ class Arena:
             for k, automaton in enumerate(network.automata)
         ]
         self._edges: Dict[Tuple[int, str], List[Edge]] = {}
+        self._receiving: Dict[Tuple[int, str, str], List[Edge]] = {}  # with their channel
         for k, automaton in enumerate(network.automata):
             for edge in automaton.edges:
                 self._edges.setdefault((k, edge.source), []).append(edge)
+                if edge.received is not None:
+                    self._receiving.setdefault((k, edge.source, edge.received), []).append(edge)
         self._situations: Dict[State, Situation] = {}
         self._refuse()
 
@@ -160,15 +163,8 @@ class Arena:
             return [()]
         choices: List[List[Tuple[int, Edge]]] = []
         for k, location in enumerate(state[0]):
-            able = [
-                (k, other)
-                for other in self._edges.get((k, location), ())
-                if k != sender
-                and other.sync is not None
-                and not other.sync.sends
-                and other.sync.channel == edge.sync.channel
-                and self._integers_hold(other.guard, state[1])
-            ]
+            hearing = self._receiving.get((k, location, edge.sync.channel), ()) if k != sender else ()
+            able = [(k, other) for other in hearing if self._integers_hold(other.guard, state[1])]
             if able:
                 choices.append(able)
         return product(*choices)
