@@ -16,6 +16,10 @@ from pursue_gen.synthesis.strategy import Command, DiscreteState, Move
 from pursue_gen.tga.network import ClockBound, Constraint, Edge, Guard, Location, Network
 from pursue_gen.zones.dbm import Dbm, raw
 
+_KEPT = 5_000
+"""So many situations of discrete states are kept: those of many automata are large, and a judge of many missions sees
+more of them than fit into memory. Not measured."""
+
 State = Tuple[Tuple[str, ...], Tuple[int, ...]]
 """The location of every automaton and the value of every variable, in the network's order."""
 
@@ -122,6 +126,8 @@ class Arena:
         """The invariant and the joint moves of a discrete state."""
         found = self._situations.get(state)
         if found is None:
+            if len(self._situations) >= _KEPT:
+                self._situations.clear()
             found = self._situations[state] = self._worked_out(state)
         return found
 
