@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple, TypeVar
 
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.language.formatter import format_text
@@ -13,6 +13,8 @@ from pursue_gen.language.similar import closest
 from pursue_gen.language.usable import proposal
 from pursue_gen.tools.importing.building import Building
 from pursue_gen.tools.importing.plan import FloorPlan, Node, RobotStart, Stop, Track
+
+Key = TypeVar("Key")
 
 _TASKS = {"pickup_dispenser": "pick_up_at", "dropoff_ingestor": "drop_off_at"}
 """Properties of vertices at which robots do something, and what it is called."""
@@ -70,7 +72,7 @@ class _Writer:
         self._stops = [stop for stop in plan.stops if stop.node in ends]
         self._lifts = {name: [node for node in some if node in ends] for name, some in plan.lifts.items()}
         self._taken: Set[str] = set()
-        self._shown = dict(_told_apart({stop.node: self._title(stop) for stop in self._stops}))
+        self._shown = dict(told_apart({stop.node: self._title(stop) for stop in self._stops}))
         self._places: Dict[Node, str] = {node: self._name(title) for node, title in self._shown.items()}
         self._agents = {robot.name: self._name(robot.name) for robot in robots}
         self._groups = self._named_groups()
@@ -136,7 +138,7 @@ class _Writer:
     def _head(self) -> List[str]:
         left_out = len(self._building.levels) > 1 and any(self._lifts.values())
         lines = [
-            f"// {_one_line(self._building.name)}, from Open-RMF's traffic editor. Metres and seconds.",
+            f"// {one_line(self._building.name)}, from Open-RMF's traffic editor. Metres and seconds.",
             "// Say what is wanted below (docs/language.md); durations are first guesses.",
         ]
         return lines + (["// How long lifts take is a guess, too: write what you know."] if left_out else [])
@@ -145,7 +147,7 @@ class _Writer:
         lines = []
         for stop in self._stops:
             name, title = self._places[stop.node], self._shown[stop.node]
-            label = f' label "{_one_line(title)}"' if title != name else ""
+            label = f' label "{one_line(title)}"' if title != name else ""
             pose = ", ".join(f"{round(value, 2) + 0.0:.2f}" for value in (stop.x, stop.y, stop.z))  # no -0.00
             lines.append(f'poi "{name}"{label} //[{pose}, 0, 0, 0, 1]')
         return lines
@@ -166,7 +168,7 @@ class _Writer:
             for graphs in (track.there, track.back)
         )
         metres = max(math.floor(track.metres * 10 + 0.5), 1) / 10
-        doors = f" // through {_one_line(' and '.join(track.doors))}" if any(track.doors) else ""
+        doors = f" // through {one_line(' and '.join(track.doors))}" if any(track.doors) else ""
         for some, way, one_way in (
             (there & back, track, ""),
             (there - back, track, " one_way"),
@@ -206,9 +208,9 @@ class _Writer:
             able = [name for name, node in self._tasks.items() if node in self._reached[robot.name]]
             doing = f" can_do {', '.join(able)}" if able else ""
             name, place, speed = self._agents[robot.name], self._places[robot.node], self._speeds[robot.name]
-            label = f' label "{_one_line(robot.name)}"' if robot.name != name else ""
+            label = f' label "{one_line(robot.name)}"' if robot.name != name else ""
             line = f'agent "{name}"{label} controllable speed {speed:g} location {place}{doing}'
-            lines.append(f"{line} // {_one_line(robot.type)}" if robot.type else line)
+            lines.append(f"{line} // {one_line(robot.type)}" if robot.type else line)
         return lines
 
     def _objectives(self) -> List[str]:
@@ -218,7 +220,7 @@ class _Writer:
         for name, nodes in self._lifts.items():
             if len(nodes) > 1 and len(self._robots) > 1:
                 places = ", ".join(self._places[node] for node in nodes)
-                lines.append(f"objective: always at_most 1 robots at {places} // one in lift {_one_line(name)}")
+                lines.append(f"objective: always at_most 1 robots at {places} // one in lift {one_line(name)}")
         patrols: Dict[FrozenSet[str], List[str]] = {}
         for stop in self._stops:
             able = frozenset(name for name, reached in self._reached.items() if stop.node in reached)
@@ -236,7 +238,7 @@ class _Writer:
         return f"any of {group}" if group else " or ".join(self._agents_of(some))
 
 
-def _told_apart(titles: Mapping[Node, str]) -> Iterator[Tuple[Node, str]]:
+def told_apart(titles: Mapping[Key, str]) -> Iterator[Tuple[Key, str]]:
     """The titles, with a number behind what another place is called, too."""
     seen: Counter[str] = Counter()
     for node, title in titles.items():
@@ -244,6 +246,6 @@ def _told_apart(titles: Mapping[Node, str]) -> Iterator[Tuple[Node, str]]:
         yield node, title if seen[title] == 1 else f"{title} {seen[title]}"
 
 
-def _one_line(text: str) -> str:
+def one_line(text: str) -> str:
     """The text as a label and a comment can hold it: what a building calls something never becomes a statement."""
     return "".join(letter for letter in text if letter.isprintable() and letter not in '"\\')
