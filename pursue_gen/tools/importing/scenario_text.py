@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from itertools import combinations
 from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple, TypeVar
 
 from pursue_gen.diagnostics import usage_error
@@ -12,7 +13,7 @@ from pursue_gen.language.kinds import RESERVED
 from pursue_gen.language.similar import closest
 from pursue_gen.language.usable import proposal
 from pursue_gen.tools.importing.building import Building
-from pursue_gen.tools.importing.plan import FloorPlan, Node, RobotStart, Stop, Track
+from pursue_gen.tools.importing.plan import FloorPlan, Node, RobotStart, Stop, Track, mutex_of
 
 Key = TypeVar("Key")
 
@@ -82,7 +83,7 @@ class _Writer:
     def text(self, file: str) -> str:
         """All of it."""
         parts = [self._head(), ["unit second"], self._poi_lines(), self._group_lines(), self._way_lines()]
-        parts += [self._lift_lines(), self._event_lines(), self._agent_lines(), self._objectives()]
+        parts += [self._lift_lines(), self._event_lines(), self._agent_lines(), self._slow_lines(), self._objectives()]
         return format_text("\n\n".join("\n".join(part) for part in parts if part) + "\n", file)
 
     def _title(self, stop: Stop) -> str:
@@ -198,6 +199,37 @@ class _Writer:
                         lines += [f"travel {robot} from {start} to {end} takes {_LIFT}" for robot in riders]
         return lines
 
+    def _slow_lines(self) -> List[str]:
+        """How long robots take that may not drive as fast as they can."""
+        lines: List[str] = []
+        for track in self._tracks:
+            for robot in self._robots:
+                speed = self._speeds[robot.name]
+                for way in (track, track.turned()) if track.is_limited(speed) else ():
+                    if way.there & robot.graphs:
+                        start, end = self._places[way.start], self._places[way.end]
+                        seconds = max(round(way.seconds(speed), 1), 0.1)
+                        lines.append(f"travel {self._agents[robot.name]} from {start} to {end} takes {seconds:g} s")
+        return lines
+
+    def _mutex_lines(self) -> List[str]:
+        """What one robot may have of the places and ways of a group, alone."""
+        members: Dict[str, List[Tuple[str, str]]] = {}  # how each is written alone, and in a condition
+        for stop in self._stops:
+            place = self._places[stop.node]
+            members.setdefault(mutex_of(stop.vertex.properties), []).append((f"place {place}", f"at {place}"))
+        for track in self._tracks:
+            a, b = self._places[track.start], self._places[track.end]
+            members.setdefault(track.mutex, []).append((f"way {a} to {b}", f"between {a} and {b}"))
+        members.pop("", None)
+        lines: List[str] = []
+        for group, some in members.items() if len(self._robots) > 1 else ():
+            alone = [f"objective: {each} holds 1 robot // mutex {one_line(group)}" for each, _ in some]
+            lines += alone if not self._traffic else []
+            pairs = ((one, other) for (_, one), (_, other) in combinations(some, 2))
+            lines += [f"objective: avoid any robot {one} and any robot {other}" for one, other in pairs]
+        return lines
+
     def _event_lines(self) -> List[str]:
         tasks = self._tasks.items()
         return [f'event "{name}" location {self._places[node]} duration {_HANDLING}' for name, node in tasks]
@@ -217,6 +249,7 @@ class _Writer:
         """What makes the scenario one that can be solved: each place that people have named is visited."""
         alone = self._traffic and len(self._robots) > 1
         lines = [f"objective: every {room} holds 1 robot" for room in ("place", "way") if alone]
+        lines += self._mutex_lines()
         for name, nodes in self._lifts.items():
             if len(nodes) > 1 and len(self._robots) > 1:
                 places = ", ".join(self._places[node] for node in nodes)
