@@ -1,5 +1,5 @@
-"""Names of locations: a POI, a movement (`going_<a>_to_<b>`), an action with a duration (`doing_<event>_in_<poi>`); and
-of what is being found out.
+"""Names of locations: a POI, a movement (`going_<a>_to_<b>`), an action with a duration (`doing_<event>_in_<poi>`); of
+what is being found out, and whose turn it is at a place.
 
 The only place for these two prefixes, and for those of the variable of an agent's position and of its clock; the
 generator has them from here.
@@ -7,11 +7,15 @@ generator has them from here.
 
 from __future__ import annotations
 
-from typing import Iterable
+from typing import Iterable, NamedTuple, Optional
 
 _MOVEMENT, _ACTION = "going_", "doing_"
 
 _DONE, _STOP, _PART = "DONE", "STOP", "PART"
+
+PASSAGE, AWAITS, HAS = "_passage", "awaits_", "has_"
+"""Behind the name of a place the automaton of its order of passage; before a robot, and the number of its visit, a
+location of it: it is to come, or is there or on its way there."""
 
 FINDING_OUT = _ACTION + "finding_out"
 """The location of a state that has been shown, until it is known what it is."""
@@ -92,6 +96,33 @@ def place_of(location: str, places: Iterable[str]) -> str:
     if not is_action(location):
         return location
     return max((place for place in places if location.endswith(f"_in_{place}")), key=len, default=location)
+
+
+class Visit(NamedTuple):
+    """A visit, with its number in the order of passage; `is_there`: the robot has the place."""
+
+    robot: str
+    number: int
+    is_there: bool
+
+    @property
+    def rank(self) -> int:
+        """How many locations of the order come before."""
+        return 2 * self.number + self.is_there
+
+
+def visit_at(location: str) -> Optional[Visit]:
+    """Return the visit that a location of an order of passage stands for; None for other locations."""
+    for prefix in (AWAITS, HAS):
+        robot, _, number = location[len(prefix) :].rpartition("_")
+        if location.startswith(prefix) and robot and number.isdigit():
+            return Visit(robot, int(number), prefix == HAS)
+    return None
+
+
+def place_passed(automaton: str) -> str:
+    """Return the place of an order of passage; "" for the names of other automata."""
+    return automaton.rpartition(PASSAGE)[0]
 
 
 def position_variable(agent: str) -> str:

@@ -77,6 +77,11 @@ class StateTable(Generic[Payload]):
         looked_up = ((names, _parts(state, names)) for names in candidates)
         return [(names, parts) for names, parts in looked_up if parts in self._tables[names]]
 
+    def all_entries(self) -> Iterator[Tuple[Entry, List[Payload]]]:
+        """All entries, with what was entered for each."""
+        for names, table in self._tables.items():
+            yield from (((names, parts), payloads) for parts, payloads in table.items())
+
     def beside(self, entry: Entry) -> Iterator[Tuple[str, str, List[Payload]]]:
         """The entries that differ from this one in the location or value of one name alone: that name, where it is
         there, and what was entered for it."""
@@ -220,6 +225,10 @@ class Strategy:
     def entries(self, state: SystemState) -> List[Tuple[Entry, List[Command]]]:
         """The entries that apply in this discrete state, each with its commands."""
         return [(entry, _joined(self._table.entered(entry))) for entry in self._table.applying(state)]
+
+    def all_entries(self) -> Iterator[Tuple[Entry, List[Command]]]:
+        """All entries, each with its commands."""
+        return ((entry, _joined(payloads)) for entry, payloads in self._table.all_entries())
 
     def beside(self, entry: Entry) -> Iterator[Tuple[str, str, List[Command]]]:
         """The entries that differ from this one in the location or value of one name alone: that name, where it is

@@ -139,7 +139,8 @@ def charge_changes(scenario: Scenario, endurance: Endurance) -> Iterator[Repair]
 
 def room_changes(scenario: Scenario, holds: Holds) -> Iterator[Repair]:
     """A place or a way that holds more."""
-    values = range(holds.most + 1, len(Domains(scenario).counted(holds.kept_if)) + 1)
+    domains = Domains(scenario)
+    values = range(holds.most + 1, max((len(domains.counted(room)) for room in holds.rooms), default=0) + 1)
     if values:
         yield Repair(
             "room", holds.where, f"more room {holds.where}", holds.most, values,

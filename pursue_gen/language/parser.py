@@ -102,7 +102,7 @@ def read_document(document: Document, name: Optional[str] = None) -> Reading:
     for tree in syntax.trees:
         for part in _parts(tree, reader):
             parts[part.listed_in].append(part)
-    parts["safety"].sort(key=lambda each: each.last)
+    parts["safety"] = _in_building(parts["safety"], parts["pois"], parts["connections"])
     findings = (*syntax.findings, *reader.findings)
     value = pml.Scenario(
         name=Path(file).stem if name is None else name,
@@ -131,6 +131,16 @@ def _parts(tree: Any, reader: TreeReader) -> Tuple[Any, ...]:
     reader.member = getattr(tree.meta, "member", "")
     found = BY_RULE[tree.data].read(reader, *tree.children, span=reader.span(tree))
     return found if isinstance(found, tuple) else (found,)
+
+
+def _in_building(
+    objectives: Iterable[pml.Safety], pois: Iterable[pml.Poi], connections: Iterable[pml.Connection]
+) -> List[pml.Safety]:
+    """What always holds, in its order, each objective with the places and ways that it speaks of without a name."""
+    places = {poi.name: pml.Ref(poi.name, poi.span, poi.label or "") for poi in pois}
+    ways = [(places[way.a], places[way.b]) for way in connections if places.keys() >= {way.a, way.b}]
+    ordered = sorted(objectives, key=lambda each: each.last)
+    return [each.in_building(tuple(places.values()), ways) for each in ordered]
 
 
 def _unit(document: Document) -> Optional[Number]:

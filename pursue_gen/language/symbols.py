@@ -102,9 +102,9 @@ class Role(enum.Enum):
     AWAITED = "assume{}way", "a part of an assumption"
 
     WATCHER = "{}_for_{}", "{}, watched for {}"
-    PASSAGE = "{}_passage{}", "the order of visits to {}"
-    AWAITS = "awaits_{}_{}", "next is {}, visit {}"
-    HAS = "has_{}_{}", "taken by {}, visit {}"
+    PASSAGE = f"{{}}{locations.PASSAGE}{{}}", "the order of visits to {}"
+    AWAITS = f"{locations.AWAITS}{{}}_{{}}", "next is {}, visit {}"
+    HAS = f"{locations.HAS}{{}}_{{}}", "taken by {}, visit {}"
     NOBODY = "awaits_nobody", "nobody comes any more"
     TOUR = "{}_tour", "the tour of {}"
     STOP = "stop_{0}", "stop {} of {}"

@@ -16,6 +16,10 @@ from pursue_gen.synthesis.strategy import Command, DiscreteState, Move
 from pursue_gen.tga.network import ClockBound, Constraint, Edge, Guard, Location, Network
 from pursue_gen.zones.dbm import Dbm, raw
 
+_KEPT = 5_000
+"""So many situations of discrete states are kept: those of many automata are large, and a judge of many missions sees
+more of them than fit into memory. Not measured."""
+
 State = Tuple[Tuple[str, ...], Tuple[int, ...]]
 """The location of every automaton and the value of every variable, in the network's order."""
 
@@ -68,9 +72,12 @@ class Arena:
             for k, automaton in enumerate(network.automata)
         ]
         self._edges: Dict[Tuple[int, str], List[Edge]] = {}
+        self._receiving: Dict[Tuple[int, str, str], List[Edge]] = {}  # with their channel
         for k, automaton in enumerate(network.automata):
             for edge in automaton.edges:
                 self._edges.setdefault((k, edge.source), []).append(edge)
+                if edge.received is not None:
+                    self._receiving.setdefault((k, edge.source, edge.received), []).append(edge)
         self._situations: Dict[State, Situation] = {}
         self._refuse()
 
@@ -119,6 +126,8 @@ class Arena:
         """The invariant and the joint moves of a discrete state."""
         found = self._situations.get(state)
         if found is None:
+            if len(self._situations) >= _KEPT:
+                self._situations.clear()
             found = self._situations[state] = self._worked_out(state)
         return found
 
@@ -160,15 +169,8 @@ class Arena:
             return [()]
         choices: List[List[Tuple[int, Edge]]] = []
         for k, location in enumerate(state[0]):
-            able = [
-                (k, other)
-                for other in self._edges.get((k, location), ())
-                if k != sender
-                and other.sync is not None
-                and not other.sync.sends
-                and other.sync.channel == edge.sync.channel
-                and self._integers_hold(other.guard, state[1])
-            ]
+            hearing = self._receiving.get((k, location, edge.sync.channel), ()) if k != sender else ()
+            able = [(k, other) for other in hearing if self._integers_hold(other.guard, state[1])]
             if able:
                 choices.append(able)
         return product(*choices)

@@ -15,9 +15,10 @@ from typing import Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optiona
 from pursue_gen.language.symbols import UNDER_WAY, Role
 from pursue_gen.proof.checker import verify
 from pursue_gen.proof.relaxed_reachability import is_controllers
+from pursue_gen.solving.floors import Floor
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.passage_steps import Play, strategy_of
-from pursue_gen.solving.routes import Floor, routes
+from pursue_gen.solving.routes import routes
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import State
@@ -103,9 +104,8 @@ def _spots(robots: Sequence[Automaton]) -> Iterator[Tuple[str, Dict[int, str]]]:
 
 
 def _places(clause: Clause, spots: Mapping[str, Mapping[int, str]]) -> Set[str]:
-    """The places at which the tests of a clause hold; nothing where they are of no robot, or of several."""
-    variables = {test.variable for test in clause}
-    if len(variables) != 1 or not variables <= spots.keys():
+    """The places at which the tests of a clause hold; nothing where one is of no robot."""
+    if not {test.variable for test in clause} <= spots.keys():
         return set()
     return {spots[t.variable][t.value] for t in clause if t.value in spots[t.variable]}
 

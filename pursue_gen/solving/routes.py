@@ -1,20 +1,20 @@
 """Robots that change places: single moves, one after the other, each into a place that holds nobody else.
 
-Three ways to find them. *In time*: one robot after the other gets the quickest way that leaves those of the robots
+Four ways to find them. *In time*: one robot after the other gets the quickest way that leaves those of the robots
 before it alone (prioritized planning over safe intervals: Phillips and Likhachev, "SIPP", ICRA 2011), in several
-orders. *One by one*: each robot goes to its place with whoever is there and one more robot that makes way, while all
-others stand still; that takes longer, and finds ways where there is hardly a free place. *Together*: of few robots all
-moves are looked at. All is done with counted work, so that the same moves are found on every machine.
+orders. *Crowded* (`crowds`): all robots at once, with a search in where they are. *One by one*: each robot goes to its
+place with whoever is there and one more robot that makes way, while all others stand still; that takes longer, and
+finds ways where there is hardly a free place. *Together*: of few robots all moves are looked at. What these find is
+made quicker: each robot gets the quickest way around all others. All is done with counted work, so that the same moves
+are found on every machine.
 """
 
 from __future__ import annotations
 
 import heapq
 from collections import deque
-from dataclasses import dataclass
 from itertools import count
 from typing import (
-    AbstractSet,
     Deque,
     Dict,
     Iterator,
@@ -29,37 +29,21 @@ from typing import (
 )
 
 from pursue_gen.language.numbers import Number
+from pursue_gen.solving.crowds import crowded_routes
 from pursue_gen.solving.distances import backwards, distances_to
+from pursue_gen.solving.floors import Floor, Move
 
 Node = TypeVar("Node")
 Step = TypeVar("Step")
-
-Ways = Mapping[str, Mapping[str, int]]
-"""From each place the places to which a way leads, and how long that takes at most."""
-
-
-class Move(NamedTuple):
-    """A robot goes from one place to the next."""
-
-    robot: str
-    origin: str
-    target: str
-
-
-@dataclass(frozen=True)
-class Floor:
-    """For each robot its ways; `single`: the places that hold one robot at a time, from the moment at which it sets off
-    for the place until it sets off from there."""
-
-    ways: Mapping[str, Ways]
-    single: AbstractSet[str]
-
 
 _ORDERS = 24
 """So many orders of robots are tried. Not measured."""
 
 _STEPS = 60_000
 """So many steps of the search in time, and of that one by one, at most. Not measured."""
+
+_AGAIN = 4
+"""So often ways are looked for again around those of all others. Not measured."""
 
 _FEW = 4
 """So many robots are few. Not measured."""
@@ -75,9 +59,12 @@ def routes(floor: Floor, at: Mapping[str, str], wanted: Mapping[str, str]) -> Op
     """Moves after which each of the robots is where it is wanted; robots that are wanted nowhere make way. None where
     none are found with little work."""
     found = _InTime(floor, at, wanted).found()
-    if found is None:
-        found = _OneByOne(floor, at, wanted).found()
-    return _OneByOne(floor, at, wanted).together() if found is None and len(at) <= _FEW else found
+    if found is not None:
+        return found
+    found = crowded_routes(floor, at, wanted) or _OneByOne(floor, at, wanted).found()
+    if found is None and len(at) <= _FEW:
+        found = _OneByOne(floor, at, wanted).together()
+    return None if found is None else _InTime(floor, at, wanted).sooner(found)
 
 
 # In time --------------------------------------------------------------------------------------------------------------
@@ -130,13 +117,50 @@ class _InTime:
             way = self._way(name, taken)
             if way is None:
                 return None
-            here, since = self._at[name], 0
-            for each in way:
-                taken.setdefault(here, []).append((since, each.time + _GAP))
-                here, since = each.move.target, each.time
-            taken.setdefault(here, []).append((since, _NEVER))
+            self._take(name, way, taken)
             timed += way
         return timed
+
+    def _take(self, name: str, way: Sequence[_Timed], taken: Dict[str, List[Tuple[int, int]]]) -> None:
+        """Adds the times in which a robot has places on its way."""
+        here, since = self._at[name], 0
+        for each in way:
+            taken.setdefault(here, []).append((since, each.time + _GAP))
+            here, since = each.move.target, each.time
+        taken.setdefault(here, []).append((since, _NEVER))
+
+    def sooner(self, moves: Sequence[Move]) -> List[Move]:
+        """Moves that do the same, without those that are not needed: one robot after the other, the last first, gets
+        the quickest way around all others, as often as that helps."""
+        ways = self._timed(moves)
+        for _ in range(_AGAIN):
+            before = dict(ways)
+            for name in sorted(ways, key=lambda name: -self._last(ways[name])):
+                taken: Dict[str, List[Tuple[int, int]]] = {}
+                for other in ways:
+                    if other != name:
+                        self._take(other, ways[other], taken)
+                way = self._way(name, taken)
+                if way is not None and (self._last(way), len(way)) < (self._last(ways[name]), len(ways[name])):
+                    ways[name] = way
+            if ways == before:
+                break
+        return [each.move for each in sorted(each for way in ways.values() for each in way)]
+
+    def _last(self, way: Sequence[_Timed]) -> int:
+        """When a robot has come to the end of its way."""
+        return way[-1].time + self._takes(way[-1].move) if way else 0
+
+    def _timed(self, moves: Sequence[Move]) -> Dict[str, List[_Timed]]:
+        """For each robot its moves, each as soon as it may be."""
+        ways: Dict[str, List[_Timed]] = {name: [] for name in self._at}
+        left: Dict[str, int] = {}
+        for move in moves:
+            time = max(self._last(ways[move.robot]), left.get(move.target, 0))
+            ways[move.robot].append(_Timed(time, move))
+            if move.origin in self._floor.single:
+                left[move.origin] = time + _GAP
+        return ways
 
     def _way(self, name: str, taken: Mapping[str, List[Tuple[int, int]]]) -> Optional[List[_Timed]]:
         """The quickest way of a robot that is at no place while others have it."""

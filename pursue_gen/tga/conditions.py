@@ -151,9 +151,21 @@ def _alternatives(condition: Condition, domains: Domains) -> Iterator[Clauses]:
     if isinstance(condition, AnyOf):
         yield from (clauses_of(part, domains) for part in condition.parts)
     elif isinstance(negated, AllOf):
-        yield from (clauses_of(part, domains, False) for part in negated.parts)
+        for part in negated.parts:
+            yield from _crowded(part, domains) if isinstance(part, AtMostOf) else [clauses_of(part, domains, False)]
     elif isinstance(negated, AtMostOf):
         for some in combinations(domains.counted(negated).items(), negated.most + 1):
             yield simplified([{name: values} for name, values in some], domains)
     else:
         yield clauses_of(condition, domains)
+
+
+def _crowded(room: AtMostOf, domains: Domains) -> Iterator[Clauses]:
+    """The ways in which more are in one of many rooms than it holds. Where it holds one: somebody, and one of those
+    behind, as that takes the fewest edges, which an observer looks at after every event."""
+    counted = list(domains.counted(room).items())
+    if room.most != 1:
+        yield from _alternatives(Not(room), domains)
+        return
+    for k, (name, values) in enumerate(counted[:-1], start=1):
+        yield simplified([{name: values}, dict(counted[k:])], domains)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import time
 from typing import Dict, Optional, Sequence
@@ -29,6 +30,7 @@ from pursue_runtime.strategy import Strategy, parse_plan
 from pursue_runtime.ui.environment import make_player
 from pursue_runtime.ui.mission_view import Environment, reporters
 from pursue_runtime.ui.options import ARGUMENTS, Options, read_options, read_told
+from pursue_runtime.ui.strategies import strategies_in
 from pursue_runtime.ui.terminal import BAD, BOLD, GOOD, PLAIN, on_terminal
 from pursue_runtime.ui.trace import TraceError
 from pursue_runtime.ui.verdict import ALONE, INTERRUPTED, NOT_STARTED, Verdict, drop_interrupted, write_verdict
@@ -127,6 +129,8 @@ class UI(UIState):
             return
         with self.lock:
             self.page.on_plan(plan)
+            with contextlib.suppress(DataError):  # the nodes that need it say what is wrong with it
+                self.mission.add_turns(plan["plan"], strategies_in(plan))
             if orders is not None:
                 self.mission.add_plan(plan["plan"], orders)
                 self.act()

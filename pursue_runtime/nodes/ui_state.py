@@ -17,7 +17,9 @@ from pursue_runtime.nodes.node import Ending
 from pursue_runtime.nodes.ui_orders import UIOrders
 from pursue_runtime.ui.mission_view import Environment, MissionView, Readiness
 from pursue_runtime.ui.options import Options
+from pursue_runtime.ui.strategies import strategies_of
 from pursue_runtime.ui.terminal import Terminal
+from pursue_runtime.ui.turns import Turns
 
 GATHERING, READY, STARTING, RUNNING = "waiting for the nodes", "ready", "starting", "running"
 
@@ -33,7 +35,8 @@ class UIState:
         self, options: Options, membership: Membership, ending: Ending, player: Environment, model: Model
     ) -> None:
         self.options, self.membership, self.ending, self.model = options, membership, ending, model
-        self.mission = MissionView(model, player, membership.people())
+        turns = Turns(model, strategies_of(membership.source))
+        self.mission = MissionView(model, player, membership.people(), turns)
         self.readiness = Readiness(options.nodes)
         self.terminal = Terminal(sys.stdout, os.environ)
         self.lock = threading.RLock()

@@ -78,6 +78,7 @@ class Automata:
         self._values = dict(model.variables)
         self._zeros: Dict[str, float] = {}  # the time of the last reset of each clock
         self._position: Optional[Tuple[float, Position]] = None  # the last that was computed, and its time
+        self._internal = {automaton.name: _Internal(automaton) for automaton in model.of_kind("safety")}
 
     def start(self, now: float) -> None:
         """Set every clock to zero at the time `now`."""
@@ -169,6 +170,29 @@ class Automata:
         return [
             (automaton, edge)
             for automaton in self.model.of_kind("safety")
-            for edge in automaton.edges_from(position.locations[automaton.name])
-            if edge.sync == "own" and not edge.controllable and edge.allowed(position.values)
+            for edge in self._internal[automaton.name].at(position.locations[automaton.name], position.values)
+            if edge.allowed(position.values)
         ]
+
+
+class _Internal:
+    """The internal edges of an objective, found by what their first clause tests: where every place holds one robot,
+    there are thousands."""
+
+    def __init__(self, automaton: Automaton) -> None:
+        self._always: Dict[str, List[Tuple[int, Edge]]] = {}
+        self._tested: Dict[str, Dict[str, Dict[int, List[Tuple[int, Edge]]]]] = {}
+        for number, edge in enumerate(automaton.edges):
+            if edge.sync == "own" and not edge.controllable:
+                if not edge.tests:
+                    self._always.setdefault(edge.source, []).append((number, edge))
+                for name, value in edge.tests[0] if edge.tests else ():
+                    by_name = self._tested.setdefault(edge.source, {}).setdefault(name, {})
+                    by_name.setdefault(value, []).append((number, edge))
+
+    def at(self, location: str, values: Mapping[str, int]) -> List[Edge]:
+        """Those there of which the first clause holds, in order."""
+        found = dict(self._always.get(location, ()))
+        for name, by_value in self._tested.get(location, {}).items():
+            found.update(by_value.get(values[name], ()))
+        return [found[number] for number in sorted(found)]

@@ -27,6 +27,7 @@ from pursue_runtime.sentences import Told, in_words
 from pursue_runtime.simulator.simulator import ACTING, report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
+from pursue_runtime.ui.turns import Turns
 from pursue_runtime.vocabulary import deed, instruction, is_fact, said_at_start, sentence, where
 from pursue_runtime.zones import due
 
@@ -162,13 +163,16 @@ def traffic_lines(topic: str, text: str, elapsed: float) -> List[str]:
 class MissionView:
     """One mission, from its states: the words to publish, the lines to print, and the verdict."""
 
-    def __init__(self, model: Model, player: Environment, orders: Optional[Strategy] = None) -> None:
-        """`orders`: the part of the strategy that people carry out."""
+    def __init__(
+        self, model: Model, player: Environment, orders: Optional[Strategy] = None, turns: Optional[Turns] = None
+    ) -> None:
+        """`orders`: the part of the strategy that people carry out; `turns`: whose turn it is at places."""
         self.state: Optional[SystemState] = None
         self.start: Optional[float] = None
         self.counts = "time units"  # what times count, as people say it
         self._model, self._told = model, Told()
         self._environment = player
+        self._turns = turns or Turns(model, ())
         self._orders = None if orders is None else Plans(orders)
         self._since: Dict[Entry, SystemState] = {}  # in which is decided what stands in the present state
         self._ordered: Tuple[int, float, int] = (-1, 0.0, 0)  # the state of the last order, when (real), how often
@@ -185,6 +189,10 @@ class MissionView:
         """What people do by a new plan."""
         if self._orders is not None:
             self._orders.add(plan, orders)
+
+    def add_turns(self, plan: int, strategies: Sequence[Strategy]) -> None:
+        """Whose turn it is at places by the strategies of a new plan."""
+        self._turns.add_plan(plan, strategies)
 
     def on_state(self, state: SystemState, now: float) -> List[str]:
         """A state came; the lines to print."""
@@ -263,12 +271,13 @@ class MissionView:
         return f"{self.elapsed(now):8.1f}  the mission runs{said_at_start(self._model)}"
 
     def progress(self, now: float) -> str:
-        """Return a line with the location of each agent."""
+        """Return a line with the location of each agent, and for whom it waits."""
         if self.state is None:
             return "waiting for the first state"
-        model, at = self._model, self.state.locations
+        model, at, waits = self._model, self.state.locations, self._turns.waits(self.state)
         places = [
             f"{model.shown(automaton.name)} {where(model, automaton, at.get(automaton.name, '?'))}"
+            + (f" ({waits[automaton.name]})" if automaton.name in waits else "")
             for automaton in model.of_kind("robot", "human", "agent")
         ]
         return f"{self.elapsed(now):8.1f}  " + "  ".join(places)

@@ -16,14 +16,15 @@ from pursue_runtime.ui.course import Step, course, first_commands, is_certain, n
 from pursue_runtime.ui.mission_view import PossibleWord
 from pursue_runtime.ui.reasons import Why
 from pursue_runtime.ui.statuses import Status
+from pursue_runtime.ui.turns import Turns
 
 
 class Sight(NamedTuple):
     """What is to be seen in one state, as values for JSON.
 
     `planned`: the strategy is known here. `next`: the next command. `agents`: for each agent why it does what it does,
-    and its first command (`then`). `answers`: by the word that an agent may begin with that nobody controls, the next
-    command if it does, where that is another one.
+    or for whom it waits, and its first command (`then`). `answers`: by the word that an agent may begin with that
+    nobody controls, the next command if it does, where that is another one.
     """
 
     planned: bool
@@ -38,11 +39,13 @@ class Outlook:
     def __init__(self, model: Model, statuses: Sequence[Status], strategies: Sequence[Strategy]) -> None:
         self._model = model
         self._why = Why(model, statuses, strategies)
+        self._turns = Turns(model, strategies)
         self._seen: Tuple[object, Optional[Sight]] = (None, None)  # of which state
 
     def add_plan(self, number: int, strategies: Sequence[Strategy]) -> None:
         """Take the strategies of a new plan."""
         self._why.add_plan(number, strategies)
+        self._turns.add_plan(number, strategies)
         self._seen = (None, None)
 
     def on_state(self, state: SystemState) -> None:
@@ -62,8 +65,9 @@ class Outlook:
         strategies = self._why.strategies(state.plan)
         steps = course(self._model, strategies, state) if strategies else []
         first = first_commands(steps)
+        waits = self._turns.waits(state)
         agents = {
-            name: {"why": self._why.of(name), "then": self._then(steps, first.get(name), at)}
+            name: {"why": waits.get(name) or self._why.of(name), "then": self._then(steps, first.get(name), at)}
             for name in state.locations
         }
         answers = dict(self._answers(state, offers, steps)) if strategies else {}

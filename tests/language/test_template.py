@@ -85,7 +85,7 @@ def test_conditions_are_found_where_they_stand() -> None:
 _ALL: Tuple[Type[Written], ...] = (
     *(kind for kind in STATEMENTS.values() if is_dataclass(kind)), *OBJECTIVES.values(), Reach, *ASSUMPTIONS.values(),
 )  # fmt: skip
-_ELSEWHERE = {"span", "ends", "optional", "least", "number"}
+_ELSEWHERE = {"span", "ends", "optional", "least", "number", "building"}
 """Fields that say where something stands, or what another statement or solving says."""
 
 

@@ -46,12 +46,15 @@ def test_robots_that_pass_each_other_in_a_corridor(robots: int) -> None:
 
 def test_places_and_ways_that_hold_one_robot_are_passed_like_robots_that_never_meet() -> None:
     apart = pass_in_a_corridor(5)
-    room = [line for line in apart.split("\n") if "never_with" not in line]
+    lines = [line for line in apart.split("\n") if "never_with" not in line]
+    every = won("\n".join([*lines, "objective: every place holds 1 robot", "objective: every way holds 1 robot"]))
+    room = list(lines)
     room += [f"objective: place {place} holds 1 robot" for place in re.findall(r'poi "(\w+)"', apart)]
     room += [f"objective: way {a} to {b} holds 1 robot" for a, b in re.findall(r"connect (\w+) and (\w+)", apart)]
     one, other = won(apart), won("\n".join(room))
     assert other.strategy.passages == one.strategy.passages
     assert other.guarantee == one.guarantee
+    assert every.strategy.passages == one.strategy.passages and every.guarantee == one.guarantee
 
 
 def test_on_a_square_robots_move_at_the_same_time() -> None:

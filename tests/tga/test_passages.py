@@ -11,6 +11,7 @@ from pursue_gen.tga import translate
 from pursue_gen.tga.network import Network
 from pursue_gen.tga.passages import Passage, passage_automaton, with_passages
 from pursue_gen.vocabulary.statuses import statuses
+from pursue_runtime.locations import Visit, place_passed, visit_at
 
 TEXT = """
 poi "a"
@@ -35,6 +36,9 @@ def test_a_robot_has_the_place_from_when_it_sets_off_for_it_until_it_sets_off_fr
     assert automaton is not None
     assert automaton.name == "b_passage"
     assert automaton.initial == "awaits_bot1_1"
+    visits = [visit_at(place.name) for place in automaton.locations[:2]]
+    assert visits == [Visit("bot1", 1, False), Visit("bot1", 1, True)]
+    assert place_passed(automaton.name) == "b"  # what people are told of it while a mission goes on
     received = ((edge, edge.sync) for edge in automaton.edges if edge.sync is not None and not edge.sync.sends)
     edges = [(edge.source, edge.target, sync.channel) for edge, sync in received]
     assert edges == [

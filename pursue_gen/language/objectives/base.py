@@ -175,6 +175,10 @@ class Safety(StatedObjective):
         if broken is not None and kind in ("state", "agent") and self.speaks_of(kind, name):
             yield f"must never be: {shown(condition_words(broken))}"
 
+    def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref]]) -> Safety:
+        """The same in a building with these places and ways."""
+        return self
+
     def kept_by(self, robot: Ref) -> Safety:
         """The objective kept by this robot; the same where any robot is not what keeps it."""
         return self

@@ -1,4 +1,5 @@
-"""`place a holds 1 robot` and `way a to b holds 1 robot`: for how many there is room."""
+"""`place a holds 1 robot`, `way a to b holds 1 robot`, and the same for every place and every way: for how many there
+is room."""
 
 from __future__ import annotations
 
@@ -7,7 +8,7 @@ from itertools import combinations
 from typing import Any, Callable, ClassVar, Iterator, Sequence, Tuple, cast
 
 from pursue_gen.diagnostics import NOWHERE, Span, listed
-from pursue_gen.language.conditions import At, AtMostOf, Atom, Not, OnWay, Who, some_text
+from pursue_gen.language.conditions import AllOf, At, AtMostOf, Atom, Not, OnWay, Who, some_text
 from pursue_gen.language.objectives.base import Breaks, Safety
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.template import Template
@@ -36,13 +37,14 @@ class Holds(Safety):
         return some_text(self.most, self.who, shown=True)
 
     @property
-    def kept_if(self) -> AtMostOf:
-        """The condition that holds while it is kept."""
-        return AtMostOf(self.most, tuple(atom for who in self.who for atom in self.there(who)))
+    def rooms(self) -> Tuple[AtMostOf, ...]:
+        """The conditions that all hold while it is kept: one where there is one such room."""
+        return (AtMostOf(self.most, tuple(atom for who in self.who for atom in self.there(who))),)
 
     @property
     def breaks(self) -> Breaks:
-        return Breaks(condition=Not(self.kept_if))
+        rooms = self.rooms
+        return Breaks(condition=Not(rooms[0] if len(rooms) == 1 else AllOf(rooms)))
 
     def with_room(self, most: int) -> Holds:
         """The same with room for another number."""
@@ -122,3 +124,76 @@ class WayHolds(Holds):
         if kind == "POI" and name in (self.a.name, self.b.name):
             other = self.b if self.a.name == name else self.a
             yield f"the way to {other.name} holds {some_text(self.most, self.who)}, in both directions together"
+
+
+class EveryHolds(Holds):
+    """There is room for so many in each of several rooms, which are those of the building (`in_building`)."""
+
+    in_one: ClassVar[str]
+    """In one of the rooms, in English."""
+
+    def atoms(self) -> Iterator[Sequence[Atom]]:
+        """For each room that somebody is in it."""
+        raise NotImplementedError
+
+    @property
+    def rooms(self) -> Tuple[AtMostOf, ...]:
+        return tuple(AtMostOf(self.most, tuple(some)) for some in self.atoms())
+
+    @property
+    def where(self) -> str:
+        return self.in_one.replace(" one ", " every ")
+
+    def broken(self, beside: Callable[[str], str]) -> str:
+        return super().broken(beside).replace(self.where, self.in_one)
+
+
+@dataclass(frozen=True)
+class EveryPlaceHolds(EveryHolds):
+    """`every place holds 1 robot`: never are more than `most` of `who` at one place. `building`: its places."""
+
+    most: int
+    who: Tuple[Who, ...]
+    span: Span = NOWHERE
+    building: Tuple[Ref, ...] = ()
+    optional: int = 0
+
+    template: ClassVar[Template] = Template("every place holds {most,who:some=1 robot}")
+    forms: ClassVar[Tuple[Form, ...]] = (Form("what every place holds", "every place holds {=1} robot"),)
+    in_one: ClassVar[str] = "at one place"
+
+    def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref]]) -> EveryPlaceHolds:
+        return replace(self, building=tuple(places))
+
+    def atoms(self) -> Iterator[Sequence[Atom]]:
+        return ([At(who, place) for who in self.who] for place in self.building)
+
+    def apart(self, one: str, other: str, place: str) -> bool:
+        named = {who.agent.name for who in self.who if who.agent is not None}
+        return self.most <= 1 and (not named or {one, other} <= named)
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        if kind == "POI":
+            yield f"holds {some_text(self.most, self.who)}, as every place"
+
+
+@dataclass(frozen=True)
+class EveryWayHolds(EveryHolds):
+    """`every way holds 1 robot`: never are more than `most` of `who` on one, in both directions together. `building`:
+    its ways."""
+
+    most: int
+    who: Tuple[Who, ...]
+    span: Span = NOWHERE
+    building: Tuple[Tuple[Ref, Ref], ...] = ()
+    optional: int = 0
+
+    template: ClassVar[Template] = Template("every way holds {most,who:some=1 robot}")
+    forms: ClassVar[Tuple[Form, ...]] = (Form("what every way holds", "every way holds {=1} robot"),)
+    in_one: ClassVar[str] = "on one way"
+
+    def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref]]) -> EveryWayHolds:
+        return replace(self, building=tuple({frozenset((a.name, b.name)): (a, b) for a, b in ways}.values()))
+
+    def atoms(self) -> Iterator[Sequence[Atom]]:
+        return ([OnWay(who, a, b, True) for who in self.who] for a, b in self.building)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Dict, FrozenSet, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import PursueError, error
-from pursue_gen.tools.importing.building import DEGREES, Building, Edge, Level, Vertex
+from pursue_gen.tools.importing.building import DEGREES, Building, Edge, Level, Properties, Vertex
 
 Node = Tuple[str, int]
 """A level's name and the number of a vertex."""
@@ -43,7 +43,9 @@ class Stop:
 @dataclass(frozen=True)
 class Track:
     """A way between two stops, `metres` long. `there`, `back`: the navigation graphs on which robots drive it from its
-    start to its end, and back; `doors`: those that it passes."""
+    start to its end, and back; `doors`: those that it passes; `parts`: its lanes' metres, each with the metres
+    per second that robots may drive there (0: as fast as they like); `mutex`: the group of lanes and vertices of which
+    one robot may have one, "" for none."""
 
     start: Node
     end: Node
@@ -51,6 +53,16 @@ class Track:
     there: FrozenSet[int]
     back: FrozenSet[int]
     doors: Tuple[Node, ...] = ()
+    parts: Tuple[Tuple[float, float], ...] = ()
+    mutex: str = ""
+
+    def seconds(self, speed: float) -> float:
+        """How long a robot of this speed takes, which keeps to what is allowed."""
+        return sum(metres / min(speed, limit or speed) for metres, limit in self.parts)
+
+    def is_limited(self, speed: float) -> bool:
+        """True where a robot of this speed may not drive so fast."""
+        return any(0 < limit < speed for _, limit in self.parts)
 
     @property
     def graphs(self) -> FrozenSet[int]:
@@ -59,7 +71,8 @@ class Track:
 
     def turned(self) -> Track:
         """The same from its end to its start."""
-        return Track(self.end, self.start, self.metres, self.back, self.there, self.doors[::-1])
+        ends = Track(self.end, self.start, self.metres, self.back, self.there)
+        return replace(ends, doors=self.doors[::-1], parts=self.parts[::-1], mutex=self.mutex)
 
 
 @dataclass(frozen=True)
@@ -183,11 +196,26 @@ def _tracks(level: Level, where: Mapping[Node, Tuple[float, float]]) -> List[Tra
             if metres > _LONGEST:
                 message = f"a lane would be {metres / 1000:.0f} km long"
                 raise PursueError([error("IMP002", message, lane.span, "look at measurements and coordinate_system")])
-            track = Track(start, end, metres, frozenset(), frozenset(), doors)
+            track = Track(start, end, metres, frozenset(), frozenset(), doors, ((metres, 0.0),))
         track = track if track.start == start else track.turned()
         back = track.back | graph if lane.properties.get("bidirectional") is True else track.back
-        found[frozenset({start, end})] = replace(track, there=track.there | graph, back=back)
+        limits = [limit for limit in (track.parts[0][1], _limit(lane)) if limit > 0]
+        parts = ((track.metres, min(limits, default=0.0)),)
+        mutex = track.mutex or mutex_of(lane.properties)
+        found[frozenset({start, end})] = replace(track, there=track.there | graph, back=back, parts=parts, mutex=mutex)
     return list(found.values())
+
+
+def mutex_of(properties: Properties) -> str:
+    """The group of lanes and vertices of which one robot may have one; "" for none."""
+    value = properties.get("mutex")
+    return value.strip() if isinstance(value, str) else ""
+
+
+def _limit(lane: Edge) -> float:
+    """Metres per second that robots may drive on a lane; 0: as fast as they like."""
+    value = lane.properties.get("speed_limit")
+    return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) and value > 0 else 0.0
 
 
 def _crosses(level: Level, lane: Edge, door: Edge) -> bool:
@@ -248,10 +276,11 @@ def _one_of(one: Track, other: Track, node: Node) -> Optional[Track]:
     """The track over both, which meet at the node; None where they differ in who may drive where."""
     one = one if one.end == node else one.turned()
     other = other if other.start == node else other.turned()
-    if (one.there, one.back) != (other.there, other.back) or one.start == other.end:
+    if (one.there, one.back, one.mutex) != (other.there, other.back, other.mutex) or one.start == other.end:
         return None
     doors = one.doors + tuple(door for door in other.doors if door not in one.doors)
-    return replace(one, end=other.end, metres=one.metres + other.metres, doors=doors)
+    whole = replace(one, end=other.end, metres=one.metres + other.metres, doors=doors)
+    return replace(whole, parts=one.parts + other.parts)
 
 
 # Metres --------------------------------------------------------------------------------------------------------------

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+from itertools import combinations
+from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple, TypeVar
 
 from pursue_gen.diagnostics import usage_error
 from pursue_gen.language.formatter import format_text
@@ -12,7 +13,9 @@ from pursue_gen.language.kinds import RESERVED
 from pursue_gen.language.similar import closest
 from pursue_gen.language.usable import proposal
 from pursue_gen.tools.importing.building import Building
-from pursue_gen.tools.importing.plan import FloorPlan, Node, RobotStart, Stop, Track
+from pursue_gen.tools.importing.plan import FloorPlan, Node, RobotStart, Stop, Track, mutex_of
+
+Key = TypeVar("Key")
 
 _TASKS = {"pickup_dispenser": "pick_up_at", "dropoff_ingestor": "drop_off_at"}
 """Properties of vertices at which robots do something, and what it is called."""
@@ -42,30 +45,41 @@ def chosen(plan: FloorPlan, names: Optional[str]) -> Sequence[RobotStart]:
 
 
 def scenario_text(
-    building: Building, plan: FloorPlan, robots: Sequence[RobotStart], speeds: Mapping[str, float], file: str
+    building: Building,
+    plan: FloorPlan,
+    robots: Sequence[RobotStart],
+    speeds: Mapping[str, float],
+    file: str,
+    traffic: bool = False,
 ) -> str:
-    """The scenario, laid out; `speeds`: robot → metres per second; `file` is its name in messages."""
-    return _Writer(building, plan, robots, speeds).text(file)
+    """The scenario, laid out; `speeds`: robot → metres per second; `file` is its name in messages; `traffic`: places
+    and ways hold one robot each."""
+    return _Writer(building, plan, robots, speeds, traffic).text(file)
 
 
 class _Writer:
     """Gives everything its name, and writes the statements."""
 
     def __init__(
-        self, building: Building, plan: FloorPlan, robots: Sequence[RobotStart], speeds: Mapping[str, float]
+        self,
+        building: Building,
+        plan: FloorPlan,
+        robots: Sequence[RobotStart],
+        speeds: Mapping[str, float],
+        traffic: bool,
     ) -> None:
-        self._building, self._robots, self._speeds = building, robots, speeds
+        self._building, self._robots, self._speeds, self._traffic = building, robots, speeds, traffic
         self._used = frozenset(graph for robot in robots for graph in robot.graphs)
         self._tracks = [track for track in plan.tracks if track.graphs & self._used]
         ends = {node for track in self._tracks for node in (track.start, track.end)} | {robot.node for robot in robots}
         self._stops = [stop for stop in plan.stops if stop.node in ends]
         self._lifts = {name: [node for node in some if node in ends] for name, some in plan.lifts.items()}
         self._taken: Set[str] = set()
-        self._shown = dict(_told_apart({stop.node: self._title(stop) for stop in self._stops}))
+        self._shown = dict(told_apart({stop.node: self._title(stop) for stop in self._stops}))
         self._places: Dict[Node, str] = {node: self._name(title) for node, title in self._shown.items()}
         passed = {door for track in self._tracks for door in track.doors}
         titles = {node: door.name or "door" for node, door in plan.doors.items() if node in passed}
-        self._doors = {node: (plan.doors[node], title, self._name(title)) for node, title in _told_apart(titles)}
+        self._doors = {node: (plan.doors[node], title, self._name(title)) for node, title in told_apart(titles)}
         self._agents = {robot.name: self._name(robot.name) for robot in robots}
         self._groups = self._named_groups()
         self._reached = {robot.name: self._from(robot) for robot in robots}
@@ -75,7 +89,7 @@ class _Writer:
         """All of it."""
         parts = [self._head(), ["unit second"], self._poi_lines(), self._door_lines()]
         parts += [self._group_lines(), self._way_lines()]
-        parts += [self._lift_lines(), self._event_lines(), self._agent_lines(), self._objectives()]
+        parts += [self._lift_lines(), self._event_lines(), self._agent_lines(), self._slow_lines(), self._objectives()]
         return format_text("\n\n".join("\n".join(part) for part in parts if part) + "\n", file)
 
     def _title(self, stop: Stop) -> str:
@@ -131,7 +145,7 @@ class _Writer:
     def _head(self) -> List[str]:
         left_out = len(self._building.levels) > 1 and any(self._lifts.values())
         lines = [
-            f"// {_one_line(self._building.name)}, from Open-RMF's traffic editor. Metres and seconds.",
+            f"// {one_line(self._building.name)}, from Open-RMF's traffic editor. Metres and seconds.",
             "// Say what is wanted below (docs/language.md); durations are first guesses.",
         ]
         return lines + (["// How long lifts take is a guess, too: write what you know."] if left_out else [])
@@ -140,7 +154,7 @@ class _Writer:
         lines = []
         for stop in self._stops:
             name, title = self._places[stop.node], self._shown[stop.node]
-            label = f' label "{_one_line(title)}"' if title != name else ""
+            label = f' label "{one_line(title)}"' if title != name else ""
             pose = ", ".join(f"{round(value, 2) + 0.0:.2f}" for value in (stop.x, stop.y, stop.z))  # no -0.00
             lines.append(f'poi "{name}"{label} //[{pose}, 0, 0, 0, 1]')
         return lines
@@ -148,7 +162,7 @@ class _Writer:
     def _door_lines(self) -> List[str]:
         lines = []
         for door, title, name in self._doors.values():
-            label = f' label "{_one_line(title)}"' if title != name else ""
+            label = f' label "{one_line(title)}"' if title != name else ""
             turned = math.sin(door.yaw / 2), math.cos(door.yaw / 2)
             pose = ", ".join(f"{round(value, 2) + 0.0:.2f}" for value in (door.x, door.y, door.z))
             turn = ", ".join(f"{round(value, 4) + 0.0:g}" for value in turned)
@@ -201,6 +215,37 @@ class _Writer:
                         lines += [f"travel {robot} from {start} to {end} takes {_LIFT}" for robot in riders]
         return lines
 
+    def _slow_lines(self) -> List[str]:
+        """How long robots take that may not drive as fast as they can."""
+        lines: List[str] = []
+        for track in self._tracks:
+            for robot in self._robots:
+                speed = self._speeds[robot.name]
+                for way in (track, track.turned()) if track.is_limited(speed) else ():
+                    if way.there & robot.graphs:
+                        start, end = self._places[way.start], self._places[way.end]
+                        seconds = max(round(way.seconds(speed), 1), 0.1)
+                        lines.append(f"travel {self._agents[robot.name]} from {start} to {end} takes {seconds:g} s")
+        return lines
+
+    def _mutex_lines(self) -> List[str]:
+        """What one robot may have of the places and ways of a group, alone."""
+        members: Dict[str, List[Tuple[str, str]]] = {}  # how each is written alone, and in a condition
+        for stop in self._stops:
+            place = self._places[stop.node]
+            members.setdefault(mutex_of(stop.vertex.properties), []).append((f"place {place}", f"at {place}"))
+        for track in self._tracks:
+            a, b = self._places[track.start], self._places[track.end]
+            members.setdefault(track.mutex, []).append((f"way {a} to {b}", f"between {a} and {b}"))
+        members.pop("", None)
+        lines: List[str] = []
+        for group, some in members.items() if len(self._robots) > 1 else ():
+            alone = [f"objective: {each} holds 1 robot // mutex {one_line(group)}" for each, _ in some]
+            lines += alone if not self._traffic else []
+            pairs = ((one, other) for (_, one), (_, other) in combinations(some, 2))
+            lines += [f"objective: avoid any robot {one} and any robot {other}" for one, other in pairs]
+        return lines
+
     def _event_lines(self) -> List[str]:
         tasks = self._tasks.items()
         return [f'event "{name}" location {self._places[node]} duration {_HANDLING}' for name, node in tasks]
@@ -211,18 +256,20 @@ class _Writer:
             able = [name for name, node in self._tasks.items() if node in self._reached[robot.name]]
             doing = f" can_do {', '.join(able)}" if able else ""
             name, place, speed = self._agents[robot.name], self._places[robot.node], self._speeds[robot.name]
-            label = f' label "{_one_line(robot.name)}"' if robot.name != name else ""
+            label = f' label "{one_line(robot.name)}"' if robot.name != name else ""
             line = f'agent "{name}"{label} controllable speed {speed:g} location {place}{doing}'
-            lines.append(f"{line} // {_one_line(robot.type)}" if robot.type else line)
+            lines.append(f"{line} // {one_line(robot.type)}" if robot.type else line)
         return lines
 
     def _objectives(self) -> List[str]:
         """What makes the scenario one that can be solved: each place that people have named is visited."""
-        lines = []
+        alone = self._traffic and len(self._robots) > 1
+        lines = [f"objective: every {room} holds 1 robot" for room in ("place", "way") if alone]
+        lines += self._mutex_lines()
         for name, nodes in self._lifts.items():
             if len(nodes) > 1 and len(self._robots) > 1:
                 places = ", ".join(self._places[node] for node in nodes)
-                lines.append(f"objective: always at_most 1 robots at {places} // one in lift {_one_line(name)}")
+                lines.append(f"objective: always at_most 1 robots at {places} // one in lift {one_line(name)}")
         patrols: Dict[FrozenSet[str], List[str]] = {}
         for stop in self._stops:
             able = frozenset(name for name, reached in self._reached.items() if stop.node in reached)
@@ -240,7 +287,7 @@ class _Writer:
         return f"any of {group}" if group else " or ".join(self._agents_of(some))
 
 
-def _told_apart(titles: Mapping[Node, str]) -> Iterator[Tuple[Node, str]]:
+def told_apart(titles: Mapping[Key, str]) -> Iterator[Tuple[Key, str]]:
     """The titles, with a number behind what another place is called, too."""
     seen: Counter[str] = Counter()
     for node, title in titles.items():
@@ -248,6 +295,6 @@ def _told_apart(titles: Mapping[Node, str]) -> Iterator[Tuple[Node, str]]:
         yield node, title if seen[title] == 1 else f"{title} {seen[title]}"
 
 
-def _one_line(text: str) -> str:
+def one_line(text: str) -> str:
     """The text as a label and a comment can hold it: what a building calls something never becomes a statement."""
     return "".join(letter for letter in text if letter.isprintable() and letter not in '"\\')

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import product
 from typing import Callable, Iterable, Mapping, Set
 
@@ -53,6 +54,16 @@ def _holds(condition: Condition, scenario: Scenario, locations: Mapping[str, str
     return bool(_found(condition, scenario, locations, values))
 
 
+@lru_cache(maxsize=10_000)
+def _going(a: str, b: str) -> str:
+    return names.going(a, b)
+
+
+@lru_cache(maxsize=10_000)
+def _doing(event: str, poi: str) -> str:
+    return names.doing(event, poi)
+
+
 def _found(atom: Atom, scenario: Scenario, locations: Mapping[str, str], values: Mapping[str, int]) -> Set[str]:
     """The agents, or the state, of which it is so."""
     if isinstance(atom, Holds):
@@ -72,10 +83,10 @@ def _found(atom: Atom, scenario: Scenario, locations: Mapping[str, str], values:
     if isinstance(atom, OnWay):
         a, b = (ref.name for ref in atom.ends)
         ways = ((a, b), (b, a)) if atom.either_way else ((a, b),)
-        here: Set[str] = {names.going(*way) for way in ways}
+        here: Set[str] = {_going(*way) for way in ways}
     elif isinstance(atom, At):
         poi = atom.place.name
-        here = {poi, *(names.doing(event.name, poi) for event in scenario.events)}
+        here = {poi, *(_doing(event.name, poi) for event in scenario.events)}
     else:
-        here = {names.doing(atom.event.name, poi.name) for poi in scenario.pois}
+        here = {_doing(atom.event.name, poi.name) for poi in scenario.pois}
     return {name for name in meant if locations[name] in here}

@@ -256,3 +256,35 @@ def distances(ways: Mapping[Any, List[Tuple[Any, float]]], start: Any) -> Dict[A
                     found[other], changed = found[node] + metres, True
     return found
 
+
+
+def test_with_traffic_places_and_ways_hold_one_robot(tmp_path: Path) -> None:
+    second = OFFICE.replace("lounge, {", "lounge, {spawn_robot_name: [1, bot2], ")
+    lines = "objective: every place holds 1 robot\nobjective: every way holds 1 robot\n"
+    assert lines in imported(tmp_path, second, "--traffic")
+    assert "holds" not in imported(tmp_path, second, "--force")
+    assert "holds" not in imported(tmp_path, second, "--force", "--traffic", "--robots", "bot2"), "nobody to meet"
+
+
+def test_robots_keep_to_what_lanes_allow(tmp_path: Path) -> None:
+    slow = OFFICE.replace("[0, 1, {", "[0, 1, {speed_limit: [3, 0.25], ")
+    slow = slow.replace("[2, 3, {", "[2, 3, {speed_limit: [3, 2], ")
+    text = imported(tmp_path, slow)
+    # five metres at 0.25 m/s, and five at 0.5.
+    assert "travel bot_1 from dock to v2 takes 30 s\ntravel bot_1 from v2 to dock takes 30 s\n" in text
+    assert text.count("travel") == 2 and not check(parse(text, "made.pur"))
+    assert "travel" not in imported(tmp_path, slow, "--force", "--speed", "0.2")
+
+
+def test_of_a_mutex_group_one_robot_has_one_lane_or_vertex(tmp_path: Path) -> None:
+    second = OFFICE.replace("lounge, {", "lounge, {spawn_robot_name: [1, bot2], ")
+    second = second.replace("[2, 3, {", "[2, 3, {mutex: [1, door], ")
+    second = second.replace("pantry, {", "pantry, {mutex: [1, door], ")
+    text = imported(tmp_path, second)
+    for room in ("place pantry", "way v2 to pantry"):
+        assert f"objective: {room} holds 1 robot // mutex door" in re.sub(" +", " ", text)
+    both = "objective: avoid any robot at pantry and any robot between v2 and pantry\n"
+    assert both in text and not check(parse(text, "made.pur"))
+    traffic = imported(tmp_path, second, "--force", "--traffic")
+    assert both in traffic and "mutex" not in traffic
+    assert "mutex" not in imported(tmp_path, second, "--force", "--robots", "bot2"), "nobody to meet"

@@ -1,0 +1,70 @@
+"""For whom a robot waits at places that hold one: what has to be before its next command, by the strategy's orders of
+passage.
+
+An order of passage is an automaton that is called by its place, with a location for each visit: nobody is there yet, or
+the robot is.
+"""
+
+from __future__ import annotations
+
+from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+
+from pursue_runtime.locations import Visit, is_under_way, place_passed, visit_at
+from pursue_runtime.model import Model
+from pursue_runtime.sentences import listed
+from pursue_runtime.state import RUNNING, SystemState
+from pursue_runtime.strategy import Entry, Strategy
+
+
+class Turns:
+    """Whose turn it is at places, by these strategies; `add_plan` takes those of a new plan."""
+
+    def __init__(self, model: Model, strategies: Sequence[Strategy]) -> None:
+        self._model = model
+        self._plans: Dict[int, Mapping[Tuple[str, str], List[Entry]]] = {0: _leaving(strategies)}
+
+    def add_plan(self, number: int, strategies: Sequence[Strategy]) -> None:
+        """Take the strategies of a new plan."""
+        self._plans[number] = _leaving(strategies)
+
+    def waits(self, state: SystemState) -> Dict[str, str]:
+        """For each agent that waits for others at a place: `waits for bot1 to leave hall2`."""
+        if state.status != RUNNING:
+            return {}
+        entries = self._plans.get(state.plan, {})
+        found = {name: self._waits(state, entries.get((name, here), ())) for name, here in state.locations.items()}
+        return {name: text for name, text in found.items() if text}
+
+    def _waits(self, state: SystemState, entries: Sequence[Entry]) -> str:
+        """What the first of these commands that is still to come waits for; "": for no visit of another."""
+        ahead: List[Tuple[int, List[str]]] = []
+        for names, parts in entries:
+            visits = [
+                (name, visit_at(state.locations.get(name, "")), visit_at(part))
+                for name, part in zip(names, parts)
+                if place_passed(name)
+            ]
+            if all(now is not None and due is not None and now.rank <= due.rank for _, now, due in visits):
+                missing = [(name, now) for name, now, due in visits if now != due]
+                apart = sum(due.rank - now.rank for _, now, due in visits if now and due)
+                ahead.append((apart, list(self._words(missing))))
+        texts = min(ahead, default=(0, []))[1]
+        return f"waits for {listed(texts)}" if texts else ""
+
+    def _words(self, missing: Sequence[Tuple[str, Optional[Visit]]]) -> Iterator[str]:
+        for name, visit in missing:
+            if visit is not None:
+                robot, place = self._model.shown(visit.robot), self._model.shown(place_passed(name))
+                yield f"{robot} to leave {place}" if visit.is_there else f"{robot} to pass {place} first"
+
+
+def _leaving(strategies: Sequence[Strategy]) -> Mapping[Tuple[str, str], List[Entry]]:
+    """For each agent and place the states in which it is commanded to do something there, and which name an order."""
+    found: Dict[Tuple[str, str], List[Entry]] = {}
+    for strategy in strategies:
+        for entry, commands in strategy.all_entries():
+            if any(map(place_passed, entry[0])):
+                for command in commands:
+                    if not is_under_way(command.origin):
+                        found.setdefault((command.agent, command.origin), []).append(entry)
+    return found
