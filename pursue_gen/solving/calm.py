@@ -37,7 +37,7 @@ _WORK, _STATES = 20_000_000, 20_000
 """The work of all games in which robots set off for what is due, and the discrete states of each. Measured on lab
 scenarios 10, 12, 16 and 17, and on battery_watch."""
 
-_SHARE, _POLICIES = 0.3, 0.1
+_SHARE, _POLICIES = 0.3, 0.15
 """The part of what is left that one of them gets, and that all policies of a game get. Measured on lab scenario 13."""
 
 _LOOKS, _BLOCKS, _SYMBOLIC = 12, 20_000, 6_000

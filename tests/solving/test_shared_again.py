@@ -91,3 +91,29 @@ def test_places_are_passed_several_times_or_come_too_late() -> None:
     assert share_on_ways(line(5), line(5), [90]) == 0
     # The one in the middle is seen twice in each round, so that of the others alone matters.
     assert share_on_ways(line(4, 6), line(3, 5), [50, 50, 50]) == pytest.approx(16 / (100 - 20))
+
+
+ORDERS = """
+poi "hall"
+poi "shelf"
+poi "desk"
+connect hall and shelf distance 2
+connect hall and desk distance 2
+event "order"
+event "pick" location shelf duration 3
+event "drop" location desk duration 3
+rule "first": pick before drop
+agent "bot" controllable mobile 1 location hall can_do pick, drop
+agent "guest" location desk can_do order
+objective: if order then drop within 58
+objective: patrol desk, shelf every 28 by bot
+"""
+
+
+def test_who_is_called_while_it_waits_for_a_patrol_may_see_to_that_first() -> None:
+    won = calm(solve_scenario(parse(ORDERS, "x.pur", "x"), DEFAULT), SolveOptions())
+    assert verify(won.network, won.objective, won.strategy, won.reaction).ok
+    # From one place to the other it takes two ways, 8 with rests. Then each visit could be put off by more than 10, but
+    # for an order that comes just before it is due: picking and dropping would have to fit in between.
+    driven = driven_while_still(won.network, won.strategy, 1000)
+    assert driven is not None and driven < 350
