@@ -80,6 +80,7 @@ ELSEWHERE = {
         "A look ahead of a robot with a battery takes about as long as so many zones. Measured on a care home with a "
         "battery."
     ),
+    ("synthesis/native/moves.hpp", "MOST_KEPT"): "Answers that are kept, some hundred bytes each. Not measured.",
     ("synthesis/native/duties.hpp", "MOST_KEPT"): "Costs of facts that are kept, some 20 bytes each. Not measured.",
     ("synthesis/native/fixpoint.hpp", "most"): "So many zones of a state on plays become their hull. Measured on CT4.",
     ("synthesis/native/limits.hpp", "INTERVAL"): "Zones from one look at the limits to the next. Not measured.",

@@ -3,7 +3,8 @@
 On a patrol robots wait until a place is due, as late as is won with little work: by a simple policy (see
 `Engine.guess`), else in a game in which they set off only for what is due (see `due_moves`). Commands that are given
 while no deadline runs are left out: all of them if the strategy still wins, else those of some robots, or half of one
-robot's. Each result has to pass the checker; otherwise the strategy stays as it is.
+robot's. Then other shares are looked for in which robots drive less (see `shared_again`). Each result has to pass the
+checker; otherwise the strategy stays as it is.
 """
 
 from __future__ import annotations
@@ -21,10 +22,13 @@ from pursue_gen.solving.due_moves import only_due, patrols
 from pursue_gen.solving.group_games import without_hidden
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
+from pursue_gen.solving.shared_again import longest_period, shared_again
 from pursue_gen.solving.solution import Solution
+from pursue_gen.solving.still_play import driven_while_still
 from pursue_gen.synthesis.budget import Budget
-from pursue_gen.synthesis.strategy import Block, DiscreteState, Move, Strategy
+from pursue_gen.synthesis.strategy import Block, DiscreteState, Move, Strategy, with_automata_of
 from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.watchers import without_watchers
 
 _RESERVES = tuple(Fraction(tenths, 10) for tenths in (1, 2, 3, 4, 6, 10))
 """The parts of a period that a robot has to spare when it sets off for a visit; the first that wins counts."""
@@ -33,12 +37,17 @@ _WORK, _STATES = 20_000_000, 20_000
 """The work of all games in which robots set off for what is due, and the discrete states of each. Measured on lab
 scenarios 10, 12, 16 and 17, and on battery_watch."""
 
-_SHARE, _POLICIES = 0.3, 0.1
+_SHARE, _POLICIES = 0.3, 0.15
 """The part of what is left that one of them gets, and that all policies of a game get. Measured on lab scenario 13."""
 
 _LOOKS, _BLOCKS, _SYMBOLIC = 12, 20_000, 6_000
 """So many strategies with fewer commands are looked at for a game, which have so many blocks together, with so many
 symbolic states each. Measured on EB4."""
+
+
+_PERIODS, _LESS = 10, 0.95
+"""What robots drive is compared in so many of the longest period, and is to be no more than this part of what it was.
+Measured on lab scenarios 2, 6 and 27."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +66,33 @@ def calm(won: Solution, options: SolveOptions) -> Solution:
     goal. Within the limits; raises LimitHit at them."""
     if won.objective.reaches or won.strategy.counter or won.strategy.tours:
         return won
+    start = options.limits.now()
+    won = _quieter(won, options)
+    if won.strategy.shares:
+        with suppress(LimitHit):  # what is proven stays so
+            return _shared_again(won, options.since(start))
+    return won
+
+
+def _shared_again(won: Solution, options: SolveOptions) -> Solution:
+    """The solution in other shares, if robots drive less so while nobody else does anything; else the same."""
+    start, until = options.limits.now(), _PERIODS * longest_period(won.network, won.objective)
+    driven = driven_while_still(won.network, won.strategy, until) if until else None
+    if not driven:
+        return won
+    base, less = without_watchers(won.network, won.strategy.watchers), _LESS * driven
+    how = won.reaction, options, until, less
+    for strategy in shared_again(base, won.objective, won.strategy, *how):
+        other = replace(won, network=with_automata_of(base, strategy), strategy=strategy)
+        other = _quieter(other, options.since(start))
+        takes = driven_while_still(other.network, other.strategy, until)
+        if takes is not None and takes <= less:
+            return other
+    return won
+
+
+def _quieter(won: Solution, options: SolveOptions) -> Solution:
+    """The solution with the same shares, whose robots set off as late as is won, and only for what is due."""
     start = options.limits.now()
     budget = Budget(replace(options.limits, work=_WORK, states=_STATES), options.progress, options.engine)
     for game in _games(won):

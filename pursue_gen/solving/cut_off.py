@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 from itertools import combinations, product
 from typing import (
     AbstractSet,
-    Collection,
     Dict,
     FrozenSet,
     Iterable,
@@ -30,6 +29,7 @@ from typing import (
 
 from pursue_gen.language.numbers import Number
 from pursue_gen.solving import due_moves
+from pursue_gen.solving.components import components
 from pursue_gen.solving.contradictions import excluded_by_a_stay
 from pursue_gen.solving.distances import distances_to
 from pursue_gen.solving.due_moves import patrols
@@ -60,6 +60,7 @@ def cut_off_by_a_stay(network: Network, objective: Objective) -> Optional[LostTo
     all_duties = Duties(network, () if objective.reaches else objective.bad, robots)
     visited = () if objective.reaches else due_moves.duties(network, objective, patrols(network))
     meetings: Dict[str, Sequence[_Meeting]] = {}
+    pasts = {name: _pasts(network.automaton(name)) for name in robots}
     for comes, (standing, arrival) in product((False, True), list(standings(network)) if robots else ()):
         duties = [duty for duty in all_duties.at(standing) if duty.ends]
         for name, at in standing.items() if duties or visited else ():
@@ -68,7 +69,7 @@ def cut_off_by_a_stay(network: Network, objective: Objective) -> Optional[LostTo
                 continue
             if name not in meetings:
                 meetings[name] = tuple(_meetings(network, objective, agent, robots))
-            closed = _closed(network, agent, at, meetings[name], comes)
+            closed = _closed(network, agent, at, meetings[name], comes, pasts)
             some = _unanswered(network, duties, robots, closed) if closed else ()
             promises = {*_needed(network, some, robots, closed), *(duty.promise for duty in some)} if some else set()
             promises = promises or next(_unvisited(network, objective, visited, closed), set())
@@ -87,6 +88,9 @@ class _Meeting:
     location: str
     other: str
 
+
+_Pasts = Mapping[str, Mapping[Edge, Number]]
+"""For each location the edges on the way to it, with how long it may take from each on until a robot can leave it."""
 
 _Closed = Mapping[Place, AbstractSet[Tuple[str, Edge]]]
 """For each place to be avoided the robots, each with an edge that it cannot take because of it."""
@@ -119,7 +123,9 @@ def _values(network: Network, agent: Automaton) -> Dict[str, Mapping[str, Abstra
     return {**found}
 
 
-def _closed(network: Network, agent: Automaton, at: str, meetings: Sequence[_Meeting], comes: bool) -> _Closed:
+def _closed(
+    network: Network, agent: Automaton, at: str, meetings: Sequence[_Meeting], comes: bool, pasts: Mapping[str, _Pasts]
+) -> _Closed:
     """What robots cannot do any more while the agent stays there; `comes`: until one of them is too near."""
     found: Dict[Place, Set[Tuple[str, Edge]]] = {}
     soonest: Dict[str, Union[Number, float]] = {}
@@ -133,14 +139,17 @@ def _closed(network: Network, agent: Automaton, at: str, meetings: Sequence[_Mee
         else:
             if each.other not in soonest:
                 soonest[each.other] = _soonest(agent, at, each.other) if comes else math.inf
-            edges = [edge for edge in robot.edges if soonest[each.other] < _past(robot, edge, each.location)]
-            if edges and _keeps_out(agent, at, each, robot):
+            past = pasts[each.robot].get(each.location, {})
+            edges = [edge for edge, takes in past.items() if soonest[each.other] < takes]
+            if edges and _keeps_out(agent, at, each, robot, past):
                 edges = [edge for edge in robot.edges if each.location in (edge.source, edge.target)]
         found.setdefault(each.promise, set()).update((each.robot, edge) for edge in edges)
     return {promise: edges for promise, edges in found.items() if edges}
 
 
-def _keeps_out(agent: Automaton, at: str, each: _Meeting, robot: Automaton) -> bool:
+def _keeps_out(
+    agent: Automaton, at: str, each: _Meeting, robot: Automaton, past: Mapping[Edge, Number]
+) -> bool:
     """True if the robot is not where it must not meet the agent once that has been there, and has come from there:
     it would be back before a robot is gone that sets off for it meanwhile. (Where a robot sets off at its arrival,
     before it has rested, it stays.)"""
@@ -148,8 +157,8 @@ def _keeps_out(agent: Automaton, at: str, each: _Meeting, robot: Automaton) -> b
     back = _soonest(agent, each.other, at) + _rest(agent, at) + _soonest(agent, at, each.other)
     stays = agent.longest.get(each.other, math.inf) - _rest(agent, each.other)
     ends = {end.source for end in robot.edges if end.target == each.location and end.source in robot.stays}
-    times = [_past(robot, e, each.location) for e in robot.edges if e.target in ends and e.source != each.location]
-    return there < math.inf and all(back < past <= stays for past in times)
+    times = [past.get(e, 0) for e in robot.edges if e.target in ends and e.source != each.location]
+    return there < math.inf and all(back < time <= stays for time in times)
 
 
 def _rest(agent: Automaton, place: str) -> Number:
@@ -172,14 +181,21 @@ def _soonest(agent: Automaton, start: str, goal: str) -> Union[Number, float]:
     return min((far[edge.target] + (edge.guard.since if asks else 0) for edge in led), default=math.inf)
 
 
-def _past(robot: Automaton, edge: Edge, location: str) -> Number:
-    """How long it may take from this edge on until the robot can leave the location, where the edge begins a movement
-    or an action that ends nowhere else; 0 for any other edge."""
-    ends = [end for end in robot.edges if end.source == edge.target]
-    if edge.source == edge.target or edge.target not in robot.stays or any(end.target != location for end in ends):
-        return 0
-    arrival = min((end.guard.since if end.controllable else robot.longest[edge.target] for end in ends), default=0)
-    return arrival + min((each.guard.since for each in robot.edges if each.source == location), default=0)
+def _pasts(robot: Automaton) -> _Pasts:
+    """For each location the edges that begin a movement or an action that ends there and nowhere else, with how long it
+    may take from each on until the robot can leave the location."""
+    leaving: Dict[str, List[Edge]] = {}
+    for edge in robot.edges:
+        leaving.setdefault(edge.source, []).append(edge)
+    found: Dict[str, Dict[Edge, Number]] = {}
+    for edge in robot.edges:
+        ends = leaving.get(edge.target, []) if edge.target in robot.stays and edge.source != edge.target else []
+        if len({end.target for end in ends}) == 1:
+            location, lasts = ends[0].target, robot.longest[edge.target]
+            arrival = min(end.guard.since if end.controllable else lasts for end in ends)
+            rest = min((each.guard.since for each in leaving.get(location, ())), default=0)
+            found.setdefault(location, {})[edge] = arrival + rest
+    return found
 
 
 def _unanswered(network: Network, duties: Sequence[Duty], robots: Sequence[str], closed: _Closed) -> Sequence[Duty]:
@@ -233,7 +249,8 @@ def _rounds(network: Network, robot: Automaton, gone: AbstractSet[Tuple[str, Edg
     """What a robot may do again and again among some places; where it is of use anywhere, only where it is."""
     edges = [edge for edge in robot.edges if (robot.name, edge) not in gone]
     heard = {channel for each in network.automata if not is_agent(each) for channel in each.channels}
-    parts = [[e for e in edges if {e.source, e.target} <= part] for part in _parts(edges)]
+    places = components((edge.source, edge.target) for edge in edges)
+    parts = [[e for e in edges if e.source in part and e.target in part] for part in places]
     useful = [part for part in parts if any(edge.channel in heard for edge in part)]
     yield from useful or [[]]
 
@@ -295,24 +312,6 @@ def _states(network: Network, rule: Automaton) -> Dict[str, Set[int]]:
 def _in_rounds(edges: Iterable[Edge], channels: AbstractSet[str]) -> List[Edge]:
     """Those of the edges on these channels after which what comes before them can come again."""
     some = [edge for edge in edges if (edge.channel or "") in channels]
-    return [edge for edge in some if any({edge.source, edge.target} <= part for part in _parts(some))]
-
-
-def _parts(edges: Collection[Edge]) -> List[Set[str]]:
-    """Locations in sets between which the edges lead to and fro (strongly connected components)."""
-    led: Dict[str, Set[str]] = {}
-    for edge in edges:
-        led.setdefault(edge.source, set()).add(edge.target)
-    reached = {place: _reached(led, place) for place in led}
-    parts = {frozenset(b for b in reached[a] if a in reached.get(b, ())) for a in led}
-    return sorted((set(part) for part in parts if part), key=sorted)
-
-
-def _reached(led: Mapping[str, Set[str]], start: str) -> Set[str]:
-    met: Set[str] = set()
-    waiting = [start]
-    while waiting:
-        new = led.get(waiting.pop(), set()) - met
-        met |= new
-        waiting += new
-    return met
+    places = components((edge.source, edge.target) for edge in some)
+    part = {place: number for number, part in enumerate(places) for place in part}
+    return [edge for edge in some if edge.source in part and part[edge.source] == part.get(edge.target)]

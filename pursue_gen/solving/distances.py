@@ -40,15 +40,15 @@ def backwards(ways: Mapping[str, Mapping[str, Far]]) -> Dict[str, List[Tuple[str
     return back
 
 
-def times_to(places: Iterable[str], automaton: Automaton) -> Dict[str, Number]:
-    """How long an agent takes at most to the nearest of these places, its rests included, from where it can come there.
+def times_to(places: Iterable[str], automaton: Automaton, rests: bool = True) -> Dict[str, Number]:
+    """How long an agent takes at most to the nearest of these places, with its `rests`, from where it can come there.
 
     It rests as long as a guard says, and is under way as long as it may, or until it can break off what it does; a way
     without an end leads nowhere.
     """
     back: Dict[str, List[Tuple[str, Number]]] = {}
     for edge in automaton.edges:
-        takes = automaton.longest.get(edge.source, None if edge.leaves is Role.WAY else edge.guard.since)
+        takes = automaton.longest.get(edge.source, None if edge.leaves is Role.WAY else edge.guard.since * rests)
         takes = edge.guard.since if edge.breaks_off else takes
         if takes is not None:
             back.setdefault(edge.target, []).append((edge.source, takes))

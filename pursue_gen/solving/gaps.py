@@ -56,12 +56,20 @@ def gaps(walker: Walker, patrol: Patrol, mine: Round) -> Dict[int, Gap]:
     tour = tour_of(walker, patrol, mine)
     if tour is None:
         return {}
-    comes: Dict[str, List[Fraction]] = {tour.stops[0]: [Fraction(0)]}
-    moment = Fraction(0)
-    for stop, takes in onward(walker, tour, 0, patrol.late):
-        moment += takes
+    comes: Dict[str, List[Fraction]] = {}
+    for stop, moment in course(walker, patrol, tour):
         comes.setdefault(tour.stops[stop], []).append(moment)
     return {k: _gap(comes[patrol.visits[k].place], walker.stay) for k in dict.fromkeys(mine)}
+
+
+def course(walker: Walker, patrol: Patrol, tour: Tour) -> List[Tuple[int, Fraction]]:
+    """The stops of a tour from the start on until all has come twice, with the latest moments of a robot that stays
+    nowhere."""
+    found, moment = [(0, Fraction(0))], Fraction(0)
+    for stop, takes in onward(walker, tour, 0, patrol.late):
+        moment += takes
+        found.append((stop, moment))
+    return found
 
 
 def _gap(comes: Sequence[Fraction], stay: Fraction) -> Gap:

@@ -42,6 +42,10 @@ _SHARE, _SHARED = 0.3, 0.1
 """The part of what is left of the budget that one game may take, and that its strategy in shares may. Measured on a
 hotel with two lifts."""
 
+_BESIDE_TOURS = 0.02
+"""The part of what is left that one exact game may take where tours keep a period, and more is promised: most that are
+won then are so by tours, or in shares. Measured on imported buildings: a hotel and a clinic."""
+
 _NEAR = 0.1
 """The part of a period by which it may be too long where shorter ones are not decided. Measured on a hotel with two
 lifts."""
@@ -108,9 +112,10 @@ def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAU
     floor, probe = low, min(high, _farthest(scenario))
     if tours is not None and not alone:  # a robot that has something else to do keeps a longer one
         probe, high = high, longest(scenario)
+    share = _SHARE if tours is None or alone else _BESIDE_TOURS
     near = 0.0  # where a shorter period is not decided, those that are little longer are hardly
     while floor <= high and not (known and high - floor <= near * high) and not budget.used_up:
-        won = _won(base, probe, rules, budget)
+        won = _won(base, probe, rules, budget, share)
         near = _NEAR if won is None else near
         if won:
             high, known = probe, True
@@ -153,10 +158,10 @@ def _farthest(scenario: Scenario) -> int:
     return max((ceil(w[1]) for agent in scenario.agents for w in scenario.movements(agent).values()), default=2)
 
 
-def _won(scenario: Scenario, every: int, rules: Rules, budget: Budget) -> Optional[bool]:
-    """Whether that period can be promised; None: not decided within the budget."""
+def _won(scenario: Scenario, every: int, rules: Rules, budget: Budget, share: float) -> Optional[bool]:
+    """Whether that period can be promised; None: not decided within the budget, of which the exact game has a part."""
     tried = with_period(scenario, every)
     with suppress(LimitHit), enforced(budget.for_proofs):
         network = played(translate(tried), rules)
-        return strategy_of(budget, network, scenario_objective(tried), rules.reaction, _SHARE, _SHARED) is not None
+        return strategy_of(budget, network, scenario_objective(tried), rules.reaction, share, _SHARED) is not None
     return None

@@ -95,7 +95,7 @@ def won_in_shares(
         work = min(effort.work, left)
         if work < 1 or not (effort.free or pauses(network)):
             continue
-        search = _SharesSearch(network, objective, reaction, options.since(start), replace(effort, work=work), known)
+        search = SharesSearch(network, objective, reaction, options.since(start), replace(effort, work=work), known)
         with suppress(LimitHit):
             strategy = search.found()
             if strategy is not None:
@@ -104,8 +104,8 @@ def won_in_shares(
     return None
 
 
-class _SharesSearch:
-    """`known`: what is known from less effort."""
+class SharesSearch:
+    """A search for groups of robots that keep the promises. `known`: what is known from less effort."""
 
     def __init__(
         self,
@@ -114,7 +114,7 @@ class _SharesSearch:
         reaction: Fraction,
         options: SolveOptions,
         effort: Effort,
-        known: Known,
+        known: Optional[Known] = None,
     ) -> None:
         self._network, self._objective, self._reaction = network, objective, reaction
         self._options, self._effort = options, effort
@@ -124,7 +124,7 @@ class _SharesSearch:
         visited = patrols(network)
         self._visits = frozenset(place for place in objective.bad if place[0] in visited)
         self._games = GroupGames(network, objective)
-        self._known = known
+        self._known = Known() if known is None else known
         self._tried: Set[_Game] = set()
         self._watched: Dict[Group, Tuple[Watcher, ...]] = {}
         self._alone: Dict[Group, bool] = {}
@@ -132,10 +132,7 @@ class _SharesSearch:
 
     def found(self) -> Optional[Strategy]:
         """The first strategy that is found; raises LimitHit where the budget is used up."""
-        able = self._known.able
-        for place in self._objective.bad:
-            if place not in able:
-                able[place] = self._able(place)
+        able = {place: self.able(place) for place in self._objective.bad}
         if self._effort.few:
             return self._by_few(able)
         order = sorted(self._objective.bad, key=lambda place: len(able[place]))
@@ -159,11 +156,20 @@ class _SharesSearch:
         strategy = self._guess(game, wanted, 1.0, free=bool(pauses(game)))
         return None if strategy is None else self._proven({group: without_hidden(strategy)})
 
-    def _able(self, place: Place) -> Tuple[str, ...]:
+    def won_by(self, groups: Sequence[Group]) -> Optional[Strategy]:
+        """A proven strategy of just these groups, or of some of them together; None where none is found. Raises
+        LimitHit where the budget is used up."""
+        if self._are_known_to_clash(groups) or not all(map(self._is_won, groups)):
+            return None
+        return self._together(groups)
+
+    def able(self, place: Place) -> Tuple[str, ...]:
         """The robots that can do something about what is to be avoided there."""
-        game = self._games.game(Group(frozenset(self._robots), (place,)), frozenset())
-        names = {automaton.name for automaton in game.automata}
-        return tuple(name for name in self._robots if name in names)
+        if place not in self._known.able:
+            game = self._games.game(Group(frozenset(self._robots), (place,)), frozenset())
+            names = {automaton.name for automaton in game.automata}
+            self._known.able[place] = tuple(name for name in self._robots if name in names)
+        return self._known.able[place]
 
     def _ways(
         self, promises: Sequence[Place], able: Mapping[Place, Tuple[str, ...]], groups: Tuple[Group, ...], turns: int

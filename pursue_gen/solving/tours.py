@@ -4,8 +4,7 @@ Who visits what comes from `rounds`. A robot's round is a tour of the strategy (
 nobody but the robot and its tour: what the robot does next depends on nothing else, and the checker looks at each place
 alone (see `proof.apart`). So neither robots nor places multiply.
 
-A robot waits as long as its places allow before it sets off, and where it has been at all of them: so it goes round
-once in each period. A tenth of the period is left in reserve.
+A robot waits as long as its places allow (see `waits`). A tenth of the period is left in reserve.
 """
 
 from __future__ import annotations
@@ -19,10 +18,11 @@ from typing import AbstractSet, Dict, List, Mapping, NamedTuple, Optional, Seque
 from pursue_gen.language.network_names import LOSE
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.solving.found import Found
-from pursue_gen.solving.gaps import gaps, part_of_period, repeated, tour_of
+from pursue_gen.solving.gaps import part_of_period, repeated, tour_of
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rounds import Round, least_wait, rounds
+from pursue_gen.solving.waits import stays_of
 from pursue_gen.solving.walkers import Patrol, Walker, patrol_of
 from pursue_gen.synthesis.solve import Stats
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Place, Strategy
@@ -122,25 +122,9 @@ def _strategy(
         kept = (tour.name, *(watcher.name for watcher in own), *(patrol.duties[k].name for k in dict.fromkeys(mine)))
         shares.append(tuple((name, LOSE) for name in kept))
         watchers += own
-        stays = _stays(walker, patrol, tour, mine)
+        stays = stays_of(walker, patrol, tour, mine, 1 - RESERVE)
         blocks += blocks_of(with_tours(network, [tour]), walker, tour, patrol.unit, stays)
     return Strategy(tuple(blocks), shares=tuple(shares), watchers=tuple(watchers), tours=tuple(filter(None, tours)))
-
-
-def _pauses(walker: Walker, patrol: Patrol, mine: Round) -> Tuple[Fraction, Fraction]:
-    """How much longer than they have to robots stay at first, and where they have been everywhere, in whole units."""
-    waits = gaps(walker, patrol, mine).items()
-    room = [[Fraction(patrol.duties[k].deadline) * (1 - RESERVE) - gap[n] for k, gap in waits] for n in (0, 1)]
-    first, later = (min(some) // patrol.unit * patrol.unit for some in room)
-    return max(Fraction(0), first), max(Fraction(0), later)
-
-
-def _stays(walker: Walker, patrol: Patrol, tour: Tour, mine: Round) -> Mapping[int, Fraction]:
-    """How much longer than it has to a robot stays at stops of its tour: where it starts, and where it has been
-    everywhere."""
-    first, later = _pauses(walker, patrol, mine)
-    last = len(walker.stops([tour.stops[0], *(patrol.visits[k].place for k in mine)]))
-    return {0: first, last: later}  # where both are one stop it has been everywhere
 
 
 class Opening(NamedTuple):

@@ -46,6 +46,13 @@ def with_watchers(network: Network, watchers: Iterable[Watcher]) -> Network:
     return network
 
 
+def without_watchers(network: Network, watchers: Iterable[Watcher]) -> Network:
+    """The network without the automata of these watchers, and their clocks."""
+    names = {watcher.name: watcher.clock for watcher in watchers}
+    clocks = tuple(clock for clock in network.clocks if clock not in names.values())
+    return replace(network, automata=tuple(a for a in network.automata if a.name not in names), clocks=clocks)
+
+
 def watched_by(network: Network, watcher: Watcher) -> Optional[Automaton]:
     """The automaton of a watcher. None where its names are taken, where the objective has no deadline or sets a
     variable, where it would watch the same, or in the middle of a play."""

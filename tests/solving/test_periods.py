@@ -13,6 +13,8 @@ from pursue_gen.language import parse
 from pursue_gen.language.checks import check
 from pursue_gen.language.scenario import Patrol, Scenario
 from pursue_gen.language.sentences import objective_words, periods_found
+from pursue_gen.outcomes import LimitHit
+from pursue_gen.solving import periods
 from pursue_gen.solving.inputs import settled
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.periods import least_period, longest, with_period, without_period
@@ -235,6 +237,19 @@ def test_beside_another_promise_the_period_is_about_what_tours_keep() -> None:
     assert period(least_period(parse(LIFT, "lift.pur", "lift"), DEFAULT)) <= 150
     alone = parse(LIFT.replace("objective: always at_most 1 robots at cabin1, cabin2\n", ""), "lift.pur", "lift")
     assert period(least_period(alone, DEFAULT)) <= period(least_period(parse(LIFT, "lift.pur", "lift"), DEFAULT))
+
+
+def test_where_tours_keep_a_period_exact_games_get_little_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: List[float] = []
+
+    def undecided(*given: Any) -> None:
+        asked.append(given[4])
+        raise LimitHit([])
+
+    monkeypatch.setattr(periods, "strategy_of", undecided)
+    least_period(parse(LIFT, "lift.pur", "lift"), DEFAULT)
+    least_period(rooms("patrol gate, hall, vault in order by bot1"), DEFAULT)  # no tours
+    assert asked[0] < 0.05 < asked[-1]
 
 
 def test_a_patrol_that_ends_with_the_goal_may_be_shorter_than_any_tour() -> None:

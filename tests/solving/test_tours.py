@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from fractions import Fraction
+from typing import List
 
 import pytest
 from hypothesis import HealthCheck, assume, event, given, settings
@@ -17,11 +18,12 @@ from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import DEFAULT, Rules
 from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.solvers import solved
+from pursue_gen.solving.still_play import driven_while_still
 from pursue_gen.solving.tours import least_period_of_patrols, period_of_tours, won_by_tours
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.plan import read_plan, write_plan
 from pursue_gen.synthesis.solve import solve
-from pursue_gen.synthesis.strategy import with_automata_of
+from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tools.simulation.make import make_case
 from pursue_gen.tools.simulation.mission import simulate_mission
@@ -106,11 +108,25 @@ def test_people_who_walk_about_and_patrols_of_one_robot_change_nothing() -> None
 
 
 def test_between_two_rounds_a_robot_stays_as_long_as_the_period_allows() -> None:
-    short, long = (tours_of(corridor(6, 1, f" every {every}"))[2] for every in (130, 500))
+    short, long = (tours_of(corridor(8, 1, f" every {every}"))[2] for every in (170, 500))
     assert short.tours == long.tours
-    bounds = ([b.bound for block in each.blocks for zone in block.wait for b in zone] for each in (short, long))
-    waits = [max(some) for some in bounds]
+    waits = [max(waits_of(each)) for each in (short, long)]
     assert waits[0] < 50 < 300 < waits[1]
+
+
+def test_of_few_places_a_robot_waits_at_each() -> None:
+    network, objective, some = tours_of(corridor(3, 1, " every 200"))
+    assert verify(network, objective, some, LATE).ok
+    # While it waits at one of three, two others wait for it: each for half of what is left beside the ways.
+    assert len([time for time in waits_of(some) if time > 40]) == 3
+    # Its ways, ten of 24 in all, and at most one longer each: less often than once in each period.
+    driven = driven_while_still(with_automata_of(network, some), some, 2000)
+    assert driven is not None and driven < 0.85 * (2000 / 200) * (24 + 10)
+
+
+def waits_of(some: Strategy) -> List[Fraction]:
+    """How long a robot waits until a command is due."""
+    return [bound.bound for block in some.blocks for zone in block.wait for bound in zone]
 
 
 def test_the_period_of_tours_is_kept_and_one_below_it_by_other_tours_alone() -> None:

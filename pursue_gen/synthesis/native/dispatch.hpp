@@ -51,7 +51,7 @@ class Dispatch : private Steps {
             if (duty >= 0 && (again || !duties_.is_open(d, duty % count_))) duty = -1;
             if (guess_.charging == Charging::until_called && charges(d, duty) && is_asked(d, r, memory)) duty = -1;
             if (tasks_.guarded(r, d) >= 0) duty = -1;
-            if (is_waiting(duty) && is_called(d, r, memory)) duty = -1;
+            if (is_waiting(duty) && is_called(d, r, memory)) duty = guess_.visits_first ? duty - count_ : -1;
         }
         for (;;) {
             std::tuple<std::int64_t, std::size_t, int> best{Duties::NEVER, 0, -1};

@@ -18,7 +18,9 @@ class Duties {
     static constexpr std::int64_t NEVER = std::numeric_limits<std::int64_t>::max();
     static constexpr std::int64_t DETOUR = std::int64_t{1} << 40;  // longer than any way
 
-    explicit Duties(const Game& game) : game_(game), looked_from_(game.automata.size() + game.variables.size() + 2) {
+    explicit Duties(const Game& game)
+        : game_(game), looked_from_(game.automata.size() + game.variables.size() + 2),
+          losses_(game.automata.size() + game.variables.size()) {
         const int count = static_cast<int>(game.automata.size());
         for (int a = 0; a < count; ++a) {
             const auto& edges = game.automata[a].edges;
@@ -117,6 +119,9 @@ class Duties {
     }
 
     const Chargers& chargers() const { return chargers_; }
+
+    // Whether from a state the ends of what is under way lead to what is to be avoided, as far as that was asked.
+    Answers& losses() { return losses_; }
 
     // The fact that the robot of a battery by time is at its charger.
     int at_charger(int a) const { return at_location(chargers_.robot(a), chargers_.place(a)); }
@@ -367,6 +372,7 @@ class Duties {
     States looked_from_;                          // a state, the robot and `closed`
     std::deque<Look> looks_;                      // likewise
     const Look* now_ = nullptr;
+    Answers losses_;
 };
 
 }  // namespace pursue

@@ -27,11 +27,13 @@ inline std::vector<Guess> late_guesses(const std::vector<int>& patrols) {
         for (Guess guess : GUESSES) {
             guess.patrols = patrols;
             guess.reserve = reserve;
-            if (guess.next == Next::in_turn && guess.shared_out && guess.zones == 1)
-                for (const bool sets_off : {false, true}) {
-                    guess.sets_off = sets_off;
-                    out.push_back(guess);
-                }
+            if (guess.next != Next::in_turn || !guess.shared_out || guess.zones > 1) continue;
+            for (const bool sets_off : {false, true}) {
+                guess.sets_off = sets_off;
+                out.push_back(guess);
+            }
+            guess.visits_first = true;
+            if (guess.idle == Idle::stays && guess.alternates == Alternates::nothing) out.push_back(guess);
         }
     return out;
 }
@@ -55,6 +57,7 @@ std::unique_ptr<Forward<Z>> winning_guess(const Game& game, LimitMonitor& monito
                 if (!each.shared_out && forward->robots() < 2) continue;  // the same as one that was tried
                 if (each.relieved && !forward->has_guards()) continue;    // likewise
                 if (each.alternates == Alternates::long_limits && !forward->alternates()) continue;
+                if (each.visits_first && each.patrols.size() == duties.watching().size()) continue;  // nobody calls
                 if (forward->wins()) return forward;
             }
     return nullptr;

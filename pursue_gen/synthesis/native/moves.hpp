@@ -55,6 +55,33 @@ class States {
     std::vector<int> slots_;
 };
 
+// Answers to a question about discrete states, each found out once as long as they are not too many.
+class Answers {
+  public:
+    explicit Answers(std::size_t width) : states_(width) {}
+
+    // The answer for a state; `found()` where it is not known.
+    template <class Found>
+    bool of(const Discrete& d, Found found) {
+        if (answers_.size() >= MOST_KEPT) {
+            answers_.clear();
+            states_ = States(states_.width());
+        }
+        const auto number = static_cast<std::size_t>(states_.number(d));
+        if (number == answers_.size()) {
+            answers_.push_back(false);
+            answers_[number] = found();
+        }
+        return answers_[number];
+    }
+
+  private:
+    static constexpr std::size_t MOST_KEPT = 1 << 17;  // states, some hundred bytes each
+
+    States states_;
+    std::vector<bool> answers_;
+};
+
 // What a joint move does wherever it is enabled: a sender (or an own step), and of every other automaton with enabled
 // receiving edges one of them. Guards read the state before; assignments run sender first, then receivers in system order.
 struct Joint {

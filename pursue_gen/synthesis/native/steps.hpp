@@ -147,13 +147,17 @@ class Steps {
         return d;
     }
 
-    // Whether the ends of what is under way, in some order, come to what is to be avoided.
+    // Whether the ends of what is under way, in some order, come to what is to be avoided. All policies ask so of the same
+    // states, with other duties at hand.
     bool leads_to_loss(const Discrete& from) {
-        std::set<Discrete> met{from};
-        std::vector<Discrete> open{from};
-        std::vector<int> enabled;
+        return duties_.losses().of(from, [&] { return ends_in_loss(from); });
+    }
+
+    bool ends_in_loss(const Discrete& from) {
+        States met(from.size());
+        std::vector<int> open{met.number(from)}, enabled;
         while (!open.empty() && met.size() < 256) {
-            const Discrete d = open.back();
+            const Discrete d = met[open.back()];
             open.pop_back();
             attend(BOUNDS_OF_A_STATE);
             if (at_bad(game_, d)) return true;
@@ -162,8 +166,9 @@ class Steps {
                 const Joint& joint = joints_[j];
                 if (joint.controllable) continue;
                 if (!watches(game_, joint.owner) && game_.automata[joint.owner].invariants[d[joint.owner]].empty()) continue;
-                Discrete next = joint.target(d);
-                if (met.insert(next).second) open.push_back(std::move(next));
+                const std::size_t known = met.size();
+                const int next = met.number(joint.target(d));
+                if (met.size() > known) open.push_back(next);
             }
         }
         return false;

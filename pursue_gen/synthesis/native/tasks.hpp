@@ -33,6 +33,7 @@ struct Guess {
     Alternates alternates = Alternates::nothing;  // after each of these something else, if it is asked for
     int charge = 0;          // a robot that charges goes on until its battery has so many hundredths
     Charging charging = Charging::in_turn;
+    bool visits_first = false;  // who is called while it waits for a patrol sees to that first, though it is not due
 };
 
 inline constexpr std::size_t BOUNDS_OF_A_STATE = 1024;  // a look at one takes about as long as at so many bounds
