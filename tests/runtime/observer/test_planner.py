@@ -73,6 +73,7 @@ def test_it_is_asked_from_where_the_mission_is_and_its_plan_is_read(tmp_path: Pa
 def test_without_a_plan_it_says_why(program: str, why: str, thrown: List[Any]) -> None:
     name, number, said = Office(program).ask()
     assert (name, number) == ("unplanned", 1) and why in said
+    assert not thrown
 
 
 def test_an_order_is_asked_with_a_limit_and_what_could_be_promised_is_told(tmp_path: Path) -> None:
@@ -84,7 +85,6 @@ def test_an_order_is_asked_with_a_limit_and_what_could_be_promised_is_told(tmp_p
     assert office.answers.get(timeout=2 * PATIENCE) == ("refused", 3, "too soon", 12.5)
     asked = json.loads(copy.read_text())
     assert (asked["limit"], asked["window"], asked["sooner"]) == (ORDER_LIMIT, 2.0, {"Cobj": 20.0})
-    assert not thrown
 
 
 def test_one_that_takes_longer_than_the_limit_goes_on_and_says_so_each_time_later(tmp_path: Path) -> None:
