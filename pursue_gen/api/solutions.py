@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, Optional, Tuple
 
 from pursue_gen.api.requests import File, default_request
 from pursue_gen.api.scenarios import Game, game, settle
@@ -112,13 +112,27 @@ class Solved(SolvedGame):
 
         return unneeded(self.scenario, self.solution.strategy)
 
+    @cached_property
+    def orders(self) -> Mapping[str, str]:
+        """What people may order during a mission, with why it would be refused at its start, "" where it would not."""
+        from pursue_gen.tools.replanning.menu import at_start
+
+        return dict(at_start(self.scenario, self.solution)) if self.scenario.orders else {}
+
+    def _orders_in_words(self) -> List[str]:
+        taken = [self.scenario.shown(name) for name, why in self.orders.items() if not why]
+        lines = [f"Orders that would be accepted at the start, each alone: {', '.join(taken)}."] if taken else []
+        refused = ((self.scenario.shown(name), why) for name, why in self.orders.items() if why)
+        return lines + [f"{name} would be refused: {why}." for name, why in refused]
+
     def in_words(self) -> List[str]:
-        """The verdict, answers, promises, what is assumed of others and who is not needed, in lines for people."""
+        """The verdict, answers, promises, orders, what is assumed and who is not needed, in lines for people."""
         from pursue_gen.language.sentences import condition_of_promise
         from pursue_gen.partition import unneeded_words
 
         assumed = condition_of_promise(self.scenario) if self.request.plan is None else ""
         lines = [*super().in_words(), *(answer.in_words() for answer in self.answers), *promises_of(self.scenario)]
+        lines += self._orders_in_words() if self.request.plan is None else []
         lines += [f"This holds {assumed}."] if assumed else []
         return [line for line in (*lines, unneeded_words(self.unneeded)) if line]
 
@@ -129,7 +143,8 @@ class Solved(SolvedGame):
         late = {"answers": [answer.as_json() for answer in self.answers]}
         alone = {"not_needed": [agent.name for agent in self.unneeded]}
         more = {**periods_json(self.scenario), **optional_json(self.scenario)}
-        return {**super().as_json(margins), **late, **alone, **more}
+        ordered = {"orders": self.orders} if self.orders else {}
+        return {**super().as_json(margins), **late, **alone, **more, **ordered}
 
 
 def promises_of(scenario: Scenario, won: bool = True) -> List[str]:

@@ -69,8 +69,12 @@ def replan(data: Mapping[str, Any], states: int = 0) -> Dict[str, Any]:
     Every plan in an answer has been proven by the checker. Raises PursueError (exit status 2) for a request that cannot
     be used.
     """
-    start = time.monotonic()
-    request = read_request(data)
+    return answer_to(read_request(data), states, time.monotonic())
+
+
+def answer_to(request: Request, states: int = 0, begun: Optional[float] = None) -> Dict[str, Any]:
+    """The same for a request that was read; `begun`: when that began, on the monotonic clock, now by default."""
+    start = time.monotonic() if begun is None else begun
     limits = Limits(states=states) if states else Limits(request.seconds, careful_memory(), wall=True).since(start)
     limits = replace(limits, work=_FOR_AN_ORDER if request.window else 0)
     answer = _answer(request, limits, states)
