@@ -13,7 +13,7 @@ export async function play() {
   byId("game").hidden = false;
   byId("game-lines").textContent = "";
   byId("choices").replaceChildren();
-  byId("game").scrollIntoView({ block: "nearest" });
+  byId("parts").scrollTop = 0;
   take(answer);
 }
 
