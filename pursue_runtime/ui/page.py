@@ -105,7 +105,7 @@ class Page:
         self._reporters = reporters
         self._acting = model.of_kind(*ACTING)
         self._last: Optional[SystemState] = None
-        self._lanes = Lanes(model)
+        self._lanes = Lanes(model, promise)
         self._number = 0
         self.log: List[Dict[str, Any]] = []
 
