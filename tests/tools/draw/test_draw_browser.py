@@ -456,6 +456,20 @@ def test_an_empty_page_says_what_to_do_and_goes_on_with_what_is_missing(there: B
         assert there.complaints == []
 
 
+def test_a_game_is_played_on_the_plan(there: Browser, tmp_path: Path) -> None:
+    file = tmp_path / "chased.pur"
+    guest = 'agent "guest" mobile 1 location b\nreach_objective'
+    file.write_text(SMALL.replace("reach_objective", guest), encoding="utf-8")
+    with drawn(there, file, None, 1400, 900):
+        there.click("#play")
+        there.wait("document.querySelector('.place.begun') !== null")
+        assert "you can go there" in there.value("document.querySelector('.place.begun').getAttribute('aria-label')")
+        there.press(*at(there, "a"))
+        there.wait("/> [12]/.test(document.getElementById('game-lines').textContent)")
+        there.wait("document.getElementById('game-lines').textContent.includes('guest sets off from b to')")
+        assert is_seen(there, "#plan", "#game-lines") == [True, True] and there.complaints == []
+
+
 def test_a_second_way_of_another_length_is_drawn_for_some_agents(there: Browser, tmp_path: Path) -> None:
     file = tmp_path / "small.pur"
     agents = 'agent "bot" controllable mobile 1 location a can_do work\nagent "agv" controllable mobile 2 location a\n'

@@ -191,11 +191,14 @@ function travellers(ways, lines) {
 
 // Places -----------------------------------------------------------------------------------------------------------
 
+// In a game: can somebody set off to it whom the person plays?
+const isOpen = (place) => state.playing !== null && state.leads.includes(place.name);
+
 function drawnPlace(place, at) {
   const turn = (-place.yaw * Math.PI) / 180;
   const look = { class: "heading", x1: at.x, y1: at.y, x2: at.x + 16 * Math.cos(turn), y2: at.y + 16 * Math.sin(turn) };
-  const kinds = ["place", isSelected("place", place.name) && "selected", pending.from === place.name && "begun"];
-  const words = `place ${shown(place)} at ${place.x.toFixed(2)}, ${place.y.toFixed(2)}`;
+  const kinds = ["place", isSelected("place", place.name) && "selected", pending.from === place.name && "begun", isOpen(place) && "begun"];
+  const words = `place ${shown(place)} at ${place.x.toFixed(2)}, ${place.y.toFixed(2)}${isOpen(place) ? ", you can go there" : ""}`;
   return svg(
     "g",
     { class: kinds.filter(Boolean).join(" "), "data-key": place.name, tabindex: 0, role: "button", "aria-label": words },

@@ -1,6 +1,7 @@
 // Mouse, fingers and keys on the picture.
 import { pan, size, toMap, zoom } from "./camera.js";
 import { byId, typeName } from "./elements.js";
+import { goTo } from "./game.js";
 import { draw, fitAll, movable, pending } from "./plan.js";
 import { all, change, isFixed, look, say, select, selected, state } from "./state.js";
 
@@ -42,6 +43,7 @@ const named = (byFinger) => (byFinger ? null : typeName);
 function use(found, point, byFinger) {
   const hit = placeOf(found);
   const name = hit && hit.kind === "place" ? hit.key : null;
+  if (tool() === "select" && name && state.playing && goTo(name)) return;
   if (tool() === "place" && !name) {
     change({ do: "add place", x: rounded(point.x), y: rounded(point.y) }, named(byFinger));
   } else if (tool() === "agent") {
