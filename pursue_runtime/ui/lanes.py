@@ -1,4 +1,5 @@
-"""The timeline of a mission, from its states: a lane for each agent, with what it did from when to when.
+"""The timeline of a mission, from its states: a lane for each agent, with what it did from when to when, and for each
+objective, with when something was due.
 
 Moments are time units since the start of the mission.
 """
@@ -11,16 +12,17 @@ from pursue_runtime.locations import is_action, is_movement
 from pursue_runtime.model import Automaton, Model
 from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import ENDED, LIVE, SystemState
+from pursue_runtime.ui.promise import BROKEN, NOTHING, Promise, objectives_now
 from pursue_runtime.vocabulary import where
 
 MOST = 300
 """Segments of a lane; of a longer mission the last ones are kept."""
 
-STANDS, MOVES, ACTS = "stands", "moves", "acts"
+STANDS, MOVES, ACTS, DUE = "stands", "moves", "acts", "due"
 
 
 class Segment(NamedTuple):
-    """What an agent did from one moment on, until the next segment of its lane begins."""
+    """What an agent did, or what an objective was at, from one moment on, until the next segment of its lane begins."""
 
     begins: float
     kind: str
@@ -30,11 +32,13 @@ class Segment(NamedTuple):
 class Lanes:
     """The lanes, as far as states have come: of a mission that was under way already, from the first state on."""
 
-    def __init__(self, model: Model) -> None:
-        self._model = model
+    def __init__(self, model: Model, promise: Promise = NOTHING) -> None:
+        """`promise`: what is to be achieved."""
+        self._model, self._promise = model, promise
         self._agents = model.of_kind(*ACTING)
         self._last: Dict[str, str] = {}
         self._lanes: Dict[str, List[Segment]] = {agent.name: [] for agent in self._agents}
+        self._promised: List[List[Segment]] = [[] for _ in promise.objectives]
         self._ends: Optional[float] = None
 
     def on_state(self, state: SystemState, at: float) -> None:
@@ -47,6 +51,10 @@ class Lanes:
                 self._last[agent.name] = location
                 lane = [*self._lanes[agent.name], self._segment(agent, location, at)]
                 self._lanes[agent.name] = lane[-MOST:]
+        for number, objective in enumerate(objectives_now(self._promise, (), self._model, state, at)):
+            segment, before = self._promised_segment(objective, at), self._promised[number]
+            if not before or before[-1][1:] != segment[1:]:
+                self._promised[number] = [*before, segment][-MOST:]
         if state.status in ENDED:
             self._ends = at
 
@@ -56,8 +64,17 @@ class Lanes:
         if self._ends is None or not begins:
             return None
         lanes = [{"agent": name, "segments": [list(each) for each in lane]} for name, lane in self._lanes.items()]
+        for objective, lane in zip(self._promise.objectives, self._promised):
+            if objective.of:
+                lanes.append({"promise": objective.name or objective.says, "segments": [list(each) for each in lane]})
         return {"begins": min(begins), "ends": self._ends, "lanes": lanes}
 
     def _segment(self, agent: Automaton, location: str, at: float) -> Segment:
         kind = MOVES if is_movement(location) else ACTS if is_action(location) else STANDS
         return Segment(round(at, 3), kind, where(self._model, agent, location))
+
+    @staticmethod
+    def _promised_segment(objective: Dict[str, Any], at: float) -> Segment:
+        if objective["due"] is not None:
+            return Segment(round(at, 3), DUE, f"due by {objective['due']:.1f}")
+        return Segment(round(at, 3), BROKEN if objective["is"] == BROKEN else STANDS, objective["is"])

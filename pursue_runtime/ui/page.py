@@ -106,7 +106,7 @@ class Page:
         self._reporters = reporters
         self._acting = model.of_kind(*ACTING)
         self._last: Optional[SystemState] = None
-        self._lanes = Lanes(model)
+        self._lanes = Lanes(model, promise)
         self._answers: List[Dict[str, Any]] = []
         self._number = 0
         self.log: List[Dict[str, Any]] = []

@@ -35,3 +35,9 @@ def not_there(document: Draft, kind: str, name: str) -> PursueError:
         return refused(f"there is no {'place' if kind == 'POI' else kind} {name}", "choose it again")
     message = f"{name} is one of a group ({span.member}): its statement in line {span.line} is for each of them"
     return refused(message, "change that statement, or write it out, one for each member")
+
+
+def check_place(document: Draft, name: str) -> None:
+    """Raises PursueError where there is no place of this name."""
+    if name not in names(document, "POI"):
+        raise not_there(document, "POI", name)

@@ -15,22 +15,21 @@ from pursue_gen.language.formatter import format_text, formatted
 from pursue_gen.language.kinds import DECLARED, RESERVED, STATEMENTS
 from pursue_gen.language.names import KINDS
 from pursue_gen.language.navigation import rename
-from pursue_gen.language.numbers import read_number
 from pursue_gen.language.occurrences import GROUP
 from pursue_gen.language.poses import read_poses
 from pursue_gen.language.rewriting import parts_in, parts_of
 from pursue_gen.language.statements.agent import SIZE
 from pursue_gen.language.syntax import Statement
-from pursue_gen.language.times import written_time
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.usable import reserved
 from pursue_gen.language.word import HOLE, Form
 from pursue_gen.tools.draw import fields
 from pursue_gen.tools.draw.fields import Values, refused
-from pursue_gen.tools.draw.made import names, not_there, number_at
-from pursue_gen.tools.draw.places import lengths_per_metre, positions, with_all_positions
-from pursue_gen.tools.draw.poses import metres, with_position, with_spot
+from pursue_gen.tools.draw.made import check_place, names, not_there
+from pursue_gen.tools.draw.places import with_all_positions
+from pursue_gen.tools.draw.poses import with_position, with_spot
 from pursue_gen.tools.draw.statement_edits import added, restated, with_part, without, without_remark
+from pursue_gen.tools.draw.ways import connect, second_way
 
 ANYBODY = ("any robot", "no robot", "any agent", "no agent")
 """What may stand in the place of an agent's name in some statements."""
@@ -108,49 +107,13 @@ def _move_spot(document: Draft, values: Values) -> Done:
     return with_part(document, number, "POSE", comment), number
 
 
-def _connect(document: Draft, values: Values) -> Done:
-    """{a, b, distance?, one_way?}: a way; without a distance it has the length of the line, in the scenario's unit."""
-    a, b = fields.name_of(values, "a"), fields.name_of(values, "b")
-    for name in (a, b):
-        _check_place(document, name)
-    if a == b:
-        raise refused(f"a way from {a} to itself", "choose another place")
-    one_way = bool(values.get("one_way"))
-    for number, statement in enumerate(document.statements):
-        if statement.kind == "CONNECT" and _joins(statement, a, b, one_way):
-            return document, number
-    for way in document.scenario.connections:
-        if way.span.member and ((a, b) in way.directions and (one_way or not way.one_way)):
-            return document, number_at(document, way.span)
-    distance = fields.length_of(values, "distance") if values.get("distance") else _length(document, a, b)
-    return added(document, f"connect {a} and {b} distance {distance}{' one_way' if one_way else ''}")
-
-
-def _joins(statement: Statement, a: str, b: str, one_way: bool) -> bool:
-    """Is this the way already? One that goes both ways is."""
-    parts = parts_of(statement)
-    ends = tuple(str(parts[key][1]) for key in ("CONNECT", "AND") if len(parts.get(key, ())) > 1)
-    if one_way and "ONE_WAY" in parts:
-        return ends == (a, b)
-    return ends in ((a, b), (b, a))
-
-
-def _length(document: Draft, a: str, b: str) -> str:
-    """How long the straight line is in the scenario's unit of distance, 0.1 at least."""
-    where, _ = positions(document.scenario)
-    (ax, ay), (bx, by) = ((where[name].x, where[name].y) for name in (a, b))
-    length = ((ax - bx) ** 2 + (ay - by) ** 2) ** 0.5 * lengths_per_metre(document.scenario)
-    rounded = read_number(metres(max(round(length, 1), 0.1)))
-    return written_time(document.scenario.as_distance(rounded or 1))
-
-
 # Agents and events ----------------------------------------------------------------------------------------------------
 
 
 def _add_agent(document: Draft, values: Values) -> Done:
     """{location, name?}: a robot there."""
     location = fields.name_of(values, "location")
-    _check_place(document, location)
+    check_place(document, location)
     name = _new_name(document, values, "bot")
     return added(document, f'agent "{name}" controllable mobile 1 location {location}')
 
@@ -363,12 +326,6 @@ def _declared(document: Draft, kind: str, name: str) -> int:
     return found.statement
 
 
-def _check_place(document: Draft, name: str) -> None:
-    """Raises PursueError where there is no place of this name."""
-    if name not in names(document, "POI"):
-        raise not_there(document, "POI", name)
-
-
 def _new_name(document: Draft, values: Values, stem: str) -> str:
     """The name that was typed, or else one that is free."""
     taken = {name for kind in (*KINDS, GROUP) for name in names(document, kind)}
@@ -385,7 +342,8 @@ _OPERATIONS: Mapping[str, Callable[[Draft, Values], Done]] = {
     "add place": _add_place,
     "move place": _move_place,
     "move spot": _move_spot,
-    "connect": _connect,
+    "connect": connect,
+    "second way": second_way,
     "add agent": _add_agent,
     "add event": _add_event,
     "rename": _rename,

@@ -43,7 +43,8 @@ def _begun(given: Work, pipe: Connection) -> Session:
 
 
 def _shown(session: Session, lines: Sequence[str], turn: int) -> Dict[str, Any]:
-    """What the page shows: lines, what can be done, and where everybody is: [place], or [from, to] on a way."""
+    """What the page shows: lines, what can be done, the place that each of these leads to ("": to none), and where
+    everybody is: [place], or [from, to] on a way."""
     setup, play_ = session.setup, session.play
     at: Dict[str, List[str]] = {}
     for number, automaton in enumerate(setup.game.automata):
@@ -53,4 +54,12 @@ def _shown(session: Session, lines: Sequence[str], turn: int) -> Dict[str, Any]:
             if here.parts:  # else nobody has said yet where it starts
                 at[automaton.name] = list(here.parts if here.role is Role.WAY else here.parts[-1:])
     said = [] if play_.over else choices(session)
-    return {"turn": turn, "lines": list(lines), "choices": [list(one) for one in said], "over": play_.over, "at": at}
+    found: Dict[str, Any] = {"turn": turn, "lines": list(lines), "choices": [list(one) for one in said]}
+    return {**found, "to": _destinations(session), "over": play_.over, "at": at}
+
+
+def _destinations(session: Session) -> List[str]:
+    """For each thing that can be done, the place to which somebody sets off with it; "" where nobody does."""
+    offers = () if session.play.over else session.game.offers(session.play)
+    targets = [Symbol.of(session.setup.game.origins[offer.move.edges[0]].target) for offer in offers]
+    return [target.parts[-1] if target.role is Role.WAY else "" for target in targets]

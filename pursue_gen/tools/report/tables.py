@@ -104,7 +104,7 @@ def _policy(one: CommandsTable, first: bool) -> str:
 
 
 def _times(won: Solution, missions: Sequence[Measured], thesis: Optional[ThesisTable], unit: str) -> str:
-    heads = ["", "least", "median", "worst", *(["thesis (seconds)"] if thesis else [])]
+    heads = ["time to the goal", "least", "median", "worst", *(["thesis (seconds)"] if thesis else [])]
     worst = won.guarantee.worst if won.guarantee else None
     rows: List[List[object]] = [["guaranteed", "", "", "not found out" if worst is None else at_most(worst)]]
     rows[0] += [""] if thesis else []

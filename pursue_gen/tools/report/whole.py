@@ -58,8 +58,13 @@ def report_page(report: Report) -> str:
     sections.append(automata.section(report.network, scenario))
     if won is not None:
         sections.append(ros_graph.section(_topics(report, won)))
-    sections.append(Section("scenario", "The scenario", f"<pre>{safe(scenario.text)}</pre>"))
+    sections.append(Section("scenario", "The scenario", _text(scenario.text)))
     return page(f"Report on {scenario.name}", sections)
+
+
+def _text(text: str) -> str:
+    """The scenario's text, which the keyboard can scroll where it is wider than the page."""
+    return f'<pre tabindex="0" role="region" aria-label="The text of the scenario">{safe(text)}</pre>'
 
 
 def pictures(report: Report) -> Dict[str, str]:

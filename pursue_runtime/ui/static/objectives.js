@@ -18,7 +18,7 @@ function setObjectives() {
     say(parts.become, is === "kept" && view.status === "won" ? "kept" : BECOME[is] || is);
     say(parts.name, name);
     say(parts.says, says);
-    say(parts.now, now === `${name} to be done` ? "" : now);
+    say(parts.now, view.verdict || now === `${name} to be done` ? "" : now);
   });
   sortObjectives();
 }

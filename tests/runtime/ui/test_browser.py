@@ -710,7 +710,9 @@ def test_after_the_mission_the_page_says_how_to_replay_it_and_offers_what_there_
     assert page.value("document.getElementById('timeline').hidden") is True
     node.verdict, node.offers = (0, "It is won."), ("close",)
     node.show(5, 40.0, status="won")
-    page.wait("document.querySelectorAll('#lanes .segment').length === 6")
+    page.wait("document.querySelectorAll('#lanes .segment').length === 7")
+    names = page.value("[...document.querySelectorAll('#lanes .lane-name')].map((each) => each.textContent)")
+    assert names == ["bot", "thief", "nurse", f"{HOSTILE[:23]}…", "screw happens."], "agents, and what is promised"
     says(page, "#lanes .segment.acts", f"{HOSTILE}: screw at s, 20.0 to 40.0")
     for width in (360, 1100):
         page.screen(width, 740)

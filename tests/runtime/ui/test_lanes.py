@@ -8,6 +8,7 @@ from typing import Any
 from pursue_runtime.model import Model
 from pursue_runtime.state import SystemState
 from pursue_runtime.ui.lanes import MOST, Lanes
+from pursue_runtime.ui.promise import Objective, Promise
 from tests.runtime.models import model_data, mover, state, worker
 
 MODEL = Model(model_data(mover("bot", "robot", 9), worker("nurse", "human")))
@@ -33,6 +34,29 @@ def test_each_agent_has_a_lane_of_what_it_did_from_when_to_when() -> None:
         {"agent": "nurse", "segments": [[0.0, "stands", "s"], [5.0, "acts", "screw at s"], [13.0, "stands", "s"]]},
     ]}
     json.dumps(shown)
+
+
+def test_each_objective_has_a_lane_of_when_something_was_due() -> None:
+    guard = {
+        "name": "obj", "kind": "safety", "initial": "idle", "edges": [],
+        "locations": {"idle": [], "atRisk": ["Cobj <= 40"], "lose": []},
+    }  # fmt: skip
+    data = model_data(mover("bot", "robot", 9), guard)
+    data["clocks"].append("Cobj")
+    data["objective"] = {"kind": "safety", "goal": None, "bad": ["obj", "lose"]}
+    model = Model(data)
+    given = (Objective("Whenever call happens, look happens.", ("obj",), name="look"), Objective("Optional.", ()))
+    lanes = Lanes(model, Promise(given))
+    for seq, (there, clock, moment) in enumerate(
+        (("idle", 0.0, 0.0), ("atRisk", 0.0, 5.0), ("atRisk", 2.0, 7.0), ("idle", 9.0, 12.0), ("lose", 9.0, 60.0)), 1
+    ):
+        lanes.on_state(state(model, seq, 100.0 + moment, {"Cobj": clock}, obj=there), moment)
+    lanes.on_state(state(model, 6, 161.0, {}, status="lost", obj="lose"), 61.0)
+    shown = lanes.shown()
+    assert shown is not None and [lane.get("promise") for lane in shown["lanes"]] == [None, "look"]
+    assert shown["lanes"][1]["segments"] == [
+        [0.0, "stands", "kept"], [5.0, "due", "due by 45.0"], [12.0, "stands", "kept"], [60.0, "broken", "broken"],
+    ]  # fmt: skip
 
 
 def test_a_mission_that_never_began_has_none_and_one_seen_late_begins_where_it_was_seen() -> None:

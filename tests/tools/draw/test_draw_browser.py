@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import sys
@@ -50,14 +51,16 @@ def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
 
 
 @contextmanager
-def drawn(there: Browser, file: Path, floor: Optional[Path] = None, width: int = 1400) -> Iterator[Browser]:
+def drawn(
+    there: Browser, file: Path, floor: Optional[Path] = None, width: int = 1400, height: int = 1200
+) -> Iterator[Browser]:
     """The page of a scenario's file, open in the browser."""
     jobs = Jobs(file.name, floor, 600, 4096)
     with DrawServer(DrawPage(file, floor, jobs)) as server:
         thread = threading.Thread(target=server.serve_forever, args=(0.02,), daemon=True)
         thread.start()
         there.complaints.clear()
-        there.screen(width, 1200)
+        there.screen(width, height)
         there.open(server.url)
         there.wait("document.body.dataset.ready === 'yes'")
         try:
@@ -156,7 +159,7 @@ def test_the_tutorials_scenario_is_drawn_from_nothing_and_won(there: Browser, tm
     file = tmp_path / "night_shift.pur"
     with drawn(there, file, floor_in(tmp_path)):
         tool(there, "place")
-        places = {"pharmacy": (0.2, 0.3), "corridor": (0.5, 0.5), "office": (0.7, 0.3), "room": (0.6, 0.8)}
+        places = {"pharmacy": (0.2, 0.4), "corridor": (0.5, 0.5), "office": (0.7, 0.4), "room": (0.6, 0.6)}
         for number, (name, where) in enumerate(places.items()):
             there.press(*point(there, *where))
             named(there, "place1", name)
@@ -249,7 +252,7 @@ def test_it_is_solved_and_played_and_keys_do_what_the_mouse_does(there: Browser,
     with drawn(there, file):
         assert there.value("document.querySelector('main img')") is None and there.value("window.hacked") is None
         there.click("#solve")
-        there.wait("!document.getElementById('report').hidden")
+        there.wait("!document.getElementById('read').hidden")
         assert there.value("document.getElementById('outcome').dataset.verdict") == "won"
         there.click("#play")
         there.wait("document.getElementById('game-lines').textContent.includes('The strategy: bot sets off from')")
@@ -373,3 +376,133 @@ def test_who_drags_or_deletes_one_is_told_why_it_stays(there: Browser, tmp_path:
         there.click("#its-statement")
         there.wait("document.getElementById('field-words').value === 'for each r in rooms: poi \"door\" of r'")
         assert text(there) == HOTEL and there.complaints == []
+
+
+SCREENS = [(1400, 900), (1920, 1080)]
+
+
+def is_seen(there: Browser, *selectors: str) -> List[bool]:
+    """Which of these elements are wholly in the window, and nothing covers their middle."""
+    seen = ("(e) => { const r = e.getBoundingClientRect(), over = document.elementFromPoint(r.x + r.width / 2, r.y + "
+            "r.height / 2); return r.height > 0 && r.top >= 0 && r.bottom <= innerHeight && r.left >= 0 && "
+            "r.right <= innerWidth && (e.contains(over) || over.contains(e)); }")
+    return [bool(there.value(f"({seen})(document.querySelector({one!r}))")) for one in selectors]
+
+
+@pytest.mark.parametrize("size", SCREENS)
+def test_the_plan_stays_while_places_are_added_and_verdict_and_game_are_beside_it(
+    there: Browser, tmp_path: Path, size: Any
+) -> None:
+    file = tmp_path / "small.pur"
+    file.write_text(SMALL, encoding="utf-8")
+    with drawn(there, file, None, *size):
+        tool(there, "place")
+        for number in range(1, 9):
+            x, y = there.value("(() => { const r = document.getElementById('plan').getBoundingClientRect(); return "
+                               f"[r.x + r.width * {0.1 * number}, r.y + r.height * 0.9]; }})()")
+            there.press(x, y)
+            named(there, "place1", f"room{number}")
+            there.key("Tab", 9)
+            assert is_seen(there, "#plan", "#field-name", "#tools", "#text") == [True] * 4
+            there.value(f"document.getElementById('item-place-room{number}').click()")
+            there.wait(f"document.querySelector('#inspector h2').textContent === 'Place room{number}'")
+            assert is_seen(there, "#plan", "#inspector h2") == [True, True]
+        assert there.value("document.documentElement.scrollHeight <= innerHeight"), "nothing to scroll to"
+        for _ in range(16):
+            there.key("z", 90, modifiers=CTRL)
+        there.wait(f"document.getElementById('text').value === {SMALL!r}")
+        there.click("#solve")
+        there.wait("document.getElementById('outcome').dataset.verdict === 'won'")
+        assert is_seen(there, "#plan", "#outcome", "#sentences li", "#text") == [True] * 4
+        there.wait("!document.getElementById('read').hidden")
+        there.click("#read")
+        there.wait("document.getElementById('reading').open")
+        there.click("#unread")
+        there.click("#play")
+        there.wait("document.querySelector('#choices button') !== null || document.querySelector('#game-lines')"
+                   ".textContent.includes('The strategy: bot sets off from')")
+        assert is_seen(there, "#plan", "#game-lines", "#end", "[data-line=wait]") == [True] * 4
+        assert there.complaints == []
+
+
+def test_an_empty_page_says_what_to_do_and_goes_on_with_what_is_missing(there: Browser, tmp_path: Path) -> None:
+    with drawn(there, tmp_path / "new.pur", None, 1400, 900):
+        now = "document.querySelector('#steps .now').firstChild.textContent"
+        assert there.value(now) == "Where: add places" and is_seen(there, "#guide") == [True]
+        assert there.value("document.querySelectorAll('#findings li').length") == 0, "nothing is wrong yet"
+        assert there.text("#counts").startswith("not finished yet")
+        there.press(*point(there, 0.3, 0.5))  # the first click adds a place
+        named(there, "place1", "hall")
+        there.wait(f"{now} === 'Ways: connect places'")
+        there.press(*point(there, 0.7, 0.5))
+        named(there, "place1", "store")
+        there.click("#steps button")
+        there.press(*at(there, "hall"), *at(there, "store"))
+        says(there, "connect hall and store")
+        there.wait(f"{now} === 'Who: add robots and people'")
+        there.click("#steps button")
+        there.press(*at(there, "hall"))
+        named(there, "bot1", "cart")
+        there.wait(f"{now} === 'What happens: add events'")
+        there.click("#steps button")
+        named(there, "work1", "load")
+        there.wait(f"{now} === 'What is wanted: choose an objective'")
+        there.click("#steps button")
+        there.wait("document.activeElement.id === 'form'")
+        there.value("document.getElementById('text').focus()")
+        there.value("document.getElementById('text').setSelectionRange(1e6, 1e6)")
+        there.write("reach_objective: do load\n")
+        there.wait("document.getElementById('guide').hidden")
+        assert there.complaints == []
+
+
+def test_a_game_is_played_on_the_plan(there: Browser, tmp_path: Path) -> None:
+    file = tmp_path / "chased.pur"
+    guest = 'agent "guest" mobile 1 location b\nreach_objective'
+    file.write_text(SMALL.replace("reach_objective", guest), encoding="utf-8")
+    with drawn(there, file, None, 1400, 900):
+        there.click("#play")
+        there.wait("document.querySelector('.place.begun') !== null")
+        assert "you can go there" in there.value("document.querySelector('.place.begun').getAttribute('aria-label')")
+        there.press(*at(there, "a"))
+        there.wait("/> [12]/.test(document.getElementById('game-lines').textContent)")
+        there.wait("document.getElementById('game-lines').textContent.includes('guest sets off from b to')")
+        assert is_seen(there, "#plan", "#game-lines") == [True, True] and there.complaints == []
+
+
+def test_a_second_way_of_another_length_is_drawn_for_some_agents(there: Browser, tmp_path: Path) -> None:
+    file = tmp_path / "small.pur"
+    agents = 'agent "bot" controllable mobile 1 location a can_do work\nagent "agv" controllable mobile 2 location a\n'
+    one = 'agent "bot" controllable mobile 1 location a can_do work\n'
+    file.write_text(SMALL.replace(one, agents), encoding="utf-8")
+    with drawn(there, file, None, 1400, 900):
+        tool(there, "way")
+        there.press(*at(there, "a"), *at(there, "b"))
+        there.wait("document.getElementById('status').textContent.startsWith('There is a way already.')")
+        assert text(there).count("connect") == 1
+        there.click("#second-agv")
+        fill(there, "second-distance", "9")
+        there.click("#add-second")
+        says(there, "connect a and b distance 4 except agv\nconnect a and b distance 9 for agv\n")
+        middles = "[...document.querySelectorAll('#plan polyline.line')].map((e) => e.points[0].y)"
+        there.wait(f"{middles}.length === 2")
+        first, second = there.value(middles)
+        assert abs(first - second) > 8, "beside each other"
+        assert "9 for agv" in there.text("#plan") and "4 except agv" in there.text("#plan")
+        there.wait("document.getElementById('counts').textContent.startsWith('0 errors')")
+        assert there.complaints == []
+
+
+@pytest.mark.skipif(not os.environ.get("PURSUE_AXE"), reason="PURSUE_AXE does not name axe-core's axe.min.js")
+@pytest.mark.parametrize("size", [(390, 844), *SCREENS])
+def test_axe_finds_nothing(there: Browser, tmp_path: Path, size: Any) -> None:
+    for name, words in (("new", ""), ("small", SMALL)):
+        file = tmp_path / f"{name}.pur"
+        file.write_text(words, encoding="utf-8")
+        with drawn(there, file, None, *size):
+            if words:
+                there.value("document.getElementById('item-way-a b false  ').click()")
+            for dark in (False, True):
+                there.dark(dark)
+                assert there.axe(os.environ["PURSUE_AXE"]) == [], (name, dark)
+    there.dark(False)

@@ -313,6 +313,7 @@ def test_a_game_is_played_beside_the_page_and_writes_nothing(served: DrawServer,
     asked(served, "say", line="wait")
     second = turn(2)["game"]
     assert second["at"] == {"bot": ["a", "b"]} and second["choices"][0][0] == "bot: arrive at b"
+    assert second["to"] == [""] * len(second["choices"]), "nobody sets off"
     asked(served, "say", line=f"save {tmp_path / 'game.yaml'}")
     assert "not saved" in turn(3)["game"]["lines"][0] and not (tmp_path / "game.yaml").exists()
     asked(served, "say", line="1")

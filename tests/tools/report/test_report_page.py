@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 from pathlib import Path
@@ -240,3 +241,11 @@ def test_stages_are_shown_one_after_the_other_with_those_they_speak_of(there: Br
     there.value("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
     there.wait("document.querySelectorAll('#strategy-found .state ul').length > 0")
     assert there.value("document.documentElement.scrollWidth <= innerWidth") and there.complaints == []
+
+
+@pytest.mark.skipif(not os.environ.get("PURSUE_AXE"), reason="PURSUE_AXE does not name axe-core's axe.min.js")
+def test_axe_finds_nothing(there: Browser, tmp_path: Path, catch: str) -> None:
+    opened(there, tmp_path, catch)
+    for width, height in ((390, 844), (1400, 900), (1920, 1080)):
+        there.screen(width, height)
+        assert there.axe(os.environ["PURSUE_AXE"]) == [], width

@@ -1,6 +1,8 @@
 // The text with its line numbers, and the findings beneath it.
 import { byId, html } from "./elements.js";
+import { MISSING } from "./guide.js";
 import { all, isSelected, select, selected, state, type } from "./state.js";
+import { isCurrent } from "./verdict.js";
 
 const text = byId("text");
 const lines = byId("lines");
@@ -15,9 +17,11 @@ export function write() {
   number();
   const { errors, warnings } = state.view;
   const some = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
-  byId("counts").textContent = `${some(errors, "error")}, ${some(warnings, "warning")}`;
-  byId("findings").replaceChildren(...state.view.findings.map(finding));
-  byId("wanted").hidden = !state.view.wanted.length;
+  const missing = state.view.findings.filter((one) => MISSING.has(one.code)); // the steps say so
+  const wrong = missing.length && errors === missing.length ? "not finished yet" : some(errors - missing.length, "error");
+  byId("counts").textContent = `${wrong}, ${some(warnings, "warning")}`;
+  byId("findings").replaceChildren(...state.view.findings.filter((one) => !MISSING.has(one.code)).map(finding));
+  byId("wanted").hidden = !state.view.wanted.length || isCurrent();
   byId("wishes").replaceChildren(...state.view.wanted.map((sentence) => html("li", {}, sentence)));
 }
 

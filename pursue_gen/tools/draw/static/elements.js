@@ -24,9 +24,22 @@ export function byId(id) {
   return document.getElementById(id);
 }
 
+// Puts the cursor into the name of what was added, so that it can be typed.
+export function typeName() {
+  const name = byId("field-name");
+  if (!name) return;
+  name.focus();
+  name.select();
+}
+
 // What people read for a place, an event or an agent.
 export function shown(thing) {
   return thing.label || thing.name;
+}
+
+// For whom a way is, behind its length.
+export function whom(way) {
+  return way.only_for ? ` for ${way.only_for}` : way.not_for ? ` except ${way.not_for}` : "";
 }
 
 // A labelled field for a form; `change` gets the new value when it has been typed or chosen.

@@ -13,13 +13,14 @@ export async function play() {
   byId("game").hidden = false;
   byId("game-lines").textContent = "";
   byId("choices").replaceChildren();
-  byId("game").scrollIntoView({ block: "nearest" });
+  byId("parts").scrollTop = 0;
   take(answer);
 }
 
 export function endGame() {
   job = 0;
   state.playing = null;
+  state.leads = [];
   byId("game").hidden = true;
   show();
 }
@@ -56,11 +57,20 @@ function take(answer) {
     write(game.lines.join("\n"));
     byId("choices").replaceChildren(...game.choices.map(choice));
     state.playing = game.at;
+    state.leads = game.to;
     return show();
   }
   if (answer.state !== "running") return write("The game has ended.");
   if (!game) byId("game-state").textContent = `${answer.progress || "solving"} … ${answer.seconds} s`;
   setTimeout(async () => take(await ask("job")), 150);
+}
+
+// A place was pressed on the plan: whoever can set off to it does. False where nobody can.
+export function goTo(place) {
+  const numbers = state.leads.flatMap((to, number) => (to === place ? [number + 1] : []));
+  if (numbers.length === 1) send(String(numbers[0]));
+  else if (numbers.length) say("Several can go there: choose who, beside the plan.");
+  return numbers.length > 0;
 }
 
 function choice([what, when], number) {

@@ -83,7 +83,20 @@ function way(thing) {
     ...whom(thing),
     field("field-only_if", "only while (a condition)", thing.only_if, set(thing, "only_if"), { wide: true, spellcheck: "false" }),
   ];
-  return { title: `Way between ${thing.a} and ${thing.b}`, fields, more: [] };
+  return { title: `Way between ${thing.a} and ${thing.b}`, fields: [...fields, ...secondWay(thing)], more: [] };
+}
+
+// Another way between the same places, for some agents.
+function secondWay(thing) {
+  const mine = thing.only_for ? thing.only_for.split(/,\s*/) : null, not = thing.not_for.split(/,\s*/);
+  const agents = state.view.agents.filter((one) => one.mobile || one.speed).filter((one) => (mine ? mine.includes(one.name) : !not.includes(one.name)));
+  if (agents.length < (mine ? 2 : 1)) return [];
+  const chosen = new Set();
+  const ticks = agents.map((one) => tick(`second-${one.name}`, shown(one), false, (on) => (on ? chosen.add(one.name) : chosen.delete(one.name))));
+  const length = field("second-distance", "distance", thing.distance, () => {}, {});
+  const add = () => change(() => ({ do: "second way", statement: thing.statement, agents: [...chosen], distance: byId("second-distance").value }));
+  const fields = [html("legend", {}, "Another way, of another length, for"), ...ticks, length, button("Add it", add, { id: "add-second" })];
+  return [html("fieldset", { class: "wide row", id: "second" }, ...fields)];
 }
 
 // Ticks for the events in one of an agent's lists; an event that is ticked comes last.

@@ -30,10 +30,11 @@ function crosses({ a, b }, box) {
 }
 
 export class Taken {
-  // `lines` are ways, which words had better not cover.
-  constructor(lines) {
+  // `lines` are ways, which words had better not cover; the size is that of the picture, in which words stay.
+  constructor(lines, { width, height }) {
     this.boxes = [];
     this.lines = lines;
+    this.inside = (x, y, w = 0, h = 0) => x >= 0 && y >= 0 && x + w <= width && y + h <= height;
   }
 
   add(box) {
@@ -47,15 +48,16 @@ export class Taken {
 
   // A box of this size beside a point, as near as there is room; `far`: it is not right beside it.
   beside(x, y, w, h, gap) {
+    const seen = this.inside(x, y), fits = (box) => this.isFree(box) && (!seen || this.inside(box.x, box.y, w, h));
     for (const [dx, dy] of AROUND) {
       const box = { x: x - w / 2 + dx * (w / 2 + gap), y: y - h / 2 + dy * (h / 2 + gap), w, h, far: false };
-      if (this.isFree(box) && !this.lines.some((line) => crosses(line, box))) return this.add(box);
+      if (fits(box) && !this.lines.some((line) => crosses(line, box))) return this.add(box);
     }
     for (const ring of RINGS) {
       for (const [dx, dy] of AROUND) {
         const away = gap + ring;
         const box = { x: x - w / 2 + dx * (w / 2 + away), y: y - h / 2 + dy * (h / 2 + away), w, h, far: ring > 0 };
-        if (this.isFree(box)) return this.add(box);
+        if (fits(box)) return this.add(box);
       }
     }
     for (let down = gap + RINGS[RINGS.length - 1]; ; down += h) {

@@ -1,6 +1,6 @@
 // Everything that there is as lists, each with what adds to it: whoever does not see the picture has all of it here.
 import { camera } from "./camera.js";
-import { button, byId, field, html, shown } from "./elements.js";
+import { button, byId, field, html, shown, typeName, whom } from "./elements.js";
 import { all, change, isSelected, say, select, state } from "./state.js";
 
 const TITLES = { place: "Places", way: "Ways", agent: "Agents", event: "Events", other: "Rules, objectives and more" };
@@ -11,14 +11,6 @@ const GROUPS = {
 };
 const chosen = { form: null, values: [], a: "", b: "", location: "" };
 const box = byId("lists");
-
-function typeName() {
-  const name = byId("field-name");
-  if (name) {
-    name.focus();
-    name.select();
-  }
-}
 
 export function list() {
   const focused = box.contains(document.activeElement) ? document.activeElement.id : null;
@@ -40,7 +32,7 @@ function part(kind, things, closed) {
 }
 
 function words({ kind, thing }) {
-  if (kind === "way") return `${thing.a} ${thing.one_way ? "→" : "–"} ${thing.b}: ${thing.distance}`;
+  if (kind === "way") return `${thing.a} ${thing.one_way ? "→" : "–"} ${thing.b}: ${thing.distance}${whom(thing)}`;
   return kind === "other" ? thing.words : shown(thing);
 }
 

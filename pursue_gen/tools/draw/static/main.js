@@ -2,13 +2,14 @@
 import * as editor from "./editor.js";
 import { byId } from "./elements.js";
 import * as game from "./game.js";
+import { greet, guide } from "./guide.js";
 import { inspect } from "./inspector.js";
 import { list } from "./lists.js";
 import { measure } from "./measure.js";
 import { draw } from "./plan.js";
 import * as pointer from "./pointer.js";
 import { ask, change, onShow, redo, refusal, say, selected, show, state, undo } from "./state.js";
-import { cancel, outdated, solve } from "./verdict.js";
+import { cancel, outdated, read, solve } from "./verdict.js";
 
 let revealed = null;
 
@@ -59,7 +60,7 @@ async function begin() {
   const { text, view } = opened;
   Object.assign(state, { opened, text, view, viewed: text, saved: opened.new ? null : text });
   document.title = `Draw ${opened.file}`;
-  for (const listener of [draw, inspect, list, editor.write, follow]) onShow(listener);
+  for (const listener of [draw, inspect, list, editor.write, guide, follow]) onShow(listener);
   pointer.listen();
   editor.listen();
   game.listen();
@@ -69,6 +70,8 @@ async function begin() {
   press("solve", solve);
   press("play", game.play);
   press("cancel", cancel);
+  press("read", read);
+  press("unread", () => byId("reading").close());
   press("measure", measure);
   byId("measuring").hidden = opened.floor === null;
   press("format", () => change({ do: "format" }));
@@ -78,7 +81,9 @@ async function begin() {
   window.addEventListener("beforeunload", (event) => {
     if (state.text !== (state.saved || "")) event.preventDefault();
   });
+  new ResizeObserver(([{ target }]) => document.documentElement.style.setProperty("--header", `${target.offsetHeight}px`)).observe(document.querySelector("header"));
   show();
+  greet();
   document.body.dataset.ready = "yes";
 }
 

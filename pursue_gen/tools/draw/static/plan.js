@@ -1,6 +1,6 @@
 // The picture: the floor plan or a grid, ways, places with who starts and what happens there.
 import { camera, corners, fit, size, toMap, toScreen } from "./camera.js";
-import { byId, shown, svg } from "./elements.js";
+import { byId, shown, svg, whom } from "./elements.js";
 import { Taken, width } from "./labels.js";
 import { isSelected, state, wayKey } from "./state.js";
 
@@ -35,7 +35,7 @@ export function draw() {
   const at = new Map(state.view.places.map((one) => [one.name, toScreen(one.x, one.y)]));
   const ways = state.view.ways.filter((way) => at.has(way.a) && at.has(way.b));
   const lines = new Map(ways.map((way) => [way, lineOf(way, at)]));
-  const taken = new Taken(ways.flatMap((way) => parts(lines.get(way))));
+  const taken = new Taken(ways.flatMap((way) => parts(lines.get(way))), size());
   for (const point of at.values()) taken.add({ x: point.x - 13, y: point.y - 13, w: 26, h: 26 });
   for (const spot of state.view.places.flatMap((one) => one.spots)) {
     const point = toScreen(spot.x, spot.y);
@@ -92,12 +92,22 @@ function grid() {
 
 // Ways -------------------------------------------------------------------------------------------------------------
 
-// Where a way begins and ends; ways that can be taken in one direction are beside each other.
+// How far beside the line between its places a way is, seen from its first one: ways in one direction, and ways between
+// the same places for other agents, are beside each other.
+function aside(way) {
+  const turned = (one) => one.a === way.b && one.b === way.a;
+  const same = state.view.ways.filter((one) => one.one_way === way.one_way && ((one.a === way.a && one.b === way.b) || (!way.one_way && turned(one))));
+  const place = same.indexOf(way);
+  if (way.one_way) return 5 + 12 * place;
+  return 12 * (place - (same.length - 1) / 2) * (way.a < way.b ? 1 : -1);
+}
+
+// Where a way begins and ends.
 function ends(way, at) {
   const [a, b] = [at.get(way.a), at.get(way.b)];
-  const apart = Math.hypot(b.x - a.x, b.y - a.y);
-  if (!way.one_way || !apart) return [a, b];
-  const [dx, dy] = [(5 * (b.y - a.y)) / apart, (-5 * (b.x - a.x)) / apart];
+  const apart = Math.hypot(b.x - a.x, b.y - a.y), by = aside(way);
+  if (!by || !apart) return [a, b];
+  const [dx, dy] = [(by * (b.y - a.y)) / apart, (-by * (b.x - a.x)) / apart];
   return [{ x: a.x - dx, y: a.y - dy }, { x: b.x - dx, y: b.y - dy }];
 }
 
@@ -123,7 +133,7 @@ function longest(line) {
 function drawnWay(way, line) {
   const key = wayKey(way);
   const points = line.map((one) => `${one.x},${one.y}`).join(" ");
-  const words = `way from ${way.a} to ${way.b}, ${way.distance} long${way.one_way ? ", one way" : ""}`;
+  const words = `way from ${way.a} to ${way.b}, ${way.distance} long${way.one_way ? ", one way" : ""}${whom(way)}`;
   const group = svg(
     "g",
     { class: `way${isSelected("way", key) ? " selected" : ""}`, "data-key": key, tabindex: 0, role: "button", "aria-label": words },
@@ -144,7 +154,7 @@ function arrow(a, b) {
 }
 
 function lengthOf(way, [a, b], taken) {
-  const words = `${way.distance}${way.only_if ? " ?" : ""}`;
+  const words = `${way.distance}${way.only_if ? " ?" : ""}${whom(way)}`;
   const box = taken.on(a, b, width(words, false) + 8, ROW);
   return box && svg("g", { class: "label" }, halo(box), svg("text", { class: "small", x: box.x + 4, y: box.y + 13 }, words));
 }
@@ -181,11 +191,14 @@ function travellers(ways, lines) {
 
 // Places -----------------------------------------------------------------------------------------------------------
 
+// In a game: can somebody set off to it whom the person plays?
+const isOpen = (place) => state.playing !== null && state.leads.includes(place.name);
+
 function drawnPlace(place, at) {
   const turn = (-place.yaw * Math.PI) / 180;
   const look = { class: "heading", x1: at.x, y1: at.y, x2: at.x + 16 * Math.cos(turn), y2: at.y + 16 * Math.sin(turn) };
-  const kinds = ["place", isSelected("place", place.name) && "selected", pending.from === place.name && "begun"];
-  const words = `place ${shown(place)} at ${place.x.toFixed(2)}, ${place.y.toFixed(2)}`;
+  const kinds = ["place", isSelected("place", place.name) && "selected", pending.from === place.name && "begun", isOpen(place) && "begun"];
+  const words = `place ${shown(place)} at ${place.x.toFixed(2)}, ${place.y.toFixed(2)}${isOpen(place) ? ", you can go there" : ""}`;
   return svg(
     "g",
     { class: kinds.filter(Boolean).join(" "), "data-key": place.name, tabindex: 0, role: "button", "aria-label": words },

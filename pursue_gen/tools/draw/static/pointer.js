@@ -1,6 +1,7 @@
 // Mouse, fingers and keys on the picture.
 import { pan, size, toMap, zoom } from "./camera.js";
-import { byId } from "./elements.js";
+import { byId, typeName } from "./elements.js";
+import { goTo } from "./game.js";
 import { draw, fitAll, movable, pending } from "./plan.js";
 import { all, change, isFixed, look, say, select, selected, state } from "./state.js";
 
@@ -36,24 +37,17 @@ const rounded = (metres) => Math.round(metres * 100) / 100;
 
 // What tools do ----------------------------------------------------------------------------------------------------
 
-// Puts the cursor into the name of what was added, so that it can be typed; a finger does not want a keyboard.
-function typeName(byFinger) {
-  return () => {
-    const name = byId("field-name");
-    if (name && !byFinger) {
-      name.focus();
-      name.select();
-    }
-  };
-}
+// A finger does not want a keyboard.
+const named = (byFinger) => (byFinger ? null : typeName);
 
 function use(found, point, byFinger) {
   const hit = placeOf(found);
   const name = hit && hit.kind === "place" ? hit.key : null;
+  if (tool() === "select" && name && state.playing && goTo(name)) return;
   if (tool() === "place" && !name) {
-    change({ do: "add place", x: rounded(point.x), y: rounded(point.y) }, typeName(byFinger));
+    change({ do: "add place", x: rounded(point.x), y: rounded(point.y) }, named(byFinger));
   } else if (tool() === "agent") {
-    if (name) change({ do: "add agent", location: name }, typeName(byFinger));
+    if (name) change({ do: "add agent", location: name }, named(byFinger));
     else say("Click on the place where the agent starts.");
   } else if (tool() === "way" && (!hit || name)) {
     stepOfWay(name);
@@ -71,7 +65,9 @@ function stepOfWay(name) {
     pending.from = name;
     say(`A way from ${name}: click on the place that it leads to. Escape ends it.`);
   } else if (from !== name) {
-    change({ do: "connect", a: from, b: name });
+    const there = state.view.ways.some((one) => (one.a === from && one.b === name) || (one.b === from && one.a === name));
+    const told = () => say("There is a way already. Under it you can choose who takes another one, of another length.");
+    change({ do: "connect", a: from, b: name }, there ? told : null);
   }
   draw();
 }
@@ -199,7 +195,7 @@ function pressed(event) {
   } else if (event.key === "Enter" || event.key === " ") {
     const { left, top, width, height } = size();
     use(hit, toMap(left + width / 2, top + height / 2), false);
-    if (hit && tool() === "select") typeName(false)();
+    if (hit && tool() === "select") typeName();
   } else if (event.key === "Delete" || event.key === "Backspace") {
     const one = hit ? all(state.view).find((each) => each.kind === hit.kind && each.key === hit.key) : selected();
     if (one && !isFixed(one.thing)) change({ do: "delete", statement: one.thing.statement }, () => plan.focus({ preventScroll: true }));

@@ -1,8 +1,9 @@
 // The text and what is seen of it: the text is what counts, the picture follows it.
 import { byId } from "./elements.js";
 
-export const state = { text: "", view: null, viewed: "", selected: null, saved: "", playing: null, past: [], future: [], opened: null, paths: [] };
+export const state = { text: "", view: null, viewed: "", selected: null, saved: "", playing: null, leads: [], past: [], future: [], opened: null, paths: [] };
 // `viewed`: the text that `view` shows, which may be older than `text`. `playing`: in a game, where everybody is: agent → [place], or [from, to].
+// `leads`: in a game, the place to which each of its choices leads, "" where it leads to none.
 // `paths`: of ways, as they were measured on the map: their places `a` and `b`, and the bends of the `line` in metres.
 const listeners = [];
 let queue = Promise.resolve(); // changes are made one after the other

@@ -14,20 +14,30 @@ let mine = 0; // the number of the last job that solved
 let shown = 0; // the job whose report is shown
 
 export function outdated() {
-  byId("outdated").hidden = solved === null || solved === state.text;
+  const old = solved !== null && solved !== state.text;
+  byId("outdated").hidden = !old;
+  byId("outcome").classList.toggle("old", old);
+}
+
+// Is what is wanted said with a verdict on the present text?
+export function isCurrent() {
+  return solved === state.text && byId("sentences").childElementCount > 0;
+}
+
+export function read() {
+  byId("reading").showModal();
 }
 
 export async function solve() {
   endGame();
   solved = state.text;
   byId("verdict").hidden = false;
-  byId("report").hidden = true;
+  byId("read").hidden = true;
   byId("report").removeAttribute("src");
   outdated();
   const answer = await ask("solve", { text: solved });
   mine = answer.job;
   report(answer);
-  byId("verdict").scrollIntoView({ block: "nearest" });
 }
 
 export async function cancel() {
@@ -50,11 +60,12 @@ function report(answer) {
   const outcome = answer.verdict ? OUTCOMES[answer.verdict] : answer.state === "cancelled" ? "Cancelled." : "";
   byId("outcome").textContent = [outcome, going].filter(Boolean).join(" ");
   byId("outcome").dataset.verdict = answer.verdict || (running ? "" : answer.state);
+  byId("wanted").hidden = (answer.lines || []).length > 0 || !state.view.wanted.length;
   byId("sentences").replaceChildren(...(answer.lines || []).map((line) => html("li", {}, line)));
   if (answer.report && shown !== answer.job) {
     shown = answer.job;
     byId("report").src = `report.html?job=${answer.job}`;
-    byId("report").hidden = false;
+    byId("read").hidden = false;
   }
   if (running) setTimeout(async () => report(await ask("job")), 300);
 }
