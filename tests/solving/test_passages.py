@@ -57,6 +57,20 @@ def test_places_and_ways_that_hold_one_robot_are_passed_like_robots_that_never_m
     assert every.strategy.passages == one.strategy.passages and every.guarantee == one.guarantee
 
 
+def test_robots_go_to_and_fro_on_shared_lanes() -> None:
+    lines = [line for line in pass_in_a_corridor(4).split("\n") if "never_with" not in line and "reach" not in line]
+    lines = [re.sub(r"(can_do work(\d))", r"\1, home\2", line) for line in lines]
+    agents = next(number for number, line in enumerate(lines) if line.startswith("agent"))
+    homes = [f'event "home{n}" location room{n} duration 4' for n in range(1, 5)]
+    turns = [f'rule "turn{n}": work{n} before home{n}' for n in range(1, 5)]
+    lines[agents:agents] = [*homes, *turns]
+    lines += ["objective: every place holds 1 robot", "objective: every way holds 1 robot"]
+    lines += [f"reach_objective: do home{n} 5 times" for n in range(1, 5)]
+    found = won("\n".join(lines))
+    assert found.strategy.passages and found.guarantee is not None and found.guarantee.worst is not None
+    assert verify(found.network, found.objective, found.strategy, found.reaction).ok
+
+
 def test_on_a_square_robots_move_at_the_same_time() -> None:
     found = won(pass_in_a_square(8))
     assert found.guarantee is not None
