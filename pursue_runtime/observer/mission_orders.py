@@ -77,6 +77,8 @@ class MissionOrders(MissionStatus):
         if done.deadline is not None and passed >= done.deadline:
             raise Refused("its time was over before a plan was found")
         ends = [delay for name, delay in self._bounds(self.position(now)) if name not in self.late | set(self.lost)]
+        if self.ways.turns:
+            raise Refused("a robot that cannot go on is about to turn round; order it again then")
         ahead = max(self._planning.lead_time, self.ordering.lead_time) / self._unit
         if min(ends, default=INFINITY) < ahead:
             if now > order.came + PATIENCE:
@@ -134,6 +136,10 @@ class MissionOrders(MissionStatus):
             self._refuse(order.text, str(refusal))
             return self._status_changes(now)
         position = done.after(self.position(now), (now - order.came) / self._unit)
+        asked = proposal.request
+        if (position.locations, position.values) != (asked.locations, asked.values):
+            self._planning.reset()  # an assumption was broken: it is proven for another state
+            return self._status_changes(now)
         late = now > begin + ordered.window * self._unit + 1e-9
         if late or not covers(proposal.cover, position, self._tolerance):
             self._planning.expire(proposal, now)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any, Dict, List
 
 import pytest
@@ -13,6 +14,7 @@ from pursue_gen.solving.solution import Solution, solve_scenario
 from pursue_gen.tools.replanning import replan
 from pursue_gen.workspace.model_file import model_data
 from pursue_runtime.model import Model
+from pursue_runtime.observer.journal import CALLS, replay
 from pursue_runtime.observer.mission import Mission
 from pursue_runtime.observer.ordering import MOST_WAITING, WINDOW, OrderAnswer, Refused, read_order
 from pursue_runtime.strategy import read_cover
@@ -51,14 +53,16 @@ class Counter:
     """A mission under way, and people who order."""
 
     def __init__(self) -> None:
-        model = Model(plain(model_data(WON.network, WON.objective, STORY, DEFAULT.reaction)))
-        cover = read_cover(plain(cover_data(WON.strategy)))
         self.log: List[str] = []
-        self.mission = Mission(
-            model, cover, lambda _, text: self.log.append(text), on_uncovered="plan", controllers=("controller_bot",)
-        )
+        self.mission = self.fresh()
         self.now = 100.0
         self.mission.on_word("_start_", self.now)
+
+    def fresh(self) -> Mission:
+        """A mission that has not begun."""
+        model = Model(plain(model_data(WON.network, WON.objective, STORY, DEFAULT.reaction)))
+        cover, say = read_cover(plain(cover_data(WON.strategy))), lambda _, text: self.log.append(text)
+        return Mission(model, cover, say, on_uncovered="plan", controllers=("controller_bot",))
 
     def order(self, text: str) -> None:
         self.mission.on_order(text, self.now)
@@ -151,6 +155,44 @@ def test_what_happens_meanwhile_is_looked_at_again(counter: Counter) -> None:
     assert first is not None and second is not None and second.number > first.number
     assert second.locations["bot"] == "going_kitchen_to_room1"
     assert counter.answered()[0].accepted
+
+
+def test_a_plan_for_another_state_is_not_put_in_force(counter: Counter) -> None:
+    counter.order("tea1")
+    request, answer = counter.mission.plan_request, counter.plan()
+    assert request is not None
+    counter.mission._automata.set_values({"Pbot": 9})  # as a broken assumption changes a value, without an event
+    counter.mission.on_plan(request.number, answer, counter.now)
+    counter.now += 1.0
+    counter.mission.on_word(f"controller_bot:_plan_@{request.number}", counter.now)
+    state = counter.mission.state(counter.now)
+    assert (state.plan, state.locations["obj"]) == (0, "idle") and counter.mission.ordering.drain() == []
+
+
+def test_a_restarted_observer_goes_on_with_what_was_ordered_and_accepted() -> None:
+    first = Counter()
+    entries: List[Dict[str, Any]] = []
+
+    def call(name: str, *args: Any) -> None:
+        CALLS[name](first.mission, *args, first.now)
+        end = {"seq": first.mission.seq, "status": first.mission.status}
+        entries.append(json.loads(json.dumps({"call": name, "args": args, "at": first.now, **end})))
+
+    entries.append({"call": "hear", "args": ["_start_"], "at": first.now, "seq": 1, "status": "running"})
+    call("order", "tea1 within 50")
+    request, answer = first.mission.plan_request, first.plan()
+    assert request is not None
+    first.now += 1.0
+    call("planned", request.number, answer)
+    call("hear", f"controller_bot:_plan_@{request.number}")
+    call("order", "tea2")
+    second = Counter.__new__(Counter)
+    second.log, second.now = [], first.now
+    second.mission = first.fresh()
+    replay(second.mission, entries)
+    assert second.mission.state(first.now) == first.mission.state(first.now)
+    assert second.mission.plan_request == first.mission.plan_request
+    assert second.mission.state(first.now).clocks["Cobj"] == 11.0
 
 
 def test_orders_are_looked_at_one_after_the_other(counter: Counter) -> None:
