@@ -115,9 +115,11 @@ class Solved(SolvedGame):
     @cached_property
     def orders(self) -> Mapping[str, str]:
         """What people may order during a mission, with why it would be refused at its start, "" where it would not."""
+        if not self.scenario.orders:
+            return {}
         from pursue_gen.tools.replanning.menu import at_start
 
-        return dict(at_start(self.scenario, self.solution)) if self.scenario.orders else {}
+        return dict(at_start(self.scenario, self.solution))
 
     def _orders_in_words(self) -> List[str]:
         taken = [self.scenario.shown(name) for name, why in self.orders.items() if not why]

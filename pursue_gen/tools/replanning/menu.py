@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from fractions import Fraction
 from typing import Dict, Iterator, Tuple
 
@@ -26,8 +25,7 @@ _STATES = 12_000
 
 def at_start(scenario: Scenario, won: Solution) -> Iterator[Tuple[str, str]]:
     """Each order with why it would be refused at the start, alone; "": it would be accepted."""
-    data = json.loads(json.dumps(model_data(won.network, won.objective, scenario, won.reaction)))
-    model = Model(data)
+    model = Model(model_data(won.network, won.objective, scenario, won.reaction))
     for event in scenario.orders:
         here = model.initial().aged(_AT)
         done = effect(model, here, PersonOrder(event.name, None, 0.0, event.name))

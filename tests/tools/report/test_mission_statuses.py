@@ -75,7 +75,7 @@ def test_each_of_them_has_a_lane() -> None:
     found = lanes(draw(made_up()))
     assert tooltips(found["not bot at a"], "box") == ["not bot at a holds, 2 to the end"]
     assert tooltips(found["broken"], "box") == ["broken: guest does call at most once, 6 to the end"]
-    assert tooltips(found["deadline"], "box") == ["stamp due by 30, 0 to 8"]
+    assert tooltips(found["stamp"], "box") == ["stamp due by 30, 0 to 8"]
 
 
 def test_the_table_says_what_each_step_changes() -> None:
