@@ -26,6 +26,7 @@ class Ending:
     def __init__(self, model: Model) -> None:
         self._model = model
         self._kept: Dict[str, Kept] = {}
+        self._ahead: Dict[str, float] = {}  # time units by which clocks of orders that were wanted sooner are ahead
         self._is_whole = True  # all of the mission was seen
         self._is_quiet = model.ends is not None and model.ends.after is None  # it ends when all is answered
         self._awaited: Optional[Set[str]] = None  # the objectives that are answered first; None: its end has not begun
@@ -50,6 +51,10 @@ class Ending:
         else:
             self.begin(position)
 
+    def on_order(self, clocks: Mapping[str, float]) -> None:
+        """Take that an order has started these clocks, with their values when it came."""
+        self._ahead.update(clocks)
+
     def on_moves(self, moves: Tuple[Move, ...], clocks: Mapping[str, float]) -> None:
         """Take what an event does, at the time of these clocks: some of it may be an answer."""
         for name, edge in moves:
@@ -57,7 +62,8 @@ class Ending:
             due = bounds.get(edge.source)
             if due and not bounds[edge.target] and (name, edge.target) not in self._model.bad:
                 times, longest = self._kept.get(name, Kept())
-                self._kept[name] = Kept(times + 1, max(longest, clocks[due[0].left]))
+                clock = due[0].left
+                self._kept[name] = Kept(times + 1, max(longest, clocks[clock] - self._ahead.pop(clock, 0.0)))
                 if self._awaited is not None:
                     self._awaited.discard(name)
 

@@ -157,6 +157,7 @@ class MissionOrders(MissionStatus):
         self._log("info", f"the order {order.text} is accepted, with plan {self.plan}")
         since = {clock: order.came - at * self._unit for clock, at in done.clocks.items()}
         states = self._take(done.moves, now, since=since)
+        self.ending.on_order(done.clocks)
         self._since = {}  # nothing that was decided with the plan before stands
         return states
 

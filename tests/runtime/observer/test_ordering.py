@@ -120,6 +120,20 @@ def test_who_wants_it_sooner_gets_it_sooner(counter: Counter) -> None:
     assert counter.mission.state(counter.now).clocks["Cobj"] == 31.0
 
 
+def test_at_the_end_is_said_after_how_long_it_was_answered(counter: Counter) -> None:
+    counter.order("tea1 within 30")
+    counter.answered()
+    for word, after in (("bot_kitchen2room1", 0.5), ("bot_going_kitchen_to_room12room1", 10.6), ("serve1", 1.1),
+                        ("serve1DONE", 3.5)):  # fmt: skip
+        counter.now += after
+        commanded = f"@{counter.mission.seq}" if "DONE" not in word and "going" not in word else ""
+        counter.mission.on_word(f"bot:{word}{commanded}", counter.now)
+        if word == "serve1":
+            counter.mission.on_word(f"bot:_order_@{counter.mission.seq}", counter.now)
+    state = counter.mission.finish(counter.now)[-1]
+    assert "if tea1 then serve1 within 60 (answered once, after 16.7 at most)" in state.reason
+
+
 def test_what_cannot_be_promised_is_refused_with_what_could_be(counter: Counter) -> None:
     counter.order("tea2 within 10")
     (answer,) = counter.answered()
