@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import List, Mapping, Optional, Tuple
+from typing import Callable, List, Mapping, Optional, Tuple
 
 from pursue_runtime.model import Move
 from pursue_runtime.observer.mission_status import MissionStatus
@@ -45,16 +45,18 @@ class MissionOrders(MissionStatus):
             effect(self.model, self.position(now), order)
             self.ordering.add(order)
         except Refused as refusal:
-            self._refuse(called(text), str(refusal))
+            self._say(self.ordering.say, called(text), str(refusal))
             return []
         self._log("info", f"ordered: {order.text}")
         return self._status_changes(now)
 
-    def _refuse(self, text: str, why: str, possible: float = 0.0) -> None:
-        """Refuse an order: the first of those that wait, if it is that."""
+    def _refuse(self, order: PersonOrder, why: str, possible: float = 0.0) -> None:
+        """Refuse the order that is looked at."""
+        self._say(self.ordering.answer, order.text, why, possible)
+
+    def _say(self, say: Callable[[OrderAnswer], None], text: str, why: str, possible: float = 0.0) -> None:
         answer = OrderAnswer(text, False, possible=possible, why=as_sentence(why))
-        first = self.ordering.first
-        (self.ordering.answer if first is not None and first.text == text else self.ordering.say)(answer)
+        say(answer)
         self._log("info", f"the order {text} is refused: {in_words(answer.why)}")
 
     # A plan with the order --------------------------------------------------------------------------------------------
@@ -67,7 +69,7 @@ class MissionOrders(MissionStatus):
                 self._request_with(order, effect(self.model, self.position(now), order), now)
                 return True
             except Refused as refusal:
-                self._refuse(order.text, str(refusal))
+                self._refuse(order, str(refusal))
                 self._planning.reset()
         return False
 
@@ -108,7 +110,7 @@ class MissionOrders(MissionStatus):
         if request is None or request.number != number or request.order is None or order is None:
             return super().on_no_plan(number, why, now)
         self._planning.reset()
-        self._refuse(order.text, why, (order.within or 0.0) + more if more else 0.0)
+        self._refuse(order, why, (order.within or 0.0) + more if more else 0.0)
         return self._status_changes(now)
 
     # Taking it --------------------------------------------------------------------------------------------------------
@@ -126,14 +128,14 @@ class MissionOrders(MissionStatus):
         if now < begin - 1e-9:
             return []  # it is proven from then on
         ordered = proposal.request.order
-        if order is None or order.came != ordered.came or self.status != RUNNING:
+        if order is None or (order.event, order.came) != (ordered.event, ordered.came) or self.status != RUNNING:
             self._planning.reset()
             return self._status_changes(now)
         try:
             done = effect(self.model, self.position(now), order)
         except Refused as refusal:
             self._planning.reset()
-            self._refuse(order.text, str(refusal))
+            self._refuse(order, str(refusal))
             return self._status_changes(now)
         position = done.after(self.position(now), (now - order.came) / self._unit)
         asked = proposal.request
@@ -164,7 +166,7 @@ class MissionOrders(MissionStatus):
     def _conclude(self, trigger: str, reason: str, now: float) -> None:
         super()._conclude(trigger, reason, now)
         for order in tuple(self.ordering.waiting):
-            self._refuse(order.text, f"the mission is {self.status}")
+            self._refuse(order, f"the mission is {self.status}")
 
     def _take(
         self, moves: Optional[Tuple[Move, ...]], now: float, why: str = "", commanded: bool = False,

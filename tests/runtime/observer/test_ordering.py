@@ -254,8 +254,9 @@ def test_too_many_orders_are_refused(counter: Counter) -> None:
     for _ in range(MOST_WAITING):
         counter.order("tea1")
     assert counter.mission.ordering.drain() == []
-    counter.order("tea2")
-    assert [each.order for each in counter.mission.ordering.drain()] == ["tea2"]
+    counter.order("tea1")
+    assert [(each.order, each.accepted) for each in counter.mission.ordering.drain()] == [("tea1", False)]
+    assert len(counter.mission.ordering.waiting) == MOST_WAITING
 
 
 def test_a_command_for_the_state_before_is_stale(counter: Counter) -> None:
