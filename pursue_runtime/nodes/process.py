@@ -11,6 +11,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Mapping, NoReturn
 
+from pursue_runtime.nodes.node import Ending
+
 LOWER = 5
 """By how much the nice value of nodes is raised that decide nothing about robots."""
 
@@ -27,6 +29,14 @@ def restart_process(environment: Mapping[str, str] = MappingProxyType({})) -> No
         signal.signal(sign, signal.SIG_DFL)
     sys.stdout.flush()
     os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, ANEW: "yes", **environment})
+
+
+def run_to_end(ending: Ending) -> int:
+    """Wait until the mission ends; return the exit status. Where another mission is prepared, the node begins anew."""
+    status = ending.wait(linger=0.2)
+    if ending.renewed:
+        restart_process()
+    return status
 
 
 def lower_priority() -> None:

@@ -21,7 +21,7 @@ from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, run_node, subscribe
-from pursue_runtime.nodes.process import lower_priority, restart_process
+from pursue_runtime.nodes.process import lower_priority, run_to_end
 from pursue_runtime.nodes.publishing import Newcomers, listeners
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import choice, names, whole
@@ -121,10 +121,7 @@ class SimulatorNode:
 
     def run(self) -> int:
         """Runs until the mission ends; returns the exit status."""
-        status = self.ending.wait(linger=0.2)
-        if self.ending.renewed:
-            restart_process()
-        return status
+        return run_to_end(self.ending)
 
 
 def main(package: Package) -> int:

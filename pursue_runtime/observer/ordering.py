@@ -172,9 +172,8 @@ class Ordering:
         self.say(answer)
 
     def say(self, answer: OrderAnswer) -> None:
-        """Give an answer to an order that was not taken."""
+        """Give an answer; of an order that was not taken nothing is kept, so strangers fill no journal."""
         self._answers.append(answer)
-        self._count += 1
 
     def drain(self) -> List[OrderAnswer]:
         """Return the answers that were given since the last call."""

@@ -13,23 +13,11 @@ from pursue_gen.language import parse
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.workspace import Options, write_workspace
+from tests.runtime.observer.test_ordering import TEA as STORY_TEXT
 
 pytestmark = pytest.mark.ros
 
-TEA = """\
-poi "kitchen"
-poi "room1"
-poi "room2"
-connect kitchen and room1 distance 10
-connect kitchen and room2 distance 15
-event "tea1" on_order
-event "tea2" on_order
-event "serve1" location room1 duration 3
-event "serve2" location room2 duration 3
-agent "bot" controllable mobile 1 location kitchen can_do serve1, serve2
-objective: if tea1 then serve1 within 200
-objective: if tea2 then serve2 within 200
-"""
+TEA = STORY_TEXT.replace("within 60", "within 200")
 
 PLANNER = f"env PYTHONPATH={Path(__file__).resolve().parents[2]} {sys.executable} -m pursue_gen replan"
 """The real one, of these sources."""

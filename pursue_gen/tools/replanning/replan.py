@@ -45,7 +45,7 @@ _LITTLE = 100_000_000
 
 
 _FOR_AN_ORDER = 20_000_000
-"""The work of each search for an order of a person, who waits: some second. Not measured."""
+"""The work of each search for an order of a person, who waits: about a second. Not measured."""
 
 _FEW = 2_000
 """Where many places are patrolled only so many states are looked at if states are counted: each takes long. Measured on

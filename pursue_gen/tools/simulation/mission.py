@@ -13,7 +13,7 @@ from pursue_gen.tools.simulation.faults import Crash, FaultPlan
 from pursue_gen.tools.simulation.junk import junk_word
 from pursue_gen.tools.simulation.nodes import ControllerNode, ObserverNode, PeopleNode, to_process
 from pursue_gen.tools.simulation.opponents import Opponent, kind_in_mission
-from pursue_gen.tools.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome, Settings
+from pursue_gen.tools.simulation.outcome import FAILED, GOAL, HELD, SAFE, Outcome, Settings, described
 from pursue_gen.tools.simulation.people_orders import PeopleOrders
 from pursue_gen.tools.simulation.planner import SimulatedPlanner
 from pursue_gen.tools.simulation.promises import Promises
@@ -166,7 +166,7 @@ class SimulatedMission:
         news = (state.seq, state.status) != self._seen
         self._seen = (state.seq, state.status)
         if news and self._record:
-            self._note(_described(state))
+            self._note(described(state))
         self.recorder.on_state(moment, state)
         self._promises.on_state(state, moment)
         self._driven.on_state(state)
@@ -396,10 +396,3 @@ def simulate_mission(stage: Stage, settings: Settings, seed: int, remaining: Opt
          record: bool = False) -> Outcome:
     """One mission: the same for the same stage, settings and seed. `record`: with its play, a line for each event."""
     return SimulatedMission(stage, settings, seed, remaining, record).run()
-
-
-def _described(state: SystemState) -> str:
-    """A state as a line of a play."""
-    what = f"{state.event} by {state.agent}" if state.event else state.status
-    more = f" ({state.status})" if state.event and state.status != "running" else ""
-    return f"state {state.seq}: {what}{more}" + (f": {in_words(state.reason)}" if state.reason else "")

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from typing import Mapping, Optional, Tuple
 
 from pursue_gen.tools.simulation.open_requests import Duty
+from pursue_runtime.sentences import in_words
+from pursue_runtime.state import SystemState
 
 GOAL, SAFE, HELD, FAILED = "goal", "safe", "held", "failed"
 """How missions end: goal reached; safe to the end; still holding at the end; and what must never be. Beside these
@@ -51,3 +53,10 @@ class Outcome:
     play: Tuple[str, ...] = ()
     duties: Tuple[Duty, ...] = ()
     driven: Mapping[str, float] = field(default_factory=dict)
+
+
+def described(state: SystemState) -> str:
+    """A state as a line of a play."""
+    what = f"{state.event} by {state.agent}" if state.event else state.status
+    more = f" ({state.status})" if state.event and state.status != "running" else ""
+    return f"state {state.seq}: {what}{more}" + (f": {in_words(state.reason)}" if state.reason else "")

@@ -233,6 +233,12 @@ def test_what_cannot_be_ordered_is_said_at_once(counter: Counter, text: str, why
     assert counter.refusal(text).startswith(why)
 
 
+def test_what_is_refused_at_once_is_not_written_down(counter: Counter) -> None:
+    before = counter.mission.revision()
+    counter.refusal("coffee")
+    assert counter.mission.revision() == before
+
+
 def test_what_waits_for_its_answer_is_not_ordered_again(counter: Counter) -> None:
     counter.order("tea1")
     counter.answered()
