@@ -13,7 +13,7 @@ from __future__ import annotations
 import random
 from collections import deque
 from dataclasses import dataclass, field
-from typing import Deque, Dict, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import Deque, Dict, Iterable, List, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.language.numbers import Number
 from pursue_gen.solving.distances import backwards, distances_to
@@ -22,6 +22,9 @@ from pursue_gen.solving.floors import Floor, Move
 _WORK = (10_000, 20_000, 20_000, 40_000, 40_000, 80_000, 80_000, 200_000)
 """So many times a robot is asked to go somewhere, at most, in each of several searches that decide ties otherwise: one
 that is stuck stays so for long. Measured on 20 robots that go to and fro in public buildings."""
+
+LITTLE, MORE = range(3), range(3, len(_WORK))
+"""The first of these searches, and the others. Measured on corridors, where all of them are in vain."""
 
 Places = Tuple[str, ...]
 """Where each robot is, in their order."""
@@ -40,10 +43,13 @@ class _Node:
     told: Deque[Told] = field(default_factory=lambda: deque([()]))
 
 
-def crowded_routes(floor: Floor, at: Mapping[str, str], wanted: Mapping[str, str]) -> Optional[List[Move]]:
-    """Moves after which each robot is where it is wanted; None where none are found with little work."""
-    for number, work in enumerate(_WORK):
-        moves = _Search(floor, at, wanted, number, work).found()
+def crowded_routes(
+    floor: Floor, at: Mapping[str, str], wanted: Mapping[str, str], searches: Iterable[int]
+) -> Optional[List[Move]]:
+    """Moves after which each robot is where it is wanted; None where none are found in these
+    searches."""
+    for number in searches:
+        moves = _Search(floor, at, wanted, number, _WORK[number]).found()
         if moves is not None:
             return moves
     return None

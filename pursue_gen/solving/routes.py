@@ -29,7 +29,7 @@ from typing import (
 )
 
 from pursue_gen.language.numbers import Number
-from pursue_gen.solving.crowds import crowded_routes
+from pursue_gen.solving.crowds import LITTLE, MORE, crowded_routes
 from pursue_gen.solving.distances import backwards, distances_to
 from pursue_gen.solving.floors import Floor, Move
 
@@ -61,7 +61,8 @@ def routes(floor: Floor, at: Mapping[str, str], wanted: Mapping[str, str]) -> Op
     found = _InTime(floor, at, wanted).found()
     if found is not None:
         return found
-    found = crowded_routes(floor, at, wanted) or _OneByOne(floor, at, wanted).found()
+    found = crowded_routes(floor, at, wanted, LITTLE) or _OneByOne(floor, at, wanted).found()
+    found = found or crowded_routes(floor, at, wanted, MORE)
     if found is None and len(at) <= _FEW:
         found = _OneByOne(floor, at, wanted).together()
     return None if found is None else _InTime(floor, at, wanted).sooner(found)

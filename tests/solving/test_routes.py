@@ -9,7 +9,7 @@ import pytest
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
-from pursue_gen.solving.crowds import crowded_routes
+from pursue_gen.solving.crowds import LITTLE, crowded_routes
 from pursue_gen.solving.floors import Floor, Move
 from pursue_gen.solving.routes import _InTime, _OneByOne, routes
 
@@ -71,7 +71,7 @@ def test_each_way_to_find_moves_finds_moves_that_can_be_made(
 ) -> None:
     floor, at, wanted = crowd
     one_by_one = _OneByOne(floor, at, wanted).found() if set(wanted) == set(at) else None
-    crowded = crowded_routes(floor, at, wanted)
+    crowded = crowded_routes(floor, at, wanted, LITTLE)
     sooner = None if crowded is None else _InTime(floor, at, wanted).sooner(crowded)
     for called, moves in (
         ("in time", _InTime(floor, at, wanted).found()), ("one by one", one_by_one),
