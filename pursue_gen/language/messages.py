@@ -18,6 +18,7 @@ from pursue_gen.language.usable import proposal
 
 _SIGNS = {"COLON": "`:`", "COMMA": "`,`", "LPAR": "`(`", "RPAR": "`)`"}
 _OTHERS = {"NAME": "a name in quotes", "WORD": "a name", "NUMBER": "a number", "POSE": "a pose comment"}
+_COMMENT = "a comment begins with //"
 QUOTES = "\u201c\u201d\u201e\u201f\u00ab\u00bb\u2018\u2019\u201a'`\u00b4"
 """Quotation marks that word processors and other languages put in place of straight ones."""
 _SHORT_NUMBER = 20
@@ -68,6 +69,8 @@ def unknown_statement(chunk: Sequence[Token], span: Span) -> Diagnostic:
         return unread
     if token.type in ("HUMAN", "CONTROLLABLE", "MOBILE", "SPEED", "RADIUS", "TOLERANCE", "INFLATION"):
         hint = f"it belongs to an agent: {STATEMENTS['AGENT'].form()}"
+    elif str(token) == "#":
+        hint = _COMMENT
     elif token.type in KEYWORDS and _MEANT.get(str(token)) not in _STARTERS:
         hint = f"{token} stands inside a statement; one begins with " + _list(list(_STARTERS))
     else:
@@ -219,6 +222,8 @@ def name_meant(chunk: Sequence[Token], index: int) -> Tuple[str, Token]:
 def _stray(chunk: Sequence[Token], index: int) -> str:
     """What to do about a sign that the language does not know."""
     text, before = str(chunk[index]), chunk[index - 1]
+    if text == "#":
+        return _COMMENT
     if text[0] in QUOTES:
         return 'use straight double quotes: "name"'
     if text == "." and before.type == "WORD" and index + 1 < len(chunk):

@@ -63,9 +63,8 @@ def _groups(network: Network, objective: Objective, strategy: Strategy) -> Itera
     """The groups that play these shares."""
     robots = commanded_agents(network)
     for number, avoided in enumerate(strategy.shares):
-        blocks = [strategy.blocks[n] for n in strategy.numbers_of(number, avoided[0])]
-        sent = {command.moves[0].automaton for block in blocks for command in block.commands}
-        yield Group(frozenset(sent.intersection(robots)), tuple(place for place in objective.bad if place in avoided))
+        team = strategy.commanded_by(number).intersection(robots)
+        yield Group(team, tuple(place for place in objective.bad if place in avoided))
 
 
 def _ways(now: Sequence[Group], search: SharesSearch, objective: Objective) -> Iterator[Tuple[Group, ...]]:

@@ -130,16 +130,18 @@ class SharesSearch:
         self._alone: Dict[Group, bool] = {}
         self._clashes: List[FrozenSet[Group]] = []
 
-    def found(self) -> Optional[Strategy]:
-        """The first strategy that is found; raises LimitHit where the budget is used up."""
-        able = {place: self.able(place) for place in self._objective.bad}
+    def found(self, having: Tuple[Group, ...] = ()) -> Optional[Strategy]:
+        """The first strategy that is found, by groups of which these have some of the promises; raises LimitHit where
+        the budget is used up."""
+        had = {place for group in having for place in group.bad}
+        able = {place: self.able(place) for place in self._objective.bad if place not in had}
         if self._effort.few:
             return self._by_few(able)
-        order = sorted(self._objective.bad, key=lambda place: len(able[place]))
+        order = sorted(able, key=lambda place: len(able[place]))
         turns = range(len(order) + 1) if self._effort.varied else (len(order),)
-        ways = chain.from_iterable(self._ways(order, able, (), most) for most in turns)
+        ways = chain.from_iterable(self._ways(order, able, having, most) for most in turns)
         for groups in islice(_each_once(ways), _WAYS):
-            strategy = self._together(groups)
+            strategy = self.won_by(groups)
             if strategy is not None:
                 return strategy
         return None

@@ -123,6 +123,17 @@ class Strategy:
         """The numbers of the blocks that lead to a milestone; of a share: `place` is its first one."""
         return tuple(n for n, part in enumerate(self.parts) if part == (stage, place))
 
+    def commanded_by(self, share: int) -> FrozenSet[str]:
+        """The automata that a share commands."""
+        blocks = (self.blocks[number] for number in self.numbers_of(share, self.shares[share][0]))
+        return frozenset(command.moves[0].automaton for block in blocks for command in block.commands)
+
+    def shared_out(self) -> Iterator[Tuple[FrozenSet[str], FrozenSet[str]]]:
+        """For each share the automata that it commands, and those of the promises that these keep."""
+        followed = {watcher.name for watcher in self.watchers}
+        for number, places in enumerate(self.shares):
+            yield self.commanded_by(number), frozenset(name for name, _ in places) - followed
+
     @cached_property
     def parts(self) -> Tuple[Optional[Tuple[int, Place]], ...]:
         """For each block its stage and milestone, or its share and the first place of that, or with passages the number

@@ -39,5 +39,7 @@ def render(scenario: Scenario, options: Options, strategy: Strategy, plan: str, 
         data["given_up"] = inline(given_up)
     if strategy.tours:
         data["follows"] = follower_lines(strategy)
+    if strategy.shares:
+        data["shares"] = [inline([sorted(who), sorted(what)]) for who, what in strategy.shared_out()]
     data["scenario"] = scenario.text
     return yaml_text(data, [head])

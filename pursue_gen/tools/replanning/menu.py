@@ -46,6 +46,7 @@ def at_start(scenario: Scenario, won: Solution) -> Iterator[Tuple[str, str]]:
             seconds=0.0,
             window=Fraction(1),
             sooner=_exact(done.clocks),
+            shares=tuple(won.strategy.shared_out()),
         )
         answer = answer_to(request, _STATES)
         yield event.name, "" if answer["won"] else in_words(str(answer["why"]))

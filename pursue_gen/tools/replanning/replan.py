@@ -21,7 +21,7 @@ from pursue_gen.solving.due_moves import patrols
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import played
-from pursue_gen.solving.shares import can_be_shared, won_in_shares
+from pursue_gen.solving.shares import Known, can_be_shared, won_in_shares
 from pursue_gen.solving.tours import PATROL
 from pursue_gen.solving.tours_again import is_too_much
 from pursue_gen.solving.without_pauses import verdict_of, won_without_pauses
@@ -33,6 +33,7 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.objectives import clock_of, stated
 from pursue_gen.tga.pauses import pauses
+from pursue_gen.tools.replanning.as_before import shared_as_before
 from pursue_gen.tools.replanning.ordered import longer
 from pursue_gen.tools.replanning.request import Request, read_request
 from pursue_gen.tools.replanning.start import around, network_from, passed_bounds, start_clocks
@@ -109,7 +110,7 @@ def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
             most = replace(limits, states=min(states, _FEW))
             verdict = solve(network, objective, request.rules.reaction, limits=most.since(start))
         else:
-            shared = _won_in_shares(network, objective, request.rules.reaction, options, little)
+            shared = _won_in_shares(network, objective, request, options, little)
             if shared is not None:
                 return _won(shared, network, request, None)
             free = won_without_pauses(network, objective, request.rules.reaction, little, options, states or LIMIT)
@@ -134,13 +135,18 @@ def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
 
 
 def _won_in_shares(
-    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions, work: int
+    network: Network, objective: Objective, request: Request, options: SolveOptions, work: int
 ) -> Optional[Strategy]:
-    """A proven strategy in shares that so much work finds; None where it finds none."""
+    """A proven strategy in shares that so much work finds, shared out as before if that wins; None where it finds
+    none."""
     if not can_be_shared(network, objective):
         return None
+    reaction, known = request.rules.reaction, Known()
+    strategy = shared_as_before(network, objective, request, options, work, known)
+    if strategy is not None:
+        return strategy
     little = replace(options, limits=replace(options.limits, work=work))
-    found = won_in_shares(network, objective, reaction, little)
+    found = won_in_shares(network, objective, reaction, little, known=known)
     return None if found is None else found.strategy
 
 

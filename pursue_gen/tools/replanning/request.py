@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any, Dict, FrozenSet, List, Mapping, Tuple
+from typing import Any, Dict, FrozenSet, Iterator, List, Mapping, Tuple
 
 from pursue_gen.diagnostics import PursueError, Severity, error
 from pursue_gen.language.checks import check_reading
@@ -29,7 +29,8 @@ class Request:
     many time units. It may take so many `seconds`, 0: any number. `follows`: the watchers and tours of the workspace's
     plan, in its lines; their automata are in the state. The plan may come into force up to `window` time units after
     its begin. `sooner`: the clocks that an order of a person has started, with how much sooner it is to be answered
-    than the scenario promises.
+    than the scenario promises. `shares`: the automata of robots that keep those promises by the workspace's plan, for
+    each of its shares.
     """
 
     scenario: Scenario
@@ -46,6 +47,7 @@ class Request:
     awaited: Mapping[str, Fraction]
     seconds: float
     follows: Tuple[str, ...] = ()
+    shares: Tuple[Tuple[FrozenSet[str], FrozenSet[str]], ...] = ()
     window: Fraction = Fraction(0)
     sooner: Mapping[str, Fraction] = field(default_factory=dict)
 
@@ -82,7 +84,8 @@ def read_request(data: object) -> Request:
         turning=_agents(request.get("turning", ()), "turning", scenario),
         awaited=_awaited(request.get("awaited"), scenario),
         seconds=float(seconds),
-        follows=_lines(game.get("follows", ())),
+        follows=_lines(game.get("follows", ()), "follows", "a list of lines of a plan, [] for none"),
+        shares=tuple(_shares(game.get("shares", ()))),
         window=_time(request.get("window", 0), "window"),
         sooner={key: _time(value, key) for key, value in _object(request.get("sooner", {}), "sooner").items()},
     )
@@ -113,10 +116,19 @@ def _numbers(data: object, scenario: Scenario) -> FrozenSet[int]:
     return frozenset(data)
 
 
-def _lines(data: object) -> Tuple[str, ...]:
+def _lines(data: object, name: str, expected: str) -> Tuple[str, ...]:
     if not isinstance(data, (list, tuple)) or not all(isinstance(line, str) for line in data):
-        raise wrong(f"follows is {_shown(data)}", "a list of lines of a plan, [] for none")
+        raise wrong(f"{name} is {_shown(data)}", expected)
     return tuple(data)
+
+
+def _shares(data: object) -> Iterator[Tuple[FrozenSet[str], FrozenSet[str]]]:
+    expected = "for each share a list of robots, and one of promises"
+    for share in data if isinstance(data, (list, tuple)) else [None]:
+        if not isinstance(share, (list, tuple)) or len(share) != 2:
+            raise wrong(f"shares is {_shown(data)}", expected)
+        robots, kept = (frozenset(_lines(names, "shares", expected)) for names in share)
+        yield robots, kept
 
 
 def _agents(data: object, name: str, scenario: Scenario) -> FrozenSet[str]:
