@@ -167,6 +167,8 @@ def _hint(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
         return "this `)` has no `(`"
     if token.type in ("TRUE_IF", "FALSE_IF") and "COMMA" in expected:
         return "put a comma behind true or false: " + STATEMENTS["STATE"].form()
+    if statement == "FOR" and "IN" in expected and "IN" in [one.type for one in chunk[:index]]:
+        return _listed(chunk)
     if token.type == "COLON" and "COLON" not in expected:
         return f"delete the colon behind {chunk[index - 1]}; {_form(chunk[: index + 1])}"
     return _meant(chunk, index, expected)
@@ -185,6 +187,15 @@ def _otherwise(chunk: Sequence[Token], index: int) -> str:
     if "ESCORT" in kinds and token.type == "WITHIN" and before.type == "WORD":
         return f"name the places: {_ESCORT}"
     return ""
+
+
+def _listed(chunk: Sequence[Token]) -> str:
+    """How a statement is written for each of a list of things."""
+    kinds = [one.type for one in chunk]
+    first = kinds.index("IN") + 1
+    words = takewhile(lambda one: one.type in ("WORD", "COMMA"), chunk[first:])
+    named = [str(one) for one in words if one.type == "WORD"]
+    return f'write a line before it, group "some": {", ".join(named)}; then: for each {chunk[first - 2]} in some: …'
 
 
 def _oftener(chunk: Sequence[Token], times: str) -> str:

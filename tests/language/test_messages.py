@@ -14,6 +14,7 @@ SLIPS = [
     ("poi", "PML010", 4, "expected a name in quotes after `poi`, but the statement ends", 'the form is: poi "a"'),
     ('poi "a', "PML012", 5, "no closing quote", 'write it as "name"'),
     ("poi “a”", "PML010", 5, "found `“`", "use straight double quotes"),
+    ("for each r in a, b: event \"e\" of r", "PML010", 19, "expected `in`", 'group "some": a, b; then: for each r'),
     ("# my floor", "PML011", 1, "expected a statement, found `#`", "a comment begins with //"),
     ('poi "a" # my desk', "PML010", 9, "found `#`", "a comment begins with //"),
     ('poi "a" "b"', "PML010", 9, "expected `label`, `for`, `except` or the end of the statement", "the form is"),
