@@ -188,7 +188,7 @@ def _why_it_may_stop_time(
 
     At the end of each stay the environment must be able to lead it away, whatever the variables are; and every stay but
     the first may last some time, so that these moves leave time its way. Each stay begins with its clocks at 0, but
-    one at the network's start may not. `places`: where it may be.
+    one at the network's start with those of that. `places`: where it may be.
     """
     stays = automaton.stays
     if places.isdisjoint(stays):
@@ -212,11 +212,20 @@ def _why_it_may_stop_time(
         if any(bound.bound <= 0 for bound in stays[name]):
             return f"has no time to stay in {name}"
         ways = [edge for edge in automaton.edges if edge.source == name != edge.target and _is_free(edge)]
-        if stay is not None and (name != automaton.initial or not network.start):
-            stay = _with_what_has_passed(arena, stay, clocks, automaton.name, name, whole)
-        if stay is None or _left_at(arena, stay, bounds, ways):
+        later = None if stay is None else _with_what_has_passed(arena, stay, clocks, automaton.name, name, whole)
+        pieces = [later]
+        if name == automaton.initial and network.start:
+            at_first = before is None and _only_passes(automaton.name, name, arena, whole)
+            pieces = [later, arena.start.up().intersect(stay)] if at_first and stay is not None else [stay]
+        if any(one is None or _left_at(arena, one, bounds, ways) for one in pieces):
             return f"may have to leave {name} and not be able to"
     return ""
+
+
+def _only_passes(name: str, place: str, arena: Arena, network: Network) -> bool:
+    """True if nothing resets the automaton's clocks while it stays at the place."""
+    then = (edge for other, edge in network.edges if other != name or edge.source == edge.target == place)
+    return all(arena.clock.keys().isdisjoint(edge.resets) for edge in then)
 
 
 def _with_what_has_passed(

@@ -71,6 +71,25 @@ def test_whoever_has_no_last_instant_to_leave_at_is_not_left_out() -> None:
     assert "no last instant" in beside(Automaton("O", strict, "here", (away,))).reason
 
 
+def in_a_stay(rested: int, stayed: int, *edges: Edge) -> ProofReport:
+    """The same of one who is in the middle of a stay of 3 to 5 time units: so many ago it came, and has it rested."""
+    bounds = (ClockBound("rested", ">", 1), ClockBound("stayed", ">=", 3))
+    away = Edge("here", "there", Guard(bounds), controllable=False)
+    back = Edge("there", "here", controllable=False, resets=("rested", "stayed"))
+    places = (Location("here", (ClockBound("stayed", "<=", 5),)), Location("there"))
+    other = Automaton("O", places, "here", (away, back, *edges))
+    values = (("x", 0), ("rested", rested), ("stayed", stayed))
+    start = tuple(c for name, v in values for c in (Constraint(name, None, Fraction(v), False), *since(name, v)))
+    return verify(Network(("x", "rested", "stayed"), (), (), (BOT, other), start), REACH, Strategy((LATER,)))
+
+
+def test_whoever_is_in_the_middle_of_a_stay_is_left_out_if_it_can_leave_in_time() -> None:
+    assert in_a_stay(0, 0).ok and in_a_stay(2, 4).ok and in_a_stay(0, 3).ok
+    assert "may have to leave here and not be able to" in in_a_stay(0, 4).reason
+    resting = Edge("here", "here", controllable=False, resets=("rested",))
+    assert "may have to leave here and not be able to" in in_a_stay(2, 4, resting).reason
+
+
 @pytest.mark.parametrize(
     "state",
     [{}, {"O": "here"}, {"A": "start", "O": "here"}, {"O": "here", "A": "start"}, {"A": "start", "v": 0}],

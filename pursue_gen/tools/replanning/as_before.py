@@ -17,8 +17,8 @@ from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.objectives import clock_of
 from pursue_gen.tools.replanning.request import Request
 
-_GAME = 4_000_000
-"""The work of each game of these shares. Measured on an order in a ward with two robots."""
+_WORK, _GAME = 10_000_000, 4_000_000
+"""The work of these shares at most, and of each of their games. Measured on an order in a ward with two robots."""
 
 
 def shared_as_before(
@@ -28,7 +28,7 @@ def shared_as_before(
     groups = tuple(_groups(network, objective, request))
     if not groups:
         return None
-    effort = Effort(work, game=_GAME, joins=False)
+    effort = Effort(min(work, _WORK), game=_GAME, joins=False)
     with suppress(LimitHit):
         return SharesSearch(network, objective, request.rules.reaction, options, effort, known).found(groups)
     return None

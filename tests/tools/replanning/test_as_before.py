@@ -53,13 +53,46 @@ objective: if tea then serve within 90
 objective: patrol hall, lab every 300 by any robot
 """
 
+HOTEL = """
+poi "lobby"
+poi "kitchen"
+poi "laundry"
+poi "corridor"
+poi "room1"
+poi "room2"
+poi "room3"
+connect lobby and kitchen distance 5
+connect lobby and corridor distance 6
+connect corridor and laundry distance 4
+for each r in rooms: connect corridor and r distance 3
+group "rooms": room1, room2, room3
+group "suites": room1, room2
+thing "towel"
+thing "tea"
+event "take_towel" location laundry duration 3 takes towel
+event "take_tea" location kitchen duration 3 takes tea
+event "towels" on_order
+for each r in suites: event "ring" of r
+for each r in rooms: event "bring" of r location r duration 4 gives towel
+for each r in suites: event "serve" of r location r duration 4 gives tea
+agent "r1" controllable mobile 1 carries 1 location lobby can_do take_towel, take_tea, bring of rooms, serve of suites
+agent "r2" controllable mobile 1 carries 1 location lobby can_do take_towel, take_tea, bring of rooms, serve of suites
+for each r in suites: agent "guest" of r location r can_do ring of r
+agent "cleaner" mobile 1 location room3
+assume: cleaner stays 60 to 300 at each place
+for each r in suites: assume: guest of r waits 200 between ring of r
+objective: if towels then bring_room1 within 180
+for each r in suites: objective: if ring of r then serve of r within 150
+objective: avoid any robot at room3 and cleaner at room3
+"""
+
 
 @lru_cache(maxsize=None)
-def won() -> api.Solved:
-    return api.solve(api.parse(WARD))
+def won(text: str) -> api.Solved:
+    return api.solve(api.parse(text))
 
 
-def requested(monkeypatch: pytest.MonkeyPatch) -> Request:
+def requested(monkeypatch: pytest.MonkeyPatch, text: str) -> Request:
     """What is asked of the planner for an order at the start."""
     asked = []
 
@@ -68,21 +101,27 @@ def requested(monkeypatch: pytest.MonkeyPatch) -> Request:
         return {"won": True}
 
     monkeypatch.setattr(menu, "answer_to", answer)
-    list(menu.at_start(won().scenario, won().solution))
+    list(menu.at_start(won(text).scenario, won(text).solution))
     return asked[0]
 
 
 def test_an_order_is_promised_with_little_work_where_promises_stay_shared_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    request = requested(monkeypatch)
+    request = requested(monkeypatch, WARD)
     assert {robot for robots, _ in request.shares for robot in robots} == {"amy", "bob"}
     monkeypatch.setattr(sys.modules[answer_to.__module__], "_FOR_AN_ORDER", 8_000_000)
     assert answer_to(request, 12_000)["won"], "shared out anew it takes more than that"
 
 
+def test_somebody_who_stays_where_an_order_finds_them_is_no_hindrance(monkeypatch: pytest.MonkeyPatch) -> None:
+    request = requested(monkeypatch, HOTEL)
+    monkeypatch.setattr(sys.modules[answer_to.__module__], "_FOR_AN_ORDER", 1_000_000)
+    assert answer_to(request, 1_000)["won"], "the game in one piece has more states"
+
+
 def test_the_workspace_says_how_promises_are_shared_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    game = yaml.safe_load(render(won().scenario, Options(), won().solution.strategy, "", "0"))
+    game = yaml.safe_load(render(won(WARD).scenario, Options(), won(WARD).solution.strategy, "", "0"))
     data = {"format": 1, "game": game, "locations": {}, "values": {}, "clocks": {}, "ahead": 0, "excused": []}
-    assert read_request(data).shares == requested(monkeypatch).shares
+    assert read_request(data).shares == requested(monkeypatch, WARD).shares
     for wrong in ("amy", [["amy"]], [[["amy"], "obj"]], [[["amy"], [3]]]):
         with pytest.raises(PursueError, match="shares is "):
             read_request({**data, "game": {**game, "shares": wrong}})
