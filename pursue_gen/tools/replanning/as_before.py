@@ -22,13 +22,13 @@ _WORK, _GAME = 10_000_000, 4_000_000
 
 
 def shared_as_before(
-    network: Network, objective: Objective, request: Request, options: SolveOptions, work: int, known: Known
+    network: Network, objective: Objective, request: Request, options: SolveOptions, known: Known
 ) -> Optional[Strategy]:
-    """A proven strategy in such shares that so much work finds; None where it finds none. `known`: what that found."""
+    """A proven strategy in such shares that little work finds; None where it finds none. `known`: what that found."""
     groups = tuple(_groups(network, objective, request))
     if not groups:
         return None
-    effort = Effort(min(work, _WORK), game=_GAME, joins=False)
+    effort = Effort(_WORK, game=_GAME, joins=False)
     with suppress(LimitHit):
         return SharesSearch(network, objective, request.rules.reaction, options, effort, known).found(groups)
     return None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from math import ceil
 from typing import Any, Dict, Mapping, Optional, Sequence
 
@@ -18,6 +19,7 @@ from pursue_gen.partition.strategy_data import cover_data, strategy_data
 from pursue_gen.proof.checker import LIMIT
 from pursue_gen.proof.worst_case import counting_clock, worst_case
 from pursue_gen.solving.due_moves import patrols
+from pursue_gen.solving.efforts import EFFORTS
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rules import played
@@ -44,6 +46,9 @@ from pursue_runtime.sentences import marked, quoted
 _LITTLE = 100_000_000
 """The work of a search that is not for the game as it is alone: some five seconds. Not measured."""
 
+
+_COUNTED = 200_000_000
+"""The same where states are counted, so that no search lasts for minutes. Measured on simulated orders with faults."""
 
 _FOR_AN_ORDER = 20_000_000
 """The work of each search for an order of a person, who waits: about a second. Not measured."""
@@ -77,7 +82,7 @@ def answer_to(request: Request, states: int = 0, begun: Optional[float] = None) 
     """The same for a request that was read; `begun`: when that began, on the monotonic clock, now by default."""
     start = time.monotonic() if begun is None else begun
     limits = Limits(states=states) if states else Limits(request.seconds, careful_memory(), wall=True).since(start)
-    limits = replace(limits, work=_FOR_AN_ORDER if request.window else 0)
+    limits = replace(limits, work=_FOR_AN_ORDER if request.window else _COUNTED if states else 0)
     answer = _answer(request, limits, states)
     if not answer["won"] and any(request.sooner.values()):
         later = longer(request, lambda more: bool(_answer(more, limits.since(start), states)["won"]))
@@ -97,7 +102,7 @@ def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
     if reason:
         return _lost(reason)
     own = followers(game, request)
-    start, little = limits.now(), limits.work or _LITTLE
+    start, little = limits.now(), min(limits.work or _LITTLE, _LITTLE)
     options = SolveOptions(limits)
     try:
         on = tours_from_here(game, objective, own, request, options)
@@ -137,16 +142,19 @@ def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
 def _won_in_shares(
     network: Network, objective: Objective, request: Request, options: SolveOptions, work: int
 ) -> Optional[Strategy]:
-    """A proven strategy in shares that so much work finds, shared out as before if that wins; None where it finds
-    none."""
+    """A proven strategy in shares that so much work finds; None where it finds none. For an order they are shared out
+    as before if that wins, and little effort finds nothing else."""
     if not can_be_shared(network, objective):
         return None
-    reaction, known = request.rules.reaction, Known()
-    strategy = shared_as_before(network, objective, request, options, work, known)
+    limited, known = replace(options, limits=replace(options.limits, work=work)), Known()
+    search = partial(won_in_shares, network, objective, request.rules.reaction, limited, known=known)
+    found = search(EFFORTS[:1])
+    if found is not None:
+        return found.strategy
+    strategy = shared_as_before(network, objective, request, options, known) if request.window else None
     if strategy is not None:
         return strategy
-    little = replace(options, limits=replace(options.limits, work=work))
-    found = won_in_shares(network, objective, reaction, little, known=known)
+    found = search(EFFORTS[1:])
     return None if found is None else found.strategy
 
 
@@ -197,7 +205,7 @@ def _takes(strategy: Strategy, network: Network, objective: Objective, request: 
 def _at_limit(limits: Limits) -> str:
     """Which limit of the request has ended the search; "" for others."""
     if limits.states:
-        return f" within {limits.states} states"
+        return " within the limits of a search"
     return f" within {limits.seconds:g} s" if 0 < limits.seconds <= limits.spent else ""
 
 

@@ -261,7 +261,7 @@ def test_with_a_limit_on_states_neither_time_nor_memory_of_the_machine_counts(mo
     monkeypatch.setattr(importlib.import_module("pursue_gen.tools.replanning.replan"), "careful_memory", lambda: 1)
     assert replan(request, states=12_000) == replan(beginning("thesis/scenario_4"), states=12_000)
     assert replan(request, states=12_000)["won"]
-    assert replan(request, states=10)["why"] == "no plan was found within 10 states"
+    assert replan(request, states=10)["why"] == "no plan was found within the limits of a search"
     assert not replan(request)["won"]
 
 
