@@ -10,7 +10,7 @@ from pursue_gen.diagnostics import Span
 from pursue_gen.language.clauses import Domains
 from pursue_gen.language.loads import MOST_LOADS, Carrier
 from pursue_gen.language.numbers import Number, Window, whole_above, whole_below
-from pursue_gen.language.objectives.endurance import MOST_PARTS
+from pursue_gen.language.objectives.endurance import MOST_BATTERY_PARTS
 from pursue_gen.language.objectives.holds import Holds
 from pursue_gen.language.objectives.request import with_fewer
 from pursue_gen.language.scenario import Battery, Endurance, Event, Pause, Reach, Request, Scenario, Travel
@@ -128,7 +128,8 @@ def charge_changes(scenario: Scenario, endurance: Endurance) -> Iterator[Repair]
         lambda k: scenario.with_instead(endurance, replace(endurance, charge=k)),
         lambda k: f"a battery of {name} that charges in {instead(k, before)}", endurance.span, 1,
     )  # fmt: skip
-    finer = [parts * k for k in (2, 4, 8) if parts * k <= MOST_PARTS and replace(endurance, parts=parts * k).is_even]
+    possible = (n for n in (2 * parts, 4 * parts, 8 * parts) if n <= MOST_BATTERY_PARTS)
+    finer = [n for n in possible if replace(endurance, parts=n).is_even]
     if finer:
         yield Repair(
             "parts", name, f"a battery of {name} that counts smaller parts of a charge", parts, finer,

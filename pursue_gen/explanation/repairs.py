@@ -42,7 +42,7 @@ from pursue_gen.language.scenario import (
     Scenario,
     StatedObjective,
 )
-from pursue_gen.language.statements.event import MOST_PARTS
+from pursue_gen.language.statements.event import MOST_EVENT_PARTS
 from pursue_gen.language.template import name_text
 from pursue_gen.language.times import instead, like
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, REPORTED, Rules
@@ -237,7 +237,7 @@ def _in_parts(scenario: Scenario, event: Event) -> Repair:
     """More parts of what may be broken off, each of which stays done."""
     now = event.split or 1
     return Repair(
-        "parts", event.name, f"{event.shown} in more parts", now, range(now + 1, MOST_PARTS + 1),
+        "parts", event.name, f"{event.shown} in more parts", now, range(now + 1, MOST_EVENT_PARTS + 1),
         lambda k: scenario.with_instead(event, replace(event, may_stop=True, split=k)),
         lambda k: f"{event.shown} in {k} parts, of which each stays done (may_stop in {k} parts)", event.span, 0,
     )  # fmt: skip

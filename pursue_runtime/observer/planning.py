@@ -14,7 +14,7 @@ from pursue_runtime.zones import EPSILON, INFINITY, Zone, holds, last_moment
 MIN_LEAD_TIME = 1.0
 """Seconds between a request and the time for which its plan is computed: finding and distributing it takes time."""
 
-ATTEMPTS = 5
+MOST_LATE_PLANS = 5
 """Plans in a row that may arrive too late to be put in force."""
 
 UNKNOWN = 1000
@@ -127,8 +127,8 @@ class Planning:
             self._place, self.lead_time = place, known
         elif self.request or self.proposal or self.no_plan_reason:
             return
-        if self._attempts == ATTEMPTS:
-            self.no_plan_reason = f"{ATTEMPTS} plans came too late to begin"
+        if self._attempts == MOST_LATE_PLANS:
+            self.no_plan_reason = f"{MOST_LATE_PLANS} plans came too late to begin"
             return
         self._attempts += 1
         self._number += 1

@@ -254,6 +254,9 @@ def become(program: Program, end: End) -> None:
     sys.argv[:] = program.arguments  # rosmaster has kept the list
     first = os.path.dirname(os.path.realpath(program.arguments[0]))
     sys.path[:0] = [first, *filter(None, program.variables.get("PYTHONPATH", "").split(":"))]
+    if os.environ.get("PYTHONUNBUFFERED"):  # Python looks at it where it starts
+        for out in (sys.stdout, sys.stderr):
+            out.reconfigure(line_buffering=True)  # type: ignore[union-attr]
     if "COVERAGE_PROCESS_START" in os.environ:
         importlib.import_module("coverage").process_startup()
     random.seed()

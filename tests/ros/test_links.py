@@ -17,7 +17,7 @@ from xmlrpc.client import ServerProxy
 
 import pytest
 from preloaded import process_of
-from ros_world import Ros, end, free_port, make_whole
+from ros_world import Ros, end, free_port
 
 from tests.namespaces import Lab, lab, why_not
 from tests.waiting import PATIENCE
@@ -67,7 +67,7 @@ class Nodes:
             assert time.monotonic() < deadline, self.logs()
             if name not in self.running or self.running[name].poll() is not None:
                 self.port = free_port() if first and self._rooms is None else self.port
-                self.start(name, f"exec roscore -p {self.port}", "master")
+                self.start(name, f"source devel/setup.bash; exec roscore -p {self.port}", "master")
             time.sleep(0.1)
 
     def log(self, name: str) -> str:
@@ -118,7 +118,7 @@ def nodes(ros: Ros, workspace: Path, logs: Path, rooms: Optional[Lab] = None) ->
 def talk(made: Nodes, workspace: Path, talker: str = "talker") -> int:
     """Starts talker and listener, and waits until they are connected: the last number that was heard then."""
     for name, role in (("listener", "listener"), ("talker", talker)):
-        made.start(name, f"source devel/setup.bash; exec /usr/bin/python3 {PROBE} {role}", name)
+        made.start(name, f"source devel/setup.bash; exec python3 {PROBE} {role}", name)
     until(lambda: len(heard(made)) > 20, made.logs)
     return max(heard(made))
 
@@ -143,7 +143,7 @@ def once(made: Nodes, since: int) -> bool:
 
 def test_a_connection_that_was_dropped_is_made_again(ros: Ros, built: Build, tmp_path: Path) -> None:
     """rospy takes it that the publisher is gone, and never asks again."""
-    workspace = built("thesis/scenario_1", "distributed", make_whole)
+    workspace = built("thesis/scenario_1")
     with nodes(ros, workspace, tmp_path) as made:
         talk(made, workspace)
         made.kill("talker", signal.SIGUSR1)
@@ -152,7 +152,7 @@ def test_a_connection_that_was_dropped_is_made_again(ros: Ros, built: Build, tmp
 
 def test_a_first_connection_that_is_not_answered_is_tried_again(ros: Ros, built: Build, tmp_path: Path) -> None:
     """rospy waits for the answer for ever, and for a minute where a busy machine does not even take the connection."""
-    workspace = built("thesis/scenario_1", "distributed", make_whole)
+    workspace = built("thesis/scenario_1")
     with nodes(ros, workspace, tmp_path) as made:
         since = talk(made, workspace, "deaf")
         assert "connected to it anew" in made.log("listener"), made.logs()
@@ -160,7 +160,7 @@ def test_a_first_connection_that_is_not_answered_is_tried_again(ros: Ros, built:
 
 
 def test_the_messages_of_a_node_that_stood_still_are_received_whole(ros: Ros, built: Build, tmp_path: Path) -> None:
-    workspace = built("thesis/scenario_1", "distributed", make_whole)
+    workspace = built("thesis/scenario_1")
     with nodes(ros, workspace, tmp_path) as made:
         since = talk(made, workspace)
         made.kill("talker", signal.SIGSTOP)
@@ -174,7 +174,7 @@ def test_the_messages_of_a_node_that_stood_still_are_received_whole(ros: Ros, bu
 @needs_namespaces
 @pytest.mark.parametrize("seconds", [8, LONG])
 def test_a_cut_link_comes_back_by_itself(ros: Ros, built: Build, tmp_path: Path, seconds: int) -> None:
-    workspace = built("thesis/scenario_1", "distributed", make_whole)
+    workspace = built("thesis/scenario_1")
     with lab("master", "talker", "listener") as rooms, nodes(ros, workspace, tmp_path, rooms) as made:
         since = talk(made, workspace)
         rooms.cut("talker")
@@ -196,7 +196,7 @@ def play(made: Nodes, unit: float, options: str = "") -> None:
     for node, room in MACHINES.items():
         package = "UI" if node == "simulator" else node
         told = {"observer": f"_time_unit:={unit} --journal off {options}", "UI": f"--autostart --wait {PATIENCE}"}
-        made.start(node, f"source devel/setup.bash; exec devel/lib/{package}/{node} {told.get(node, '')}", room)
+        made.start(node, f"source devel/setup.bash; exec src/{package}/scripts/{node} {told.get(node, '')}", room)
 
 
 @needs_namespaces
@@ -205,7 +205,7 @@ def test_a_mission_whose_robot_is_cut_off_goes_on_by_itself(
     ros: Ros, built: Build, tmp_path: Path, seconds: int
 ) -> None:
     rooms_of = ("master", *sorted(set(MACHINES.values())))
-    workspace = built("thesis/scenario_1", "distributed", make_whole)
+    workspace = built("thesis/scenario_1")
     with lab(*rooms_of) as rooms, nodes(ros, workspace, tmp_path, rooms) as made:
         silence = 5 if seconds > 5 else 30  # after a short cut it takes a while, too, until somebody is heard
         play(made, 0.5, f"_silence:={silence}")
@@ -219,8 +219,9 @@ def test_a_mission_whose_robot_is_cut_off_goes_on_by_itself(
         assert ("controller_bot1 is silent" in made.log("observer")) is (seconds > silence)
 
 
-OTHERS = {"recorder": "UI/recorder", "sim_clock": "UI/sim_clock", "reader": "pursue_reader/pursue_reader",
-          "manager": "communication_manager/communication_manager --port 0"}
+OTHERS = {"recorder": "UI/scripts/recorder", "sim_clock": "UI/scripts/sim_clock",
+          "reader": "pursue_reader/scripts/pursue_reader",
+          "manager": "communication_manager/scripts/communication_manager --port 0"}
 
 
 @pytest.mark.parametrize("way, reason", [
@@ -232,10 +233,10 @@ OTHERS = {"recorder": "UI/recorder", "sim_clock": "UI/sim_clock", "reader": "pur
 def test_a_lost_master_stops_every_node_with_the_reason_and_status_1(
     ros: Ros, built: Build, tmp_path: Path, way: str, reason: str
 ) -> None:
-    with nodes(ros, built("thesis/scenario_1", "distributed", make_whole), tmp_path) as made:
+    with nodes(ros, built("thesis/scenario_1"), tmp_path) as made:
         play(made, 3.0)
         for name, program in OTHERS.items():
-            made.start(name, f"source devel/setup.bash; export ROS_HOME={tmp_path}/home; exec devel/lib/{program}")
+            made.start(name, f"source devel/setup.bash; export ROS_HOME={tmp_path}/home; exec src/{program}")
         names = (*MACHINES, *OTHERS)
         until(lambda: "bot1_c2b by bot1" in made.log("observer"), made.logs)
         until(lambda: set(names) - {"reader", "manager"} <= registered(made), made.logs)
@@ -259,7 +260,7 @@ def test_a_lost_master_stops_every_node_with_the_reason_and_status_1(
 
 
 def test_a_lost_master_ends_a_mission_that_has_not_begun(ros: Ros, built: Build, tmp_path: Path) -> None:
-    with nodes(ros, built("thesis/scenario_1", "distributed", make_whole), tmp_path) as made:
+    with nodes(ros, built("thesis/scenario_1"), tmp_path) as made:
         for node in ("observer", "UI"):
             made.start(node, f"source devel/setup.bash; exec rosrun {node} {node} {'--wait 600' * (node == 'UI')}")
         until(lambda: {"observer", "UI"} <= registered(made), made.logs)
@@ -269,7 +270,7 @@ def test_a_lost_master_ends_a_mission_that_has_not_begun(ros: Ros, built: Build,
 
 
 def test_where_roslaunch_loses_its_own_master_ui_and_observer_say_so(ros: Ros, built: Build, tmp_path: Path) -> None:
-    log, workspace = tmp_path / "launch", built("thesis/scenario_1", "distributed", make_whole)
+    log, workspace = tmp_path / "launch", built("thesis/scenario_1")
     line = f"roslaunch --skip-log-check scenario_1_bringup mission.launch time_unit:=3 wait:={PATIENCE:g}"
     command = f"source devel/setup.bash; exec {line}"
     launch, there = ros.start_with_master(command, workspace, log, ROS_HOME=str(tmp_path))
@@ -300,7 +301,7 @@ def is_served(port: int) -> bool:
 
 
 def test_simulated_time_goes_on_where_a_killed_clock_was(ros: Ros, built: Build, tmp_path: Path) -> None:
-    with nodes(ros, built("thesis/scenario_1", "distributed", make_whole), tmp_path) as made:
+    with nodes(ros, built("thesis/scenario_1"), tmp_path) as made:
         lives = [a_clocks_life(made, name) for name in ("first", "second")]
     times = [moment for life in lives for moment in life]
     assert times == sorted(times)
@@ -310,7 +311,7 @@ def test_simulated_time_goes_on_where_a_killed_clock_was(ros: Ros, built: Build,
 
 def a_clocks_life(made: Nodes, name: str) -> List[float]:
     """Starts a clock, and kills it after its eighth second; the times that somebody has heard of it (seconds)."""
-    made.start(f"{name}_ears", "exec rostopic echo -p /clock")
+    made.start(f"{name}_ears", "source devel/setup.bash; exec rostopic echo -p /clock")
     made.start(name, "source devel/setup.bash; exec rosrun UI sim_clock _speed:=4")
 
     def told() -> List[float]:

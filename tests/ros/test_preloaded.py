@@ -99,6 +99,17 @@ def test_who_kills_it_by_its_own_number_ends_what_was_started(variables: Dict[st
     assert subprocess.run(command, env=variables, check=False).returncode == -signal.SIGKILL
 
 
+def test_lines_are_not_kept_back_where_the_variable_says_so(variables: Dict[str, str], command: List[str]) -> None:
+    Path(command[1]).write_text("import os\nprint('said')\nos._exit(0)\n")
+    said = {
+        kept: subprocess.run(
+            command, env={**variables, "PYTHONUNBUFFERED": kept}, stdout=subprocess.PIPE, text=True, check=True
+        ).stdout
+        for kept in ("", "1")
+    }
+    assert said == {"": "", "1": "said\n"}
+
+
 def test_other_uses_of_python_are_python_s_own(variables: Dict[str, str]) -> None:
     code = "import sys; print(sys.argv, 'json' in sys.modules)"
     done = subprocess.run(["python3", "-c", code, "x"], env=variables, stdout=subprocess.PIPE, text=True, check=True)

@@ -16,7 +16,7 @@ from pursue_gen.language.template import Template
 from pursue_gen.language.times import written_time
 from pursue_gen.language.word import Form, Numbers, Word
 
-MOST_PARTS = 20
+MOST_BATTERY_PARTS = 20
 """The most parts of a battery by time: its automaton has some four locations for each. Measured on night_bell: 152
 discrete states with 5 of them, 460 with 16; 0.6 and 0.9 s for solving and proving."""
 
@@ -109,13 +109,13 @@ class Endurance(Safety):
                 message = f"{word} {written_time(number)}: expected more than 0"
                 yield error("PML312", message, self.span, "delete this line if the battery does not matter")
                 return
-        if not 1 <= self.parts <= MOST_PARTS:
-            message = f"in {self.parts} parts: expected 1 to {MOST_PARTS}"
+        if not 1 <= self.parts <= MOST_BATTERY_PARTS:
+            message = f"in {self.parts} parts: expected 1 to {MOST_BATTERY_PARTS}"
             yield error("PML312", message, self.span, "each part makes the game larger; write fewer, or leave in … out")
         elif not self.is_even:
             message = f"in {self.parts} parts: one would be {decimal_text(self.part)} of lasts"
             message += f" {written_time(self.lasts)}, charged in {decimal_text(self.part_charge)}"
-            fits = [str(n) for n in range(2, MOST_PARTS + 1) if replace(self, parts=n).is_even]
+            fits = [str(n) for n in range(2, MOST_BATTERY_PARTS + 1) if replace(self, parts=n).is_even]
             hint = f"write times that can be divided, or in {listed(fits, 'or')} parts; nothing is rounded"
             yield error("PML312", message, self.span, hint)
 

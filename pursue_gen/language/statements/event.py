@@ -20,7 +20,7 @@ from pursue_gen.language.word import Form, Numbers, Word
 MOST_TIMES = 100
 """How often an event can happen at most that is counted: each count is a location of an automaton."""
 
-MOST_PARTS = 20
+MOST_EVENT_PARTS = 20
 """Parts of an event at most: how many are done multiplies the states of the game."""
 
 
@@ -237,8 +237,8 @@ class Event(Labelled):
             hint = f"write how long all of it takes, as in duration 20 in {parts} parts; or {hint}"
         elif self.collaborative:
             what, hint = "is collaborative", f"{hint}, or collaborative"
-        elif not 2 <= parts <= MOST_PARTS:
-            what = f"has {parts} parts: expected 2 to {MOST_PARTS}"
+        elif not 2 <= parts <= MOST_EVENT_PARTS:
+            what = f"has {parts} parts: expected 2 to {MOST_EVENT_PARTS}"
             hint = f"write a number in these limits, or {hint}"
         if what:
             yield error("PML440", f"{name} {what}", self.span, hint)
