@@ -7,7 +7,7 @@ robots to their next visits, and home at last. What comes after that is the same
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import AbstractSet, Dict, Iterator, List, Mapping, Optional, Sequence
 
 from pursue_gen.solving.due_moves import patrols
 from pursue_gen.solving.floors import Floor, Move, floor_of, legs_of
@@ -49,17 +49,31 @@ def patrolling(
 def _round(floor: Floor, home: Mapping[str, str], stops: Mapping[str, Sequence[str]]) -> Optional[List[Move]]:
     """Moves by which each robot comes to its stops, one after the other, and home."""
     at, moves = dict(home), []
-    left: Dict[str, Tuple[str, ...]] = {name: (*stops.get(name, ()), place) for name, place in home.items()}
+    left = {name: [stop for stop in stops.get(name, ()) if stop != place] for name, place in home.items()}
     while any(left.values()):
         wanted: Dict[str, str] = {}
         for name in sorted(left, key=lambda name: -len(left[name])):
             if left[name] and left[name][0] not in wanted.values():
                 wanted[name] = left[name][0]
-        some = routes(floor, at, wanted)
+        # All at once; where no moves are found, one after the other: who has been there may make way.
+        some = next(filter(None, (routes(floor, at, each) for each in (wanted, *_alone(wanted)))), None)
         if some is None:
             return None
         moves += some
-        at.update((move.robot, move.target) for move in some)
-        for name in wanted:
-            left[name] = left[name][1:] or (() if all(len(rest) < 2 for rest in left.values()) else (home[name],))
-    return moves if at == dict(home) else None
+        for move in some:
+            at[move.robot] = move.target
+            if left[move.robot] and left[move.robot][0] == move.target:
+                left[move.robot].pop(0)
+    back = routes(floor, at, home) or _turned(floor, moves)
+    return None if back is None else [*moves, *back]
+
+
+def _alone(wanted: Mapping[str, str]) -> Iterator[Mapping[str, str]]:
+    if len(wanted) > 1:
+        yield from ({name: place} for name, place in wanted.items())
+
+
+def _turned(floor: Floor, moves: Sequence[Move]) -> Optional[List[Move]]:
+    """The same moves back; None where a way leads in one direction only."""
+    back = [Move(move.robot, move.target, move.origin) for move in reversed(moves)]
+    return back if all(move.target in floor.ways[move.robot][move.origin] for move in back) else None
