@@ -159,11 +159,12 @@ class _Rounds:
             if all(self._play.now[name] == place for name, place in self._goal):
                 return self._commands
             deeds = self._deeds()
-            # All at once; where no moves are found, first what begins to count, then one robot after the other: one
-            # that is done may make way.
+            # First those who are there already, who may make way then; all others at once; where no moves are found,
+            # first what begins to count, then one robot after the other.
+            ready = {name: edge for name, edge in deeds.items() if self._play.now[name] == edge.source}
             others = {name: edge for name, edge in deeds.items() if name not in self._robots}
             alone = ({name: edge} for name, edge in deeds.items() if len(deeds) > 1 and name not in others)
-            if not any(self._do(each) for each in (deeds, others, *alone) if each):
+            if not any(self._do(each) for each in (ready, deeds, others, *alone) if each):
                 return None
         return None
 

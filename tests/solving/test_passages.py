@@ -73,6 +73,35 @@ def test_robots_go_to_and_fro_on_shared_lanes() -> None:
     assert verify(found.network, found.objective, found.strategy, found.reaction).ok
 
 
+def test_who_is_there_already_does_its_work_first_and_makes_way() -> None:
+    text = """
+poi "a"
+poi "b"
+poi "c"
+connect a and b distance 2
+connect b and c distance 2
+event "first" location b duration 2
+event "second" location a duration 2
+agent "bot1" controllable mobile 1 location b can_do first
+agent "bot2" controllable mobile 1 location c can_do second
+objective: every place holds 1 robot
+objective: every way holds 1 robot
+reach_objective: do first
+reach_objective: do second
+"""
+    scenario = parse(text, "line.pur", "line")
+    network, objective = played(translate(scenario), DEFAULT), scenario_objective(scenario)
+    crowd = crowd_of(network, objective)
+    assert crowd is not None
+    assert won_by_passages(network, objective, crowd, DEFAULT.reaction, SolveOptions()) is None  # no room to pass
+    wider = text.replace("connect b and c", 'poi "d"\nconnect b and d distance 2\nconnect b and c')
+    scenario = parse(wider, "line.pur", "line")
+    network, objective = played(translate(scenario), DEFAULT), scenario_objective(scenario)
+    crowd = crowd_of(network, objective)
+    assert crowd is not None
+    assert won_by_passages(network, objective, crowd, DEFAULT.reaction, SolveOptions()) is not None
+
+
 PATROL = """
 poi "room1"
 poi "room2"
