@@ -51,6 +51,10 @@ won then are so by tours, or in shares. Measured on imported buildings: a hotel 
 _BESIDE_PASSAGES = 30_000_000
 """The work of the search where orders of passage keep a period: a few seconds. Measured on imported buildings."""
 
+_MANY = 30
+"""Where orders of passage keep a period of more places than that, no shorter one is looked for: it takes long, and in
+vain. Measured on imported buildings."""
+
 _NEAR = 0.1
 """The part of a period by which it may be too long where shorter ones are not decided. Measured on a hotel with two
 lifts."""
@@ -115,6 +119,8 @@ def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAU
     passed = None if alone or options.whole or base.reach else _by_passages(base, rules, SolveOptions(limits))
     if passed is not None:
         high, known = max(low, passed), True
+        if len(base.pois) > _MANY:
+            return with_period(scenario, high, low)
         limits = replace(limits, work=min(limits.work or _BESIDE_PASSAGES, _BESIDE_PASSAGES))
         budget = Budget(limits, options.progress, options.engine, whole=options.whole)
     elif known and len(base.safety) >= PATROL:
