@@ -38,7 +38,7 @@ FIXED = {
     "proof/simplify.py": ["_UNKNOWN"],
     "proof/native/tables.py": ["_MOST", "_MOST_FACTOR"],
     "solving/group_games.py": ["NEEDED"],
-    "solving/passages.py": ["_UNITS"],
+    "solving/floors.py": ["_UNITS"],
     "solving/rounds.py": ["_ROUNDING"],
     "solving/routes.py": ["_GAP", "_NEVER"],
     "solving/verifytga.py": ["_LAST_LINES"],

@@ -98,6 +98,32 @@ class Course:
         """True if `other` cannot happen unless `one` has happened, or is the same event."""
         return one == START or (other != START and bool(self._down[other] >> one & 1))
 
+    def down(self, event: int) -> int:
+        """The events without which this one cannot happen, and itself, as the bits of a number."""
+        return self._down[event]
+
+    def is_bounded(self, first: int, second: int, last: int) -> bool:
+        """True if each event whose number is from `first` on and below `second` is before each one from `last` on that
+        happens to the same agents, or to others that have to do with them."""
+        moving = {name for event in self.events for name in event.ends}
+        group: Dict[str, str] = {name: name for name in moving}
+
+        def root(name: str) -> str:
+            while group[name] != name:
+                group[name] = group[group[name]]
+                name = group[name]
+            return name
+
+        for event in self.events:
+            for name in moving.intersection((*event.needs, *event.ends)):
+                group[root(name)] = root(event.sender)
+        before: Dict[str, int] = {}
+        for number in range(first, second):
+            team = root(self.events[number].sender)
+            before[team] = before.get(team, 0) | 1 << number
+        later = ((number, root(self.events[number].sender)) for number in range(last, len(self.events)))
+        return all(before.get(team, 0) & ~self._down[number] == 0 for number, team in later)
+
     def may_meet(self, one: Stay, other: Stay) -> bool:
         """True if the two states can hold at the same time."""
         if one[0] == other[0]:

@@ -8,47 +8,119 @@ as it can all later ones do, too.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Dict, List, Mapping, Optional, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
-from pursue_gen.proof.course import START, Event
+from pursue_gen.proof.course import START, Course, Event
 from pursue_gen.proof.passages import Fault, Played
 from pursue_gen.synthesis.strategy import Block, Strategy, Zone
-from pursue_gen.tga.network import Constraint, Guard
+from pursue_gen.tga.network import Automaton, Constraint, Guard
+
+_DECIDED = Fraction(1, 2)
+"""Where a deadline runs controllers decide within this part of the reaction after a command is due: they begin one that
+is due behind a strict bound a quarter of it later. Not measured."""
 
 INSTANT = Fraction(1, 1000)
 """Who may act as soon as a clock is past a bound acts within this time, in time units. Not measured."""
 
 
 def latest(played: Played, strategy: Strategy, reaction: Fraction) -> Fraction:
-    """The latest time at which the goal is reached, in time units.
+    """The latest time at which the goal is reached, in time units; 0 where there is none.
 
     Requires the course of this strategy, see `passages.played`. Raises Fault where an event of the course need not come
     in time, or at all.
     """
-    assert reaction >= 0
-    _check_zones(strategy)
     course = played.course
-    resets = _resets(course.events)
-    times: List[Fraction] = []
-    for number, event in enumerate(course.events):
-        if event.block is None:
-            times.append(_of_end(played, event, times, resets))
-            continue
-        moments = [_time(times, course.begin(stay)) for stay in event.needs.items()]
+    waits = _Waits(played, strategy, reaction)
+    _check_stays(played, strategy, waits)
+    at_goal = [course.begin((name, course.last(name))) for name, _ in played.objective.goal]
+    return max((waits.longest(START, event) for event in at_goal), default=Fraction(0))
+
+
+def deadlines(played: Played, strategy: Strategy, reaction: Fraction) -> Dict[str, Fraction]:
+    """How long each deadline runs at worst until it is met, by automata. Requires and raises as `latest`."""
+    return _check_stays(played, strategy, _Waits(played, strategy, reaction))
+
+
+class _Waits:
+    """For each event the events that it waits for, each with the time that it comes later at most."""
+
+    def __init__(self, played: Played, strategy: Strategy, reaction: Fraction) -> None:
+        assert reaction >= 0
+        _check_zones(strategy)
+        self.reaction = reaction
+        self.course = played.course
+        self.resets = _resets(played.course.events)
+        self._latest: List[Fraction] = []
+        self._terms: List[Dict[int, Fraction]] = []
+        for number, event in enumerate(self.course.events):
+            terms = self._of_end(played, event) if event.block is None else self._of_command(played, strategy, number)
+            self._terms.append(terms)
+            self._latest.append(max(_time(self._latest, other) + wait for other, wait in terms.items()))
+
+    def longest(self, begin: int, end: int, late: Fraction = Fraction(0)) -> Fraction:
+        """How long after one event another one that is behind it comes at most. `late`: how much later than it may each
+        command is decided.
+
+        What need not have happened when the first one does begins then at the latest; all else has happened.
+        """
+        if begin == START and not late:
+            return _time(self._latest, end)
+        open_ones = self.course.down(end) & ~(0 if begin == START else self.course.down(begin))
+        times: Dict[int, Fraction] = {}
+        while open_ones:
+            number = (open_ones & -open_ones).bit_length() - 1
+            open_ones &= open_ones - 1
+            later = Fraction(0) if self.course.events[number].block is None else late
+            times[number] = later + max(times.get(other, 0) + wait for other, wait in self._terms[number].items())
+        return times.get(end, Fraction(0))
+
+    def _of_command(self, played: Played, strategy: Strategy, number: int) -> Dict[int, Fraction]:
+        """Of a command: it comes as soon as its needs are met and its clocks are past their bounds, and a reaction
+        later."""
+        course, event = self.course, self.course.events[number]
+        terms = dict.fromkeys((course.begin(stay) for stay in event.needs.items()), self.reaction)
         for clock, bound, strict in _enabled(event, _zone(strategy, event)):
             if clock not in played.part.clocks:
                 raise Fault(f"{event.sender} waits for {clock}, of which nothing is known")
-            for reset in resets.get(clock, ()):
-                if not course.is_before(reset, number) and not course.is_before(number, reset):
-                    raise Fault(f"{clock} may be reset when {event.sender} leaves {event.edge.source}")
-            moments += [
-                _time(times, reset) + bound + strict * INSTANT
-                for reset in (START, *(r for r in resets.get(clock, ()) if r < number))
-            ]
-        times.append(max(moments) + reaction)
-    at_goal = [_time(times, course.begin((name, course.last(name)))) for name, _ in played.objective.goal]
-    _check_stays(played, strategy, reaction)
-    return max(at_goal)
+            resets = self.resets.get(clock, ())
+            if not all(course.is_before(reset, number) or course.is_before(number, reset) for reset in resets):
+                raise Fault(f"{clock} may be reset when {event.sender} leaves {event.edge.source}")
+            wait = bound + strict * INSTANT + self.reaction
+            for reset in _last([START, *(reset for reset in resets if reset < number)], course):
+                terms[reset] = max(terms.get(reset, wait), wait)
+        return terms
+
+    def _of_end(self, played: Played, event: Event) -> Dict[int, Fraction]:
+        """Of an event of the environment, which an invariant obliges it to take."""
+        course, name = self.course, event.sender
+        stay = name, event.ends[name]
+        begin, place = course.begin(stay), event.edge.source
+        bounds = played.part.automaton(name).stays.get(place, ())
+        if not bounds:
+            raise Fault(f"nobody obliges {name} to leave {place}")
+        for other in event.needs.items():
+            if not course.is_before(course.begin(other), begin):
+                raise Fault(f"{name} may not be able to leave {place}")
+        clocks = {bound.clock for bound in bounds}
+        if len(clocks) != 1 or any(bound.op != "<=" for bound in bounds):
+            raise Fault(f"{name} has no last instant in {place}")
+        (clock,) = clocks
+        if begin != START and clock not in course.events[begin].resets:
+            raise Fault(f"{name} may come to {place} without time to stay")
+        longest = min(Fraction(bound.bound) for bound in bounds)
+        if not _is_open(event.edge.guard, clock, longest):
+            raise Fault(f"{name} may not be able to leave {place}")
+        number = course.end(stay)
+        assert number is not None
+        for reset in self.resets.get(clock, ()):
+            if not course.is_before(reset, begin) and not course.is_before(number, reset):
+                raise Fault(f"{clock} may be reset while {name} is in {place}")
+        return {begin: longest}
+
+
+def _last(events: Sequence[int], course: Course) -> Sequence[int]:
+    """The last of these events, in the order of the play, where all others are before it; else all."""
+    return events[-1:] if all(course.is_before(event, events[-1]) for event in events) else events
 
 
 def _time(times: List[Fraction], event: int) -> Fraction:
@@ -112,53 +184,49 @@ def _not_waited(block: Block) -> Optional[str]:
     return None
 
 
-def _of_end(played: Played, event: Event, times: List[Fraction], resets: Mapping[str, List[int]]) -> Fraction:
-    """The latest time of an event of the environment, which an invariant obliges it to take."""
-    course, name = played.course, event.sender
-    stay = name, event.ends[name]
-    begin, place = course.begin(stay), event.edge.source
-    bounds = played.part.automaton(name).stays.get(place, ())
-    if not bounds:
-        raise Fault(f"nobody obliges {name} to leave {place}")
-    for other in event.needs.items():
-        if not course.is_before(course.begin(other), begin):
-            raise Fault(f"{name} may not be able to leave {place}")
-    clocks = {bound.clock for bound in bounds}
-    if len(clocks) != 1 or any(bound.op != "<=" for bound in bounds):
-        raise Fault(f"{name} has no last instant in {place}")
-    (clock,) = clocks
-    if begin != START and clock not in course.events[begin].resets:
-        raise Fault(f"{name} may come to {place} without time to stay")
-    longest = min(Fraction(bound.bound) for bound in bounds)
-    if not _is_open(event.edge.guard, clock, longest):
-        raise Fault(f"{name} may not be able to leave {place}")
-    number = course.end(stay)
-    assert number is not None
-    for reset in resets.get(clock, ()):
-        if not course.is_before(reset, begin) and not course.is_before(number, reset):
-            raise Fault(f"{clock} may be reset while {name} is in {place}")
-    return _time(times, begin) + longest
-
-
 def _is_open(guard: Guard, clock: str, longest: Fraction) -> bool:
     """True if the guard holds where the clock is at the bound of its invariant."""
     last = {">": lambda bound: bound < longest, ">=": lambda bound: bound <= longest}
     return all(b.clock == clock and b.op in last and last[b.op](b.bound) for b in guard.clocks)
 
 
-def _check_stays(played: Played, strategy: Strategy, reaction: Fraction) -> None:
-    """No invariant stops time: whoever is at its bound leaves by itself (see `_of_end`), or is commanded to in time."""
+def _check_stays(played: Played, strategy: Strategy, waits: _Waits) -> Dict[str, Fraction]:
+    """No invariant stops time: whoever is at its bound leaves by itself (see `_of_end`), is commanded to in time, or
+    has left before. How long it takes until then at worst, by automata."""
     course = played.course
+    found: Dict[str, Fraction] = {}
     for automaton in played.part.automata:
         for k, place in enumerate(course.values[automaton.name] if automaton.stays else ()):
+            if course.begin((automaton.name, k)) >= played.checked:
+                break
             if place not in automaton.stays:
                 continue
             number = course.end((automaton.name, k))
             end = None if number is None else course.events[number]
             if end is None or end.sender != automaton.name:
-                raise Fault(f"{automaton.name} has a deadline in {place}")
-            if end.block is not None:
-                _check_commanded_end(played, strategy, end, reaction)
+                took = _taken(played, automaton, k, waits)
+                found[automaton.name] = max(took, found.get(automaton.name, took))
+            elif end.block is not None:
+                _check_commanded_end(played, strategy, end, waits.reaction)
+    return found
+
+
+def _taken(played: Played, automaton: Automaton, state: int, waits: _Waits) -> Fraction:
+    """How long the deadline of a state of an automaton has run at most when somebody else ends the state in time."""
+    course, stay, place = played.course, (automaton.name, state), str(played.course.values[automaton.name][state])
+    number, begin, late = course.end(stay), course.begin(stay), waits.reaction * _DECIDED
+    longest = Fraction(0)
+    for bound in automaton.stays[place]:
+        resets = waits.resets.get(bound.clock, ())
+        before = [reset for reset in resets if course.is_before(reset, begin)]
+        since = before[-1] if before else START
+        ordered = all(course.is_before(reset, since) for reset in before)
+        if number is None or not ordered or not all(r in before or course.is_before(number, r) for r in resets):
+            raise Fault(f"{automaton.name} has a deadline in {place}")
+        longest = max(longest, waits.longest(since, number, late))
+        if bound.op != "<=" or longest >= bound.bound:
+            raise Fault(f"the deadline of {automaton.name} may be missed: it takes {float(longest):g}")
+    return longest
 
 
 def _check_commanded_end(played: Played, strategy: Strategy, event: Event, reaction: Fraction) -> None:

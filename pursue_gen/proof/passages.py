@@ -12,18 +12,22 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import replace
-from typing import AbstractSet, Deque, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import AbstractSet, Deque, Dict, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
 from pursue_gen.proof.course import Course, Event, Stay, Value
 from pursue_gen.proof.independence import why_it_matters
 from pursue_gen.proof.relaxed_reachability import commanded, is_controllers, live
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.strategy import Block, Command, Strategy
-from pursue_gen.tga.network import Edge, Kind, Network, Objective
+from pursue_gen.tga.network import Clause, Edge, Kind, Network, Objective
 from pursue_gen.tga.part import part_of
 
 _MOST = 20_000
 """So many events a course may have. Measured on 30 robots that change places."""
+
+_AHEAD = 6
+"""So many rounds a robot may be ahead of another one on whom it waits. Measured on 20 robots on the lanes of public
+buildings."""
 
 
 class Fault(Exception):
@@ -35,11 +39,16 @@ Here = Tuple[str, str]
 
 
 class Played(NamedTuple):
-    """The part of a network that a strategy speaks of, without dead edges, what it avoids there, and its course."""
+    """The part of a network that a strategy speaks of, without dead edges, what it avoids there, and its course.
+
+    `checked`: what begins with one of so many first events is looked at; what follows is there to meet it, and goes on
+    like it.
+    """
 
     part: Network
     objective: Objective
     course: Course
+    checked: int
 
 
 _last: List[Tuple[Network, Objective, Strategy, Played]] = []
@@ -51,30 +60,31 @@ def played(network: Network, objective: Objective, strategy: Strategy, monitor: 
 
     Times are not looked at (see `timing`). Raises Fault, and LimitHit at a limit.
     """
-    if _last and all(old is new for old, new in zip(_last[0], (network, objective, strategy))):
+    if _last and all(old is new or old == new for old, new in zip(_last[0], (network, objective, strategy))):
         return _last[0][3]
-    if not objective.reaches:
-        raise Fault("an objective without a goal has no end")
+    if any(passage.again is objective.reaches for passage in strategy.passages):
+        raise Fault("robots go round where there is no goal, and nowhere else")
     if strategy.stages or strategy.shares or strategy.left_out_clocks or network.start:
         raise Fault("it has stages, shares, clocks that it leaves out, or a start in the middle")
     alive, extent = live(network, commanded(strategy.blocks))
     bad = tuple((name, place) for name, place in objective.bad if place in extent.places[name])
-    wanted = replace(objective, bad=bad, kind=Kind.REACH_WHILE_SAFE if bad else Kind.REACH)
-    part = _part(alive, wanted, strategy)
+    reaches = Kind.REACH_WHILE_SAFE if bad else Kind.REACH
+    wanted = replace(objective, bad=bad, kind=reaches if objective.reaches else Kind.SAFETY)
+    part = _part(alive, wanted, strategy, [name for name, _ in objective.bad if alive.automaton(name).stays])
     why = why_it_matters(alive, wanted, part, extent.places)
     if why:
         raise Fault(f"it does not speak of what matters: {why}")
     search = _CommandedSearch(part, wanted, strategy, network.taken_over, monitor)
-    search.follow()
-    search.check()
-    found = Played(part, wanted, search.course)
+    checked = search.follow() if objective.reaches else search.follow_rounds()
+    search.check(checked)
+    found = Played(part, wanted, search.course, checked)
     _last[:] = [(network, objective, strategy, found)]
     return found
 
 
-def _part(alive: Network, wanted: Objective, strategy: Strategy) -> Network:
-    """What the blocks name and the objective is about, with all variables of that."""
-    automata = {name for block in strategy.blocks for name in block.state.names[0]}
+def _part(alive: Network, wanted: Objective, strategy: Strategy, due: Sequence[str]) -> Network:
+    """What the blocks name and the objective is about, what has a deadline (`due`), with all variables of that."""
+    automata = {*due, *(name for block in strategy.blocks for name in block.state.names[0])}
     automata.update(name for name, _ in (*wanted.goal, *wanted.bad))
     unknown = automata.difference(automaton.name for automaton in alive.automata)
     if unknown:
@@ -92,6 +102,7 @@ class _CommandedSearch:
     ) -> None:
         self._part, self._objective, self._strategy, self._monitor = part, objective, strategy, monitor
         self._automata = {automaton.name: automaton for automaton in part.automata}
+        self._first = {p.name: self._automata[p.name].initial for p in strategy.passages if p.name in self._automata}
         self._bad = set(objective.bad)
         self._free: Dict[Here, List[Edge]] = {}
         self._threats: List[Tuple[str, Edge]] = []
@@ -135,8 +146,8 @@ class _CommandedSearch:
 
     # One play ------------------------------------------------------------------------------------------------------
 
-    def follow(self) -> None:
-        """Follows one play to its end; what reaches the goal comes after all else."""
+    def follow(self) -> int:
+        """Follows one play to its end; what reaches the goal comes after all else. Returns the number of events."""
         waiting: Deque[str] = deque(self._automata)
         queued, last = set(waiting), ""
         while waiting or last:
@@ -151,15 +162,57 @@ class _CommandedSearch:
                     last = name
                     continue
                 self.course.add(event, changed)
-                return
-            self.course.add(event, changed)
-            self._monitor.check(len(self.course.events), len(waiting))
-            if len(self.course.events) > _MOST:
-                raise Fault("a play has too many events")
+                break
+            self._add(event, changed)
             for other in (name, *(who for what in changed for who in self._interested.get(what, ()))):
                 if other not in queued:
                     queued.add(other)
                     waiting.append(other)
+        return len(self.course.events)
+
+    def follow_rounds(self) -> int:
+        """Follows one play for as many rounds as show all others. Returns how many events are to be looked at: what
+        begins with others, up to the end of the play, is there to meet them."""
+        ends = [self._round() for _ in range(3)]
+        while not self.course.is_bounded(ends[0], ends[1], ends[-2]):
+            if len(ends) - 2 >= _AHEAD:
+                raise Fault("a robot may be any number of rounds ahead of another one on whom it waits")
+            ends.append(self._round())
+        ahead = len(ends) - 2
+        # What begins in a round meets what begins up to `ahead` + 1 rounds later or before. So the rounds from
+        # `ahead` + 2 on are alike: the first one has been there when what begins in them begins.
+        while len(ends) < 2 * ahead + 5:
+            ends.append(self._round())
+        return ends[ahead + 2]
+
+    def _round(self) -> int:
+        """Follows the play until it has come back to where it began: all passages have been left once. Returns the
+        number of events so far."""
+        begin = {name: self.course.now(name) for name in self.course.values}
+        left: Set[str] = set()
+        waiting: Deque[str] = deque(self._automata)
+        while waiting:
+            name = waiting.popleft()
+            event = self._possible(name)
+            if event is None:
+                continue
+            passed = {other for other, _ in event.receivers if self.course.now(other) == self._first.get(other)}
+            if passed & left:
+                continue  # it begins the next round
+            left |= passed
+            changed = self._changed(event)
+            self._add(event, changed)
+            waiting.extend(dict.fromkeys((name, *(o for what in changed for o in self._interested.get(what, ())))))
+        for name, value in begin.items():
+            if self.course.now(name) != value:
+                raise Fault(f"{name} is {self.course.now(name)} at the end of a round, which it begins {value}")
+        return len(self.course.events)
+
+    def _add(self, event: Event, changed: Mapping[str, Value]) -> None:
+        self.course.add(event, changed)
+        self._monitor.check(len(self.course.events), 0)
+        if len(self.course.events) > _MOST:
+            raise Fault("a play has too many events")
 
     def _is_won(self, changed: Mapping[str, Value]) -> bool:
         """True if the goal is reached when this has changed."""
@@ -215,10 +268,11 @@ class _CommandedSearch:
 
     # All plays -----------------------------------------------------------------------------------------------------
 
-    def check(self) -> None:
-        """Shows that all plays are this one. Raises Fault."""
+    def check(self, checked: int) -> None:
+        """Shows that all plays are this one, of what is there at first or begins with one of so many first events.
+        Raises Fault."""
         course = self.course
-        for number, event in enumerate(course.events):
+        for number, event in enumerate(course.events[:checked]):
             self._monitor.check(number, 0)
             self._check_event(event)
             for stay in event.needs.items():
@@ -228,16 +282,22 @@ class _CommandedSearch:
         for name in self._automata:
             for k, value in enumerate(course.values[name]):
                 self._monitor.check(len(course.events), 0)
+                if course.begin((name, k)) >= checked:
+                    break
                 if (name, value) in self._bad:
                     raise Fault(f"{name} comes to {value}")
                 self._check_stay((name, k), str(value))
         for sender in {sender for sender, _ in self._said}:
             for k, value in enumerate(course.values[sender]):
+                if course.begin((sender, k)) >= checked:
+                    break
                 if not any(self._is_sure((sender, k), named) for named in self._named if named.get(sender) == value):
                     raise Fault(f"no block says what {sender} does in {value} whatever the others do")
         for name, edge in self._threats:
             for k in course.stays(name, edge.source):
                 self._monitor.check(len(course.events), 0)
+                if course.begin((name, k)) >= checked:
+                    break
                 met = next(course.meetings(course.tested(edge.guard), ((name, k),)), None)
                 if met is not None:
                     together = " while ".join(_words(stay, course) for stay in met[1:])
@@ -256,9 +316,9 @@ class _CommandedSearch:
         )
 
     def _is_open(self, met: Sequence[Stay]) -> bool:
-        """True if the goal may be still to be reached while these states hold."""
+        """True if the goal may be still to be reached while these states hold; without a goal all goes on."""
         course = self.course
-        return any(
+        return not self._objective.goal or any(
             value != place and course.may_all_meet((name, k), met)
             for name, place in self._objective.goal
             for k, value in enumerate(course.values[name])
@@ -267,7 +327,13 @@ class _CommandedSearch:
     def _check_event(self, event: Event) -> None:
         """Whenever its needs are met it is this one: all that it changes is as it was, and nobody else receives it."""
         course, needs = self.course, tuple(event.needs.items())
-        tested = {name for _, edge in event.receivers for name in edge.tested}
+        tested = {
+            test.variable
+            for _, edge in event.receivers
+            for clause in edge.guard.integers
+            if not self._surely(clause, needs)
+            for test in clause
+        }
         for name in {*event.ends, *tested}.difference(event.needs):
             wanted = event.ends.get(name)
             meeting = [k for k in range(len(course.values[name])) if course.may_all_meet((name, k), needs)]
@@ -281,6 +347,14 @@ class _CommandedSearch:
                     known = (*needs, *(() if name in event.needs else ((name, k),)))
                     if next(course.meetings(course.tested(edge.guard), known), None) is not None:
                         raise Fault(f"{name} may receive {event.edge.channel}, or not")
+
+    def _surely(self, clause: Clause, needs: Sequence[Stay]) -> bool:
+        """True if a test of a clause holds whenever these states do: all are of one variable, of each of its values."""
+        name, values = clause[0].variable, {test.value for test in clause}
+        return all(test.variable == name for test in clause) and all(
+            value in values or not self.course.may_all_meet((name, k), needs)
+            for k, value in enumerate(self.course.values[name])
+        )
 
     def _check_stay(self, stay: Stay, place: str) -> None:
         """Whatever its automaton may do in a state is what it does there."""

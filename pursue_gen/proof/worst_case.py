@@ -15,7 +15,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.network_names import AT_RISK
 from pursue_gen.proof.closed_loop import ClosedLoop
 from pursue_gen.proof.independence import named_part
-from pursue_gen.proof.passage_times import INSTANT, latest
+from pursue_gen.proof.passage_times import INSTANT, deadlines, latest
 from pursue_gen.proof.passages import Fault, played
 from pursue_gen.proof.shares import shares_of
 from pursue_gen.proof.stages import parts_of
@@ -136,12 +136,15 @@ def answer_times(
 ) -> Dict[str, Fraction]:
     """How long each objective's deadline runs at worst until it is met, by automata, in time units, where a strategy
     that wins is played as `worst_case` says. What was not found out is not in it, nor a deadline that never runs."""
+    if strategy.passages:
+        course = played(with_automata_of(network, strategy), objective, strategy, LimitMonitor(limits))
+        return deadlines(course, strategy, reaction)
     found: Dict[str, Fraction] = {}
     watched = {watcher.name: watcher.objective for watcher in strategy.watchers}
     games: Iterable[Tuple[Network, Objective, Strategy]] = ((network, objective, strategy),)
     if strategy.in_parts:
         games = ((part.game, part.objective, part.strategy) for part in shares_of(network, objective, strategy))
-    for whole, wanted, own in games if not (strategy.stages or strategy.passages) else ():
+    for whole, wanted, own in games if not strategy.stages else ():
         if len(own.blocks) > _BLOCKS * limit:
             continue
         game = named_part(whole, own)

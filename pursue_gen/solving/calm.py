@@ -64,7 +64,7 @@ class _Game:
 def calm(won: Solution, options: SolveOptions) -> Solution:
     """The solution without moves that no promise needs, as far as little work finds one; the same where there is a
     goal. Within the limits; raises LimitHit at them."""
-    if won.objective.reaches or won.strategy.counter or won.strategy.tours:
+    if won.objective.reaches or won.strategy.counter or won.strategy.tours or won.strategy.passages:
         return won
     start = options.limits.now()
     won = _quieter(won, options)

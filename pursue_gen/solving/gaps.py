@@ -93,7 +93,7 @@ def repeated(walker: Walker, patrol: Patrol, mine: Round, enough: Fraction) -> R
     way.
     """
     best, known = mine, _too_long(walker, patrol, mine, enough)
-    while known > 0 and len(set(mine)) <= _OFTEN and len(best) < 3 * len(mine):
+    while any(known) and len(set(mine)) <= _OFTEN and len(best) < 3 * len(mine):
         some = {other: _too_long(walker, patrol, other, enough) for other in _neighbours(best)}
         found = min(some, key=lambda other: (some[other], len(other), other), default=best)
         if some.get(found, known) >= known:
@@ -102,10 +102,12 @@ def repeated(walker: Walker, patrol: Patrol, mine: Round, enough: Fraction) -> R
     return best
 
 
-def _too_long(walker: Walker, patrol: Patrol, mine: Round, enough: Fraction) -> Fraction:
-    """By how much visits wait too long, all together, in parts of their periods."""
-    parts = (part for _, part in _parts(walker, patrol, mine))
-    return sum((max(Fraction(0), part - enough) for part in parts), Fraction(0))
+def _too_long(walker: Walker, patrol: Patrol, mine: Round, enough: Fraction) -> Tuple[Fraction, Fraction]:
+    """By how much visits wait longer than their periods, and than `enough`, all together, in parts of their periods:
+    what is kept stays so."""
+    parts = [part for _, part in _parts(walker, patrol, mine)]
+    over, longer = (sum((max(Fraction(0), part - most) for part in parts), Fraction(0)) for most in (1, enough))
+    return over, longer
 
 
 def _neighbours(some: Round) -> Iterator[Round]:

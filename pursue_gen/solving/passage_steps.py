@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import AbstractSet, Dict, Iterable, List, Mapping, Optional, Sequence, Set, Tuple, Union
+from typing import AbstractSet, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple, Union
 
 from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy
@@ -28,11 +28,11 @@ class Step:
     receivers: Tuple[Tuple[str, Edge], ...]
     before: Mapping[str, Value]
 
-    @property
-    def concerned(self) -> List[str]:
-        """The automata and variables that it tests, and the automata that it changes."""
-        tested = (name for _, edge in self.moves for name in edge.tested)
-        return list(dict.fromkeys((self.sender, *(name for name, _ in self.receivers), *tested)))
+    def concerned(self, others: AbstractSet[str] = frozenset()) -> List[str]:
+        """The automata and variables that it tests, and the automata that it changes; without what receivers test of
+        `others`."""
+        tested = (name for _, edge in self.receivers for name in edge.tested if name not in others)
+        return list(dict.fromkeys((self.sender, *(name for name, _ in self.receivers), *self.edge.tested, *tested)))
 
     @property
     def moves(self) -> Tuple[Tuple[str, Edge], ...]:
@@ -76,9 +76,11 @@ class Play:
         return True
 
 
-def passages_of(network: Network, steps: Iterable[Step], single: AbstractSet[str]) -> Tuple[Passage, ...]:
+def passages_of(
+    network: Network, steps: Iterable[Step], single: AbstractSet[str], again: bool = False
+) -> Tuple[Passage, ...]:
     """The orders in which robots are at places in a play: at those that hold one, and where the visits of a robot have
-    to be told apart."""
+    to be told apart. `again`: the play begins again where it has ended, with all robots where they began."""
     steps = list(steps)
     visits: Dict[Tuple[str, str], List[str]] = {}
 
@@ -93,28 +95,49 @@ def passages_of(network: Network, steps: Iterable[Step], single: AbstractSet[str
         if step.edge.leaves is Role.WAY:
             visit(step.edge.target, step.sender)
     entered = {step.edge.target for step in steps if step.edge.leaves is Role.WAY}
-    told_apart = (len(robots) > 1 or (place in entered and not robot) for (place, robot), robots in visits.items())
-    return tuple(Passage(place, tuple(robots)) for ((place, _), robots), k in zip(visits.items(), told_apart) if k)
+    begun = {(a.initial, "" if a.initial in single else a.name) for a in network.automata if a.name in moving}
+    if again:  # who comes home has been there at the start
+        visits = {who: robots[:-1] if who in begun else robots for who, robots in visits.items()}
+    told_apart = (
+        len(robots) > 1 or (place in entered and not robot) or (again and (place, robot) in begun)
+        for (place, robot), robots in visits.items()
+    )
+    passed = (item for item, apart in zip(visits.items(), told_apart) if apart)
+    return tuple(Passage(place, tuple(robots), again) for (place, _), robots in passed)
 
 
-def strategy_of(network: Network, play: Sequence[Tuple[str, Edge]], single: AbstractSet[str]) -> Optional[Strategy]:
-    """The strategy that does what a play does, given by its commands; None where that cannot be told apart."""
+def strategy_of(
+    network: Network, play: Sequence[Tuple[str, Edge]], single: AbstractSet[str], again: bool = False
+) -> Optional[Strategy]:
+    """The strategy that does what a play does, given by its commands, over and over if `again`; None where that cannot
+    be told apart."""
     first = Play(network)
     if not all(first.take(*command) for command in play):
         return None
-    passages = passages_of(network, first.steps, single)
+    passages = passages_of(network, first.steps, single, again)
     network = with_passages(network, passages)
     if not {passage.name for passage in passages} <= {automaton.name for automaton in network.automata}:
         return None
     second = Play(network)
     if not all(second.take(*command) for command in play):
         return None
-    return Strategy(_Blocks(network, second.steps, passages).all(), passages=passages)
+    # Who goes round need not know where others are: that they are nowhere near follows from whose turn it is.
+    others = frozenset(_positions(second.steps) if again else ())
+    return Strategy(_Blocks(network, second.steps, passages, others).all(), passages=passages)
+
+
+def _positions(steps: Iterable[Step]) -> Iterator[str]:
+    """The variables that say where robots are."""
+    for step in steps:
+        if step.edge.leaves is Role.WAY or step.edge.enters is Role.WAY:
+            yield from (name for name, _ in step.edge.assign)
 
 
 class _Blocks:
-    def __init__(self, network: Network, steps: Sequence[Step], passages: Sequence[Passage]) -> None:
-        self._steps = steps
+    def __init__(
+        self, network: Network, steps: Sequence[Step], passages: Sequence[Passage], others: AbstractSet[str]
+    ) -> None:
+        self._steps, self._others = steps, others
         self._automata = [automaton.name for automaton in network.automata]
         self._variables = [name for name, _ in network.variables]
         self._passages = {passage.name: passage for passage in passages}
@@ -144,11 +167,11 @@ class _Blocks:
         alike: Dict[Tuple[str, str], List[int]] = {}
         for number in commanded:
             step = self._steps[number]
-            named[number] = {*step.concerned, *self._held(step)}
+            named[number] = {*step.concerned(self._others), *self._held(step)}
             for end in self._steps[number + 1 :]:  # what it is done for may come with its end
                 if end.edge.leaves not in UNDER_WAY:
                     break
-                named[number].update(end.concerned if end.sender == step.sender else ())
+                named[number].update(end.concerned(self._others) if end.sender == step.sender else ())
             others = alike.setdefault((step.sender, step.edge.source), [])
             for other in others:
                 earlier = self._steps[other]
@@ -164,7 +187,7 @@ class _Blocks:
         """An automaton or a variable that the sender changes between the two steps; nothing where there is none."""
         sender, before, after = self._steps[one].sender, self._steps[one].before, self._steps[other].before
         own = (step for step in self._steps[one:other] if step.sender == sender)
-        concerned = (name for step in own for name in step.concerned if name not in self._passages)
+        concerned = (name for step in own for name in step.concerned() if name not in self._passages)
         return set(next(([name] for name in concerned if name != sender and before[name] != after[name]), ()))
 
     def _held(self, step: Step) -> List[str]:

@@ -2,26 +2,35 @@
 passage.
 
 It works in rounds: a relaxed plan (`synthesis.relaxed`) that ignores who is in whose way says what has to be done next,
-and where; `routes` brings the robots there. The result is one play. `passage_steps` makes a strategy that does the same
+and where; `routes` brings the robots there. Without a goal, `passage_rounds` does so for patrols. The result is one
+play. `passage_steps` makes a strategy that does the same
 in each play, and lets robots that do not meet move at the same time. Where it is proven it wins; where none is found,
 nothing is known.
 """
 
 from __future__ import annotations
 
+from contextlib import suppress
 from fractions import Fraction
-from typing import Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
+from math import floor
+from typing import AbstractSet, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
 from pursue_gen.language.symbols import UNDER_WAY, Role
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.proof.checker import verify
+from pursue_gen.proof.passage_times import deadlines
+from pursue_gen.proof.passages import Fault, played
 from pursue_gen.proof.relaxed_reachability import is_controllers
-from pursue_gen.solving.floors import Floor
+from pursue_gen.solving.due_moves import patrols
+from pursue_gen.solving.floors import floor_of, legs_of
 from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.passage_rounds import patrolling
 from pursue_gen.solving.passage_steps import Play, strategy_of
 from pursue_gen.solving.routes import routes
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.synthesis.compile_game import compile_game
 from pursue_gen.synthesis.game import State
+from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.relaxed import RelaxedPlanner
 from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga.network import Automaton, Clause, Edge, Kind, Network, Objective
@@ -29,9 +38,6 @@ from pursue_gen.tga.part import part_of
 
 _ROUNDS = 200
 """So many rounds at most. Measured on 30 robots that change places."""
-
-_UNITS = 10
-"""Times of ways are counted in tenths of time units."""
 
 
 class Crowd(NamedTuple):
@@ -46,14 +52,33 @@ def won_by_passages(
 ) -> Optional[Strategy]:
     """A proven strategy with orders of passage; None where none is found with little work. Raises LimitHit at a
     limit."""
-    rest = without_bad(network, objective)
-    commands = _Rounds(rest, objective, crowd, reaction).commands()
-    strategy = None if commands is None else strategy_of(rest, commands, crowd.single)
+    if objective.reaches:
+        rest = without_bad(network, objective)
+        commands = _Rounds(rest, objective, crowd, reaction).commands()
+        strategy = None if commands is None else strategy_of(rest, commands, crowd.single)
+    else:
+        strategy = patrolling(network, objective, *crowd, reaction)
     if strategy is None:
         return None
-    whole = with_automata_of(network, strategy)
+    whole = with_automata_of(network, strategy)  # proof and times look at the same course of it
     report = verify(whole, objective, strategy, reaction, limits=options.limits, progress=options.progress)
     return strategy if report.ok else None
+
+
+def period_by_passages(
+    network: Network, objective: Objective, patrols_of: AbstractSet[str], reaction: Fraction, options: SolveOptions
+) -> Optional[int]:
+    """A period, in whole time units, that patrols by these automata keep with orders of passage; None where none are
+    found."""
+    crowd = crowd_of(network, objective)
+    strategy = None if crowd is None else patrolling(network, objective, *crowd, reaction)
+    if strategy is None:
+        return None
+    with suppress(LimitHit, Fault):
+        whole = with_automata_of(network, strategy)
+        took = deadlines(played(whole, objective, strategy, LimitMonitor(options.limits)), strategy, reaction)
+        return floor(max(time for name, time in took.items() if name in patrols_of)) + 1
+    return None
 
 
 def without_bad(network: Network, objective: Objective) -> Network:
@@ -63,8 +88,8 @@ def without_bad(network: Network, objective: Objective) -> Network:
 
 
 def crowd_of(network: Network, objective: Objective) -> Optional[Crowd]:
-    """The robots, if two of them must never be at one place, on the way to a goal; else None."""
-    if not (objective.reaches and objective.avoids) or network.start:
+    """The robots, if two of them must never be at one place, on the way to a goal or on patrols; else None."""
+    if not (objective.avoids and (objective.reaches or patrols(network))) or network.start:
         return None
     robots = tuple(_robots(network))
     single = _single(network, objective, robots) if len(robots) > 1 else frozenset()
@@ -119,14 +144,8 @@ class _Rounds:
         self._goal = objective.goal
         self._taken = network.taken_over
         self._play = Play(network)
-        self._legs = {robot.name: _legs(robot) for robot in robots}
-        ways: Dict[str, Dict[str, Dict[str, int]]] = {}
-        for robot in robots:
-            own = ways[robot.name] = {place.name: {} for place in robot.locations}
-            for (origin, target), edge in self._legs[robot.name].items():
-                rest = max((bound.bound for bound in edge.guard.clocks), default=0)
-                own[origin][target] = int(_UNITS * (robot.longest.get(edge.target, 0) + rest + reaction)) + 1
-        self._floor = Floor(ways, single)
+        self._legs = legs_of(robots)
+        self._floor = floor_of(robots, self._legs, single, reaction)
         self._ends: Dict[str, List[Edge]] = {}
         for robot in robots:
             for edge in robot.edges:
@@ -140,11 +159,12 @@ class _Rounds:
             if all(self._play.now[name] == place for name, place in self._goal):
                 return self._commands
             deeds = self._deeds()
-            # All at once; where no moves are found, first what begins to count, then one robot after the other: one
-            # that is done may make way.
+            # First those who are there already, who may make way then; all others at once; where no moves are found,
+            # first what begins to count, then one robot after the other.
+            ready = {name: edge for name, edge in deeds.items() if self._play.now[name] == edge.source}
             others = {name: edge for name, edge in deeds.items() if name not in self._robots}
             alone = ({name: edge} for name, edge in deeds.items() if len(deeds) > 1 and name not in others)
-            if not any(self._do(each) for each in (deeds, others, *alone) if each):
+            if not any(self._do(each) for each in (ready, deeds, others, *alone) if each):
                 return None
         return None
 
@@ -201,10 +221,3 @@ class _Rounds:
                 return False
             self._commands.append((move.robot, edge))
         return moves is not None
-
-
-def _legs(robot: Automaton) -> Dict[Tuple[str, str], Edge]:
-    """The edges by which a robot sets off, by the places from and to which it goes."""
-    ends = {edge.source: edge.target for edge in robot.edges if edge.leaves is Role.WAY and edge.is_end}
-    setting_off = (edge for edge in robot.edges if edge.sets_off)
-    return {(edge.source, ends[edge.target]): edge for edge in setting_off if edge.target in ends}

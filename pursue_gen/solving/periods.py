@@ -17,6 +17,7 @@ from pursue_gen.diagnostics import Span
 from pursue_gen.language.document import Document, Edit, edited
 from pursue_gen.language.for_each import without_owners
 from pursue_gen.language.lines import Lines
+from pursue_gen.language.network_names import safety_objective
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Patrol, Scenario
 from pursue_gen.language.sentences import periods_found
@@ -25,6 +26,7 @@ from pursue_gen.language.tokens import end_of
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.decided import strategy_of
 from pursue_gen.solving.options import DEFAULT, SolveOptions
+from pursue_gen.solving.passages import period_by_passages
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.tours import PATROL, least_period_of_patrols, period_of_tours
 from pursue_gen.synthesis.budget import Budget
@@ -45,6 +47,13 @@ hotel with two lifts."""
 _BESIDE_TOURS = 0.02
 """The part of what is left that one exact game may take where tours keep a period, and more is promised: most that are
 won then are so by tours, or in shares. Measured on imported buildings: a hotel and a clinic."""
+
+_BESIDE_PASSAGES = 30_000_000
+"""The work of the search where orders of passage keep a period: a few seconds. Measured on imported buildings."""
+
+_MANY = 30
+"""Where orders of passage keep a period of more places than that, no shorter one is looked for: it takes long, and in
+vain. Measured on imported buildings."""
 
 _NEAR = 0.1
 """The part of a period by which it may be too long where shorter ones are not decided. Measured on a hotel with two
@@ -107,10 +116,17 @@ def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAU
     # Nothing below `low` is won; `high` is, where it is `known`.
     low, high = (2, longest(scenario)) if tours is None else tours
     known = tours is not None and alone
-    if known and len(base.safety) >= PATROL:
+    passed = None if alone or options.whole or base.reach else _by_passages(base, rules, SolveOptions(limits))
+    if passed is not None:
+        high, known = max(low, passed), True
+        if len(base.pois) > _MANY:
+            return with_period(scenario, high, low)
+        limits = replace(limits, work=min(limits.work or _BESIDE_PASSAGES, _BESIDE_PASSAGES))
+        budget = Budget(limits, options.progress, options.engine, whole=options.whole)
+    elif known and len(base.safety) >= PATROL:
         return with_period(scenario, high, low)
     floor, probe = low, min(high, _farthest(scenario))
-    if tours is not None and not alone:  # a robot that has something else to do keeps a longer one
+    if tours is not None and not alone and passed is None:  # a robot that has something else to do keeps a longer one
         probe, high = high, longest(scenario)
     share = _SHARE if tours is None or alone else _BESIDE_TOURS
     near = 0.0  # where a shorter period is not decided, those that are little longer are hardly
@@ -122,6 +138,8 @@ def least_period(scenario: Scenario, rules: Rules, options: SolveOptions = DEFAU
         else:
             floor = probe + 1  # perhaps not decided: then nothing is lost for sure, but longer ones are decided sooner
             low = low if won is None else floor
+        if won is None and passed is not None:
+            break
         probe = (floor + high) // 2 if known else min(2 * probe, high)
     return with_period(scenario, high, low)
 
@@ -133,6 +151,14 @@ def _of_tours(scenario: Scenario, rules: Rules) -> Optional[Tuple[int, int]]:
     every = period_of_tours(*game)
     least = max(2, least_period_of_patrols(*game))
     return None if every is None else (least, max(least, every))
+
+
+def _by_passages(scenario: Scenario, rules: Rules, options: SolveOptions) -> Optional[int]:
+    """A period that robots keep who pass places in an order; None where none is found."""
+    tried, looked_for = with_period(scenario, longest(scenario)), without_period(scenario)
+    found = {safety_objective(k) for k, each in enumerate(scenario.safety) if each in looked_for}
+    game = played(translate(tried), rules), scenario_objective(tried)
+    return period_by_passages(*game, found, rules.reaction, options)
 
 
 def quickly_found(scenario: Scenario) -> List[str]:

@@ -193,11 +193,12 @@ def _with_little_work(
     several, shared = len(promises(objective)) > 1, can_be_shared(game, objective)
     crowd = crowd_of(game, objective)
     large = crowd is not None and len(crowd.robots) >= _CROWD
-    passed = won_by_passages(game, objective, crowd, reaction, options) if crowd is not None and large else None
-    if passed is not None:
-        return passed
-    found = won_by_tours(game, objective, reaction, options) if len(promises(objective)) >= PATROL else None
-    found = found or won_beside_tours(game, objective, reaction, options)
+    found: Union[Found, Strategy, None] = None
+    if not objective.reaches:
+        found = won_by_tours(game, objective, reaction, options) if len(promises(objective)) >= PATROL else None
+        found = found or won_beside_tours(game, objective, reaction, options)
+    if found is None and crowd is not None and large:
+        found = won_by_passages(game, objective, crowd, reaction, options)
     if found is not None:
         return found
     verdict = verdict_with(game, objective, reaction, min(work, _EASY) if rests or several else work, options)

@@ -82,6 +82,7 @@ def patrol_of(
     if in_order or any(len(places) != 1 for duty in known for places in duty.visits.values()):
         return None
     unit = Fraction(1, least_common_multiple((_UNITS, common_denominator([reaction, *network.times]))))
+    unit *= max(1, reaction // unit)  # who may be so late need not be so prompt
     late = reaction if prompt else reaction + unit
     robots = [network.automaton(name) for name in commanded_agents(network) if name not in excused]
     walkers = [_walker(robot, late, bool(network.start)) for robot in robots]

@@ -8,18 +8,20 @@
     -- Watcher: obj3 bot1
     -- Share: obj.lose obj3_for_bot1.lose obj3.lose
     -- Passage: hall2 bot1 bot3 bot1
+    -- Passage again: hall2 bot1 bot3
     -- Tour: bot1 2 dock hall1 room1
 
 In a plan with stages, shares or passages each block names what matters to it. A stage's milestones are locations of
 automata and values of variables; a share's places are what it avoids. A watcher is an objective's automaton, and the
 robots for whom alone another one (here `obj3_for_bot1`) watches the same; a passage is a place, and the robots that are
-there one after the other. A tour is a robot and the places that it comes to one after the other, behind the number,
-from 1, of the one that follows the last.
+there one after the other, over and over if `again`. A tour is a robot and the places that it comes to one after the
+other, behind the number, from 1, of the one that follows the last.
 """
 
 from __future__ import annotations
 
 import re
+from functools import partial
 from typing import Callable, List, Match, Optional, Pattern, Set, Tuple, TypeVar
 
 from pursue_gen.diagnostics import PursueError, Span, error
@@ -35,7 +37,10 @@ from pursue_gen.tga.watchers import Watcher, watched_by
 Own = TypeVar("Own", Watcher, Passage, Tour)
 
 _STAGE = re.compile(r"^ -- Stage:(.*)$", re.MULTILINE)
-_OWN = {what: re.compile(rf"^ -- {what.capitalize()}:(.*)$", re.MULTILINE) for what in ("watcher", "passage", "tour")}
+_OWN = {
+    what: re.compile(rf"^ -- {what.capitalize()}:(.*)$", re.MULTILINE)
+    for what in ("watcher", "passage", "passage again", "tour")
+}
 _SHARE = re.compile(r"^ -- Share:(.*)$", re.MULTILINE)
 _LEFT_OUT_CLOCKS = re.compile(r"^ -- Left out clocks:(.*)$", re.MULTILINE)
 _LEFT_OUT = re.compile(r"^ -- Left out:(.*)$", re.MULTILINE)
@@ -51,7 +56,9 @@ def left_out_lines(strategy: Strategy, network: Network) -> List[str]:
         return []
     clocks = [f" -- Left out clocks: {' '.join(strategy.left_out_clocks)}"] if strategy.left_out_clocks else []
     if strategy.passages:
-        return [f" -- Passage: {' '.join((each.place, *each.robots))}" for each in strategy.passages]
+        return [
+            f" -- Passage{' again' * each.again}: {' '.join((each.place, *each.robots))}" for each in strategy.passages
+        ]
     if strategy.shares:
         shares = [f" -- Share: {' '.join(map('.'.join, avoided))}" for avoided in strategy.shares]
         return [*follower_lines(strategy), *shares, *clocks]
@@ -92,7 +99,15 @@ def read_watchers(text: str, network: Network, file: str) -> Tuple[Watcher, ...]
 
 def read_passages(text: str, network: Network, file: str) -> Tuple[Passage, ...]:
     """The passages of such a plan. Raises PursueError for one that cannot be."""
-    return _read_own(text, network, file, "passage", lambda each: Passage(each[0], tuple(each[1:])), passage_automaton)
+    once, again = (
+        _read_own(text, network, file, what, partial(_passage, again=again), passage_automaton)
+        for what, again in (("passage", False), ("passage again", True))
+    )
+    return (*once, *again)
+
+
+def _passage(words: List[str], again: bool) -> Passage:
+    return Passage(words[0], tuple(words[1:]), again)
 
 
 def read_tours(text: str, network: Network, file: str) -> Tuple[Tour, ...]:

@@ -170,7 +170,7 @@ class Reader:
         """Fails unless exactly the automata take part that must in this state; a cut or mixed-up file shows so."""
         at, value = dict(state.locations), dict(state.values)
         for move in moves:
-            if at.get(move.automaton) != move.edge.source or not move.edge.guard.holds(value):
+            if at.get(move.automaton) != move.edge.source or not move.edge.guard.may_hold(value):
                 self.fail("PLN008", f"'{move.automaton}' cannot make this move in the state above", RUN_AGAIN)
         sync = moves[0].edge.sync
         if sync is not None and not sync.sends:
@@ -181,12 +181,13 @@ class Reader:
             )
         taking = [move.automaton for move in moves[1:]]
         due: Set[str] = set()
+        possible: Set[str] = set()
         for automaton, edge in self.names.receivers.get(sync.channel, []) if sync else []:
-            able = at.get(automaton) == edge.source and edge.guard.holds(value)
-            if automaton != moves[0].automaton and able:
-                due.add(automaton)
+            if automaton != moves[0].automaton and at.get(automaton) == edge.source:
+                due.update([automaton] if edge.guard.holds(value) else ())
+                possible.update([automaton] if edge.guard.may_hold(value) else ())
         channels = {move.edge.sync and move.edge.sync.channel for move in moves}
-        if len(channels) > 1 or len(taking) != len(set(taking)) or set(taking) != due:
+        if len(channels) > 1 or len(taking) != len(set(taking)) or not due <= set(taking) <= possible:
             expected = ", ".join(sorted(due)) or "nobody"
             self.fail(
                 "PLN008",

@@ -65,6 +65,10 @@ class Guard:
         """True if the tests hold of these values of variables, whatever the clocks are."""
         return all(any(values.get(test.variable) == test.value for test in clause) for clause in self.integers)
 
+    def may_hold(self, values: Mapping[str, object]) -> bool:
+        """True if the tests may hold where the other variables can have any value."""
+        return all(any(values.get(test.variable, test.value) == test.value for test in some) for some in self.integers)
+
     @property
     def since(self) -> Number:
         """The largest lower bound of a clock: how long it makes one wait at most; 0 for none."""

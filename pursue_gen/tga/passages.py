@@ -20,11 +20,13 @@ _NOBODY = Role.NOBODY()
 class Passage:
     """The robots that are at a place, one visit after the other; first of all the one that starts there, if one does.
 
-    At a place where several robots may be at once each has an order of its own visits.
+    At a place where several robots may be at once each has an order of its own visits. `again`: behind the last visit
+    comes the first one.
     """
 
     place: str
     robots: Tuple[str, ...]
+    again: bool = False
 
     @property
     def name(self) -> str:
@@ -34,7 +36,8 @@ class Passage:
 
     def awaits(self, visit: int) -> str:
         """The location in which the robot of this visit (from 0) may set off for the place; behind the last visit:
-        nobody does."""
+        the first one's, or nobody does."""
+        visit = visit % len(self.robots) if self.again else visit
         return Role.AWAITS(self.robots[visit], visit + 1) if visit < len(self.robots) else _NOBODY
 
     def has(self, visit: int) -> str:
@@ -64,13 +67,14 @@ def passage_automaton(network: Network, passage: Passage) -> Optional[Automaton]
     edges: List[Edge] = []
     for visit, robot in enumerate(passage.robots):
         entering, leaving = ways[robot]
-        if visit or not there:
+        if visit or passage.again or not there:
             locations.append(Location(passage.awaits(visit)))
             edges += _on(entering, passage.awaits(visit), passage.has(visit))
         locations.append(Location(passage.has(visit)))
         edges += _on(leaving, passage.has(visit), passage.awaits(visit + 1))
-    locations.append(Location(_NOBODY))
-    return Automaton(passage.name, tuple(locations), locations[0].name, tuple(edges))
+    locations += [] if passage.again else [Location(_NOBODY)]
+    first = passage.has(0) if there else passage.awaits(0)
+    return Automaton(passage.name, tuple(locations), first, tuple(edges))
 
 
 def _on(channels: Iterable[str], source: str, target: str) -> List[Edge]:

@@ -2,7 +2,7 @@
 passage.
 
 An order of passage is an automaton that is called by its place, with a location for each visit: nobody is there yet, or
-the robot is.
+the robot is. One that has an end has a location more; behind the last visit of others comes the first one again.
 """
 
 from __future__ import annotations
@@ -44,12 +44,19 @@ class Turns:
                 for name, part in zip(names, parts)
                 if place_passed(name)
             ]
-            if all(now is not None and due is not None and now.rank <= due.rank for _, now, due in visits):
+            steps = [self._steps(name, now, due) for name, now, due in visits]
+            if min(steps, default=0) >= 0:
                 missing = [(name, now) for name, now, due in visits if now != due]
-                apart = sum(due.rank - now.rank for _, now, due in visits if now and due)
-                ahead.append((apart, list(self._words(missing))))
+                ahead.append((sum(steps), list(self._words(missing))))
         texts = min(ahead, default=(0, []))[1]
         return f"waits for {listed(texts)}" if texts else ""
+
+    def _steps(self, name: str, now: Optional[Visit], due: Optional[Visit]) -> int:
+        """How many steps of an order come before this visit; below 0 where it does not come any more."""
+        if now is None or due is None:
+            return -1
+        visits = [visit_at(location) for location in self._model.automaton(name).invariants]
+        return (due.rank - now.rank) % len(visits) if all(visits) else due.rank - now.rank
 
     def _words(self, missing: Sequence[Tuple[str, Optional[Visit]]]) -> Iterator[str]:
         for name, visit in missing:

@@ -16,7 +16,6 @@ from pursue_gen.synthesis.game import State, initial_state, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Strategy, Zone, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
-from pursue_gen.tga.passages import Passage
 
 Game = Tuple[Network, Objective]
 
@@ -50,6 +49,23 @@ def passing_texts(draw: st.DrawFn) -> str:
         lines += [f"objective: way p{a} to p{b} holds 1 robot" for a, b in sorted(ways) if not where]
     lines += ["reach_objective: do done"] if ordered else [f"reach_objective: do work{k}" for k in range(robots)]
     return "\n".join(lines)
+
+
+@st.composite
+def patrolling_texts(draw: st.DrawFn) -> str:
+    """Two robots that patrol places of a small floor, each of whose places holds one."""
+    count = draw(st.integers(3, 5))
+    ways = {(draw(st.integers(0, k - 1)), k) for k in range(1, count)}
+    ways |= {tuple(sorted(pair)) for pair in draw(st.sets(st.sampled_from(_pairs(count)), max_size=2))}
+    order = Random(draw(st.integers(0, 10**6)))
+    starts = order.sample(range(count), 2)
+    lines = [f'poi "p{k}"' for k in range(count)]
+    lines += [f"connect p{a} and p{b} distance {draw(st.integers(1, 3))}" for a, b in sorted(ways)]
+    lines += [f'agent "bot{k}" controllable mobile 1 location p{place}' for k, place in enumerate(starts)]
+    lines += ["objective: every place holds 1 robot", "objective: every way holds 1 robot"]
+    visits = draw(st.lists(st.integers(0, count - 1), min_size=1, max_size=3, unique=True))
+    who = st.sampled_from(("any robot", "any robot", "bot0", "bot1"))
+    return "\n".join([*lines, *(f"objective: patrol p{place} every EVERY by {draw(who)}" for place in visits)])
 
 
 def _pairs(count: int) -> List[Tuple[int, int]]:
@@ -116,7 +132,7 @@ def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
         else:
             robots[a] = draw(st.sampled_from([f"bot{n}" for n in range(3)]))
         passages = list(strategy.passages)
-        passages[k] = Passage(passages[k].place, tuple(robots))
+        passages[k] = replace(passages[k], robots=tuple(robots))
         return replace(strategy, passages=tuple(passages))
     commanding = [k for k, block in enumerate(blocks) if block.commands]
     k = draw(st.sampled_from(commanding))

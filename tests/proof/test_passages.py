@@ -195,11 +195,18 @@ def test_guaranteed_times_are_never_too_short(text: str) -> None:
         assert verify(timed, game[1], whole[1], prompt=True).ok
 
 
-def test_a_deadline_is_not_relied_on() -> None:
-    network, objective = game_of(CORRIDOR.replace("reach_objective: do work2", "reach_objective: do work2 within 100"))
-    report = verify(network, objective, corridor()[1], DELAY)
-    assert not report.ok
-    assert "has a deadline" in report.reason
+def test_a_deadline_is_kept_or_the_strategy_is_refused() -> None:
+    def within(time: int) -> ProofReport:
+        text = CORRIDOR.replace("reach_objective: do work2", f"reach_objective: do work2 within {time}")
+        return verify(*game_of(text), corridor()[1], DELAY)
+
+    takes = ceil(worst_case(*corridor()[0], corridor()[1], DELAY) or 0)
+    assert within(takes + 1).ok
+    assert "may be missed" in within(takes // 2).reason
+    late = game_of(CORRIDOR.replace("reach_objective: do work2", f"reach_objective: do work2 within {takes + 1}"))
+    whole = of_the_whole(late, corridor()[1])
+    assert whole is not None
+    assert verify(whole[0], late[1], whole[1], DELAY, prompt=True).ok
 
 
 def test_a_clock_that_somebody_else_resets_is_not_waited_for() -> None:

@@ -75,3 +75,15 @@ def test_what_tours_promise_is_proven(far: List[int], often: int, seldom: int) -
     once = part_of_period(some.walkers[0], some, (0, 1, 2, 3)) < 1
     event(f"each place once: {once}")
     assert won_by_tours(network, objective, LATE, OPTIONS) is not None
+
+
+def test_periods_that_a_round_keeps_are_kept_with_more_visits() -> None:
+    ways = [("hall and r0", 3), ("hall and r1", 29), ("r0 and r2", 10)]
+    ways += [("r1 and r3", 6), ("r3 and r4", 6), ("r0 and r5", 1)]
+    lines = [f'poi "{name}"' for name in ("hall", *(f"r{k}" for k in range(6)))]
+    lines += [f"connect {ends} distance {metres}" for ends, metres in ways]
+    lines.append('agent "guard" controllable mobile 1 location r0')
+    some = patrol("\n".join([*lines, *(f"objective: patrol r{k} every 209 by guard" for k in range(6))]))
+    walker, mine = some.walkers[0], (5, 4, 3, 0, 1, 2)
+    assert part_of_period(walker, some, mine) < 1
+    assert part_of_period(walker, some, repeated(walker, some, mine, Fraction(9, 10))) < 1

@@ -12,6 +12,8 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.partition.strategy_data import cover_data
 from pursue_gen.proof.checker import verify
+from pursue_gen.proof.worst_case import answer_times
+from pursue_gen.solving.inputs import settled
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.passages import crowd_of, won_by_passages
 from pursue_gen.solving.request import SolveRequest
@@ -69,6 +71,89 @@ def test_robots_go_to_and_fro_on_shared_lanes() -> None:
     found = won("\n".join(lines))
     assert found.strategy.passages and found.guarantee is not None and found.guarantee.worst is not None
     assert verify(found.network, found.objective, found.strategy, found.reaction).ok
+
+
+def test_who_is_there_already_does_its_work_first_and_makes_way() -> None:
+    text = """
+poi "a"
+poi "b"
+poi "c"
+connect a and b distance 2
+connect b and c distance 2
+event "first" location b duration 2
+event "second" location a duration 2
+agent "bot1" controllable mobile 1 location b can_do first
+agent "bot2" controllable mobile 1 location c can_do second
+objective: every place holds 1 robot
+objective: every way holds 1 robot
+reach_objective: do first
+reach_objective: do second
+"""
+    scenario = parse(text, "line.pur", "line")
+    network, objective = played(translate(scenario), DEFAULT), scenario_objective(scenario)
+    crowd = crowd_of(network, objective)
+    assert crowd is not None
+    assert won_by_passages(network, objective, crowd, DEFAULT.reaction, SolveOptions()) is None  # no room to pass
+    wider = text.replace("connect b and c", 'poi "d"\nconnect b and d distance 2\nconnect b and c')
+    scenario = parse(wider, "line.pur", "line")
+    network, objective = played(translate(scenario), DEFAULT), scenario_objective(scenario)
+    crowd = crowd_of(network, objective)
+    assert crowd is not None
+    assert won_by_passages(network, objective, crowd, DEFAULT.reaction, SolveOptions()) is not None
+
+
+PATROL = """
+poi "room1"
+poi "room2"
+poi "room3"
+poi "hall1"
+poi "hall2"
+poi "hall3"
+poi "nook"
+connect hall1 and hall2 distance 4
+connect hall2 and hall3 distance 4
+connect room1 and hall1 distance 4
+connect room2 and hall3 distance 4
+connect room3 and hall2 distance 4
+connect nook and hall2 distance 4
+agent "bot1" controllable mobile 1 location room1
+agent "bot2" controllable mobile 1 location room2
+agent "bot3" controllable mobile 1 location room3
+agent "bot4" controllable mobile 1 location hall2
+objective: every place holds 1 robot
+objective: every way holds 1 robot
+objective: patrol room1, room2 EVERY by bot4
+objective: patrol room1, room2, room3, nook EVERY by any robot
+"""
+
+
+def test_robots_on_patrols_make_way_for_each_other_for_ever() -> None:
+    found = won(PATROL.replace("EVERY", "every 400"))
+    assert found.strategy.passages
+    assert all(passage.again for passage in found.strategy.passages)
+    assert verify(found.network, found.objective, found.strategy, found.reaction).ok
+    answers = answer_times(found.network, found.objective, found.strategy, found.reaction)
+    assert max(answers.values()) < 400
+    network = played(translate(parse(PATROL.replace("EVERY", "every 400"), "p.pur", "p")), DEFAULT)
+    text = write_plan(found.strategy, network, found.objective)
+    assert " -- Passage again: room1 " in text
+    assert read_plan(text, network, "plan.txt") == found.strategy
+
+
+def test_the_period_of_a_patrol_where_robots_make_way_is_found() -> None:
+    scenario = settled(parse(PATROL.replace("EVERY", ""), "patrol.pur", "patrol"), SolveRequest())
+    (every,) = {patrol.every for patrol in scenario.patrols}
+    found = solved(translate(scenario), scenario_objective(scenario), DEFAULT)
+    assert every is not None
+    assert max(answer_times(found.network, found.objective, found.strategy, found.reaction).values()) < every
+
+
+def test_missions_of_patrols_where_robots_make_way() -> None:
+    scenario = parse(PATROL.replace("EVERY", "every 400"), "patrol.pur", "patrol")
+    case = make_case(scenario, won(scenario.text), SolveRequest(), "random", (), None)[0]
+    missions = [simulate_mission(MissionRunner(case).stage, Settings("random", until=900), n) for n in range(1, 6)]
+    assert not [mission for mission in missions if mission.problems]
+    assert {mission.end for mission in missions} == {"safe"}, missions
 
 
 def test_on_a_square_robots_move_at_the_same_time() -> None:

@@ -11,6 +11,7 @@ from pursue_gen.language.times import unit_name
 from pursue_gen.synthesis.lookup import Entry
 from pursue_gen.tools.replay.assumptions import newly_broken
 from pursue_gen.tools.replay.beginnings import EXACT
+from pursue_gen.tools.replay.broken import Broken
 from pursue_gen.tools.replay.commands import CommandCheck
 from pursue_gen.tools.replay.ends import wrong_end
 from pursue_gen.tools.replay.finding import FAULT, NOTE, UNRECORDED, WORLD, Finding
@@ -128,6 +129,7 @@ class _Checker:
     ) -> None:
         """`grace`: the time units after a deadline until it is taken for missed."""
         self.moves = game.moves
+        self._broken = Broken(game.network, game.objective)
         self.findings: List[Finding] = []
         self.steps: List[ReplayedStep] = []
         self.turns: List[Done] = []
@@ -359,6 +361,10 @@ class _Checker:
                 how = "late" if late else "early"
                 text = f"{state.event} by {state.agent} comes {by:.2f} {self._counts} {how} for the model"
                 found.append(Finding(FAULT if step.is_command else WORLD, how, state.seq, text))
+            broken = self._broken.of(before.locations, before.values) if before.status == RUNNING and not own else ""
+            if broken and (state.stamp - before.stamp) / state.unit > self._tolerance:
+                text = f"{broken} was broken before, and nobody marked it: {where(before)}"
+                found.append(Finding(FAULT, "broken", state.seq, text))
             missed = self.moves.overdue(place_of(before), clocks) if not own else {}
             for name, _ in self._game.objective.bad:
                 if missed.get(name, 0.0) > self._grace:

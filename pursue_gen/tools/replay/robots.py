@@ -17,12 +17,14 @@ from pursue_gen.tools.replay.receipts import receipts_in, without_receipt
 from pursue_gen.tools.replay.record import MissionRecord, RobotOrder
 from pursue_gen.workspace.map_spots import SPARE_REACH
 from pursue_runtime.locations import breaks_off
-from pursue_runtime.state import SystemState
+from pursue_runtime.state import ENDED, SystemState
 
 LATE = 2.0
 """Seconds by which an order may be received after its activity is over: messages take time, and robots may be quick."""
 EARLY = 0.25
 """Seconds by which the recorder's clock may be behind the observer's: another machine, a step of simulated time."""
+CUT = 0.5
+"""Seconds before the end of the recording of a mission that had not ended in which an order may be missing."""
 NEAR = 0.011  # metres: computed poses are rounded to centimetres
 
 Point = Tuple[float, float, float]
@@ -87,10 +89,12 @@ def check_robots(
     if not record.problems:
         commanded = {state.seq for _, state, _, is_command in steps if is_command}
         receipts = receipts_in(record, controllers)
-        last = record.exact_until or record.states[-1].stamp
+        last = record.exact_until or max([record.states[-1].stamp, *(order.at for order in record.orders)])
+        is_cut = record.states[-1].status not in ENDED
         for place, (state, _, robot, _) in enumerate(activities):
             way = lateness + (orders[state.plan].reaction if state.plan in orders else 0.0)
-            on_its_way = record.is_exact and state.stamp + way * state.unit >= last
+            on_its_way = state.stamp + (way * state.unit if record.is_exact else CUT) >= last
+            on_its_way = on_its_way and (record.is_exact or is_cut)
             if place not in ordered and state.seq in commanded and not on_its_way:
                 found.append(_untold(record, activities[place], (robot, state.seq) in receipts))
         found += without_receipt(record, _at_once(activities, commanded), receipts)

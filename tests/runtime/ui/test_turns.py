@@ -35,7 +35,8 @@ def entry(visit: str, robot: str = "bot2") -> Dict[str, Any]:
 
 WAITS = {"state": {"bot2": "a"}, "commands": []}
 TWICE = [entry("awaits_bot_1_1", "bot_1"), entry("awaits_bot_1_3", "bot_1"), entry("awaits_bot2_2"), WAITS]
-STRATEGY = Strategy({"commands_agents": ["bot_1", "bot2"], "reaction": "1/10", "strategy": TWICE})
+AGENTS: Dict[str, Any] = {"commands_agents": ["bot_1", "bot2"], "reaction": "1/10"}
+STRATEGY = Strategy({**AGENTS, "strategy": TWICE})
 
 
 @pytest.mark.parametrize(
@@ -70,6 +71,14 @@ def test_a_new_plan_has_its_own_orders() -> None:
     assert turns.waits(now) == {}
     turns.add_plan(1, (STRATEGY,))
     assert turns.waits(now) == {"bot2": "waits for Porter to leave the hall"}
+
+
+def test_behind_the_last_visit_of_an_order_that_goes_round_comes_the_first_one() -> None:
+    passage = order("b", "bot_1", "bot2")
+    del passage["locations"]["awaits_nobody"]
+    model = Model(model_data(mover("bot_1", "robot", 9), mover("bot2", "robot", 9), passage))
+    turns = Turns(model, (Strategy({**AGENTS, "strategy": [entry("awaits_bot_1_1", "bot_1")]}),))
+    assert turns.waits(state(model, 1, 0.0, {}, b_passage="has_bot2_2")) == {"bot_1": "waits for bot2 to leave b"}
 
 
 def test_the_terminal_says_it_too() -> None:

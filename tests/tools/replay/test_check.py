@@ -285,6 +285,15 @@ def test_a_goal_that_was_never_sent_is_a_fault() -> None:
     assert kinds(found(made)) == [("untold", 4)]
 
 
+@pytest.mark.parametrize(("steps", "what"), [(3, []), (4, [("untold", 4)])])
+def test_an_order_of_the_last_moment_may_be_missing_where_the_recording_was_cut(
+    steps: int, what: List[Tuple[str, int]]
+) -> None:
+    made = mission(PLAY[:steps])
+    made.heard = [message for message in made.heard if message[1] != "/bot2/move_base_simple/goal"]
+    assert [each for each in kinds(found(made)) if each[0] == "untold"] == what
+
+
 def test_a_goal_that_leads_elsewhere_is_a_fault() -> None:
     made = mission()
     made.heard = [message for message in made.heard if message[1] != "/bot2/move_base_simple/goal"]

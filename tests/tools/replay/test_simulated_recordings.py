@@ -13,6 +13,7 @@ import pytest
 from pursue_gen.language import parse
 from pursue_gen.solving.rules import DEFAULT, Rules
 from pursue_gen.solving.solution import solve_scenario
+from pursue_gen.tga.network import Edge, Guard
 from pursue_gen.tools.replay.check import Findings, check
 from pursue_gen.tools.replay.finding import FAULT, NOTE, WORLD
 from pursue_gen.tools.replay.game import Game, Source, game_of
@@ -290,3 +291,18 @@ def test_an_end_that_came_too_soon_is_a_fault(
     mission.run()
     found = [finding.text for finding in mission.found().findings if finding.level == FAULT]
     assert [says in text for text in found] == ([True] if says else []), found
+
+
+def test_two_who_are_where_one_may_be_and_whom_nobody_marks_are_a_fault() -> None:
+    mission = Recorded(CARTS, 1)
+    mission.run()
+    assert kinds(mission.found(), FAULT) == []
+
+    def one_is_enough(edge: Edge) -> List[Edge]:
+        return [replace(edge, guard=Guard(integers=edge.guard.integers[:1]))] if edge.target == "lose" else [edge]
+
+    network = mission.game.network.with_each(lambda automaton: automaton.with_each(one_is_enough))
+    mission.game = replace(mission.game, network=network)
+    found = [finding for finding in mission.found().findings if finding.kind == "broken"]
+    assert found and all(finding.level == FAULT for finding in found)
+    assert "nobody marked it" in found[0].text
