@@ -1,0 +1,82 @@
+"""Lifts: what each holds unless a scenario says more, which rides there are, and what is wrong with them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Dict, Iterator, Tuple
+
+from pursue_gen.diagnostics import Diagnostic, error, warning
+from pursue_gen.language.conditions import Who
+from pursue_gen.language.objectives.holds import LiftHolds
+from pursue_gen.language.refs import Ref
+from pursue_gen.language.scenario import Agent, Connection, Lift, Safety, Scenario, StatedObjective
+
+Way = Tuple[str, str]
+"""From and to."""
+
+
+def rides_of(scenario: Scenario, agent: Agent) -> Dict[Way, Lift]:
+    """By way of a robot the lift that it calls when it sets off; people call lifts themselves."""
+    if not agent.is_robot or agent.mobile is None:
+        return {}
+    by_lift = ((way, scenario.lift_on(way)) for way in scenario.ways_of(agent.name))
+    return {ends: lift for way, lift in by_lift if lift is not None for ends in way.directions}
+
+
+def with_room_in_lifts(scenario: Scenario) -> Scenario:
+    """The scenario in which each lift holds one robot, unless an objective says what it holds, each of these with the
+    ways by the lift: how long a lift takes would not be true otherwise."""
+    said = {each.lift.name for each in scenario.safety if isinstance(each, LiftHolds)}
+    more = [lift for lift in scenario.lifts if lift.name not in said and _is_shared(scenario, lift)]
+    if not said and not more:
+        return scenario
+    ones = (LiftHolds(Ref(lift.name, lift.span, lift.label or ""), 1, (Who(None, True),), lift.span) for lift in more)
+    safety = (_with_ways(scenario, each) for each in (*scenario.safety, *ones))
+    return replace(scenario, safety=tuple(sorted(safety, key=lambda each: each.last)))
+
+
+def is_said(scenario: Scenario, objective: StatedObjective) -> bool:
+    """False for what `with_room_in_lifts` has added."""
+    return not (isinstance(objective, LiftHolds) and any(lift.span == objective.span for lift in scenario.lifts))
+
+
+def _is_shared(scenario: Scenario, lift: Lift) -> bool:
+    """True where several robots may ride in a lift."""
+    return sum(lift in rides_of(scenario, agent).values() for agent in scenario.agents) > 1
+
+
+def _with_ways(scenario: Scenario, objective: Safety) -> Safety:
+    if not isinstance(objective, LiftHolds):
+        return objective
+    places = {poi.name: Ref(poi.name, poi.span, poi.label or "") for poi in scenario.pois}
+    ways = [way for way in scenario.connections if way.by is not None and way.by.name == objective.lift.name]
+    ends = {frozenset((way.a, way.b)): (way.a, way.b) for way in ways if places.keys() >= {way.a, way.b}}
+    return replace(objective, building=tuple((places[a], places[b]) for a, b in ends.values()))
+
+
+def check_lifts(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Ways that do not go between floors of their lift; lifts that no way goes by, or whose cabin has no pose."""
+    for way in scenario.connections:
+        lift = scenario.lift_on(way)
+        if lift is not None:
+            yield from _on_way(way, lift)
+    posed = any(poi.pose is not None for poi in scenario.pois)
+    for lift in scenario.lifts:
+        if not any(scenario.lift_on(way) is lift for way in scenario.connections):
+            hint = f"write by {lift.name} behind the distance of a way between two of its floors, or delete this line"
+            yield warning("PML472", f"no way goes by {lift.name}", lift.span, hint)
+        elif posed and any(lift.cabin_at(ref.name) is None for ref in lift.floors):
+            message = f"{lift.name} has no pose, but places do: robots would not know where to stand in it"
+            hint = "write the pose of the middle of its cabin behind it: //[x, y, z, qx, qy, qz, qw]"
+            yield warning("PML473", message, lift.span, hint)
+
+
+def _on_way(way: Connection, lift: Lift) -> Iterator[Diagnostic]:
+    floors = [ref.name for ref in lift.floors]
+    for end, span in zip((way.a, way.b), way.ends):
+        if end not in floors:
+            hint = f"write {end} behind at, too, or connect two of {', '.join(floors)}"
+            yield error("PML471", f"{end} is no floor of {lift.name}", span, hint)
+    for ref in way.through[:1]:
+        hint = f"delete through {ref.name}, or write a place between the two"
+        yield error("PML471", f"a way by {lift.name} leads through no door but that of the lift", ref.span, hint)
