@@ -7,6 +7,7 @@ from typing import Dict, Iterator, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, error, warning
 from pursue_gen.language.conditions import Who
+from pursue_gen.language.numbers import Window
 from pursue_gen.language.objectives.holds import LiftHolds
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.scenario import Agent, Connection, Lift, Safety, Scenario, StatedObjective
@@ -21,6 +22,12 @@ def rides_of(scenario: Scenario, agent: Agent) -> Dict[Way, Lift]:
         return {}
     by_lift = ((way, scenario.lift_on(way)) for way in scenario.ways_of(agent.name))
     return {ends: lift for way, lift in by_lift if lift is not None for ends in way.directions}
+
+
+def driven(scenario: Scenario, agent: Agent) -> Dict[Way, Window]:
+    """The movements of an agent on ways by no lift: how long these take is what it takes from place to place."""
+    rides = {ends for way in scenario.ways_of(agent.name) if way.by is not None for ends in way.directions}
+    return {way: window for way, window in scenario.movements(agent).items() if way not in rides}
 
 
 def with_room_in_lifts(scenario: Scenario) -> Scenario:

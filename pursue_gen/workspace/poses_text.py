@@ -17,8 +17,7 @@ from pursue_runtime.doors.lifts import gate_at
 from pursue_runtime.locations import movement
 
 LIFT_DISTANCE = 2.0
-"""Metres from the middle of a cabin at which a robot waits for a lift: half a cabin, and room for who gets out. Half of
-the way to where it sets off, where that is less. Not measured."""
+"""Metres from the middle of a cabin at which a robot waits for a lift: half a cabin, and half a robot. Not measured."""
 DOOR_DISTANCE = 1.0
 """Metres from the middle of a door at which a robot waits for it: room for a door that swings and half a robot. Not
 measured."""
@@ -99,7 +98,7 @@ def _halts(lift: Lift, a: str, b: str, start: Pose) -> List[Dict[str, Any]]:
 def before_cabin(cabin: Pose, start: Pose) -> List[float]:
     """The pose on the straight line from a cabin to where a robot sets off, looking at the cabin."""
     distance = math.dist((cabin.x, cabin.y), (start.x, start.y)) or 1.0
-    share = min(LIFT_DISTANCE / distance, 0.5)
+    share = min(LIFT_DISTANCE / distance, 1.0)
     x, y = (a + share * (b - a) for a, b in ((cabin.x, start.x), (cabin.y, start.y)))
     yaw = math.atan2(cabin.y - start.y, cabin.x - start.x)
     return [round(number, 3) + 0.0 for number in (x, y, start.z, 0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))]

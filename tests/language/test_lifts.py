@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from pursue_gen.explanation.repairs import repairs
 from pursue_gen.language import parse
 from pursue_gen.language.checks import check_reading
-from pursue_gen.language.lifts import rides_of
+from pursue_gen.language.lifts import driven, rides_of
 from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import LiftHolds, Scenario
 from pursue_gen.language.writer import scenario_text, written
@@ -65,6 +65,12 @@ def test_a_ride_takes_what_is_driven_and_what_the_lift_takes(comes: int, low: in
 def test_a_time_of_its_own_is_that_without_the_lift() -> None:
     made = scenario(hotel(more="travel bot1 from hall0 to hall1 takes 2 to 3"))
     assert made.movements(made.agents[0])["hall0", "hall1"] == (12, 63)
+
+
+def test_rides_are_not_measured_as_ways_are() -> None:
+    made = scenario(hotel(by="").replace("hall2 distance 4", "hall2 distance 4 by lift1"))
+    assert set(driven(made, made.agents[0])) == {("hall0", "hall1"), ("hall1", "hall0")}
+    assert driven(scenario(hotel()), made.agents[2]) == {}
 
 
 def test_robots_call_it_and_people_do_so_themselves() -> None:

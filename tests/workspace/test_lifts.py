@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Dict
+from typing import Any, Dict
 
 import pytest
 import yaml
@@ -16,7 +16,9 @@ from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.workspace import Options
 from pursue_gen.workspace.generate import generate
 from pursue_gen.workspace.poses_text import LIFT_DISTANCE, before_cabin
+from pursue_runtime.data import DataError
 from pursue_runtime.doors.lifts import read_lifts
+from pursue_runtime.drives.robots import driven_robots
 from pursue_runtime.poses import Doorway, read_poses
 
 HOTEL = """\
@@ -72,6 +74,16 @@ def test_the_node_for_doors_knows_who_rides_from_where_to_where() -> None:
     assert "doors" in settings["nodes"] and b'name="doors"' in made["src/hotel_bringup/launch/mission.launch"]
 
 
+def test_without_a_mission_robots_drive_on_ways_by_no_lift() -> None:
+    made = files()
+
+    def read(name: str) -> Any:
+        return yaml.safe_load(made[f"src/UI/config/{name}"])
+
+    with pytest.raises(DataError, match="no robot of this scenario is mobile"):
+        driven_robots(read, {}, lambda _: None)
+
+
 def test_where_no_way_goes_by_lift_nothing_is_different() -> None:
     made = files(by="")
     assert "lifts" not in yaml.safe_load(made["src/UI/config/ui.yaml"])
@@ -84,5 +96,5 @@ def test_robots_wait_between_the_cabin_and_where_they_set_off(x: float, y: float
     cabin, start = Pose(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), Pose(x, y, 1.0, 0.0, 0.0, 0.0, 1.0)
     at = before_cabin(cabin, start)
     far = (x * x + y * y) ** 0.5
-    assert (at[0] ** 2 + at[1] ** 2) ** 0.5 == pytest.approx(min(LIFT_DISTANCE, far / 2), abs=0.01)
+    assert (at[0] ** 2 + at[1] ** 2) ** 0.5 == pytest.approx(min(LIFT_DISTANCE, far), abs=0.01)
     assert at[0] * y == pytest.approx(at[1] * x, abs=0.02) and at[2] == 1.0
