@@ -56,7 +56,7 @@ def topics(scenario: Scenario, subs: Sequence[SubStrategy]) -> Tuple[Topic, ...]
             tuple(f"/{sub.controller}" for sub in subs if sub.controller != UI and some & set(sub.agents))
             for some in (through, by_lift)
         )
-        result.append(Topic(DOORS, _STRING, doors, waiting))
+        result.append(Topic(DOORS, _STRING, doors, (*waiting, f"/{UI}")))
         if by_lift:
             posed = any(each.pose is not None for each in scenario.lifts)
             result.append(Topic(ABOARD, _STRING, riding if posed else (), doors))
