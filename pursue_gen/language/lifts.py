@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import hypot
 from typing import Dict, Iterator, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, error, warning
+from pursue_gen.diagnostics import Diagnostic, error, listed, warning
 from pursue_gen.language.conditions import Who
 from pursue_gen.language.numbers import Window
 from pursue_gen.language.objectives.holds import LiftHolds
@@ -14,6 +15,11 @@ from pursue_gen.language.scenario import Agent, Connection, Lift, Safety, Scenar
 
 Way = Tuple[str, str]
 """From and to."""
+
+WAITS_AT = 2.0
+"""Metres from the middle of a cabin at which a robot waits for a lift: half a cabin, and half a robot. Not measured."""
+_ROOM = 0.7
+"""Metres between a robot that waits and one that stands at the place before the lift. Not measured."""
 
 
 def rides_of(scenario: Scenario, agent: Agent) -> Dict[Way, Lift]:
@@ -76,6 +82,24 @@ def check_lifts(scenario: Scenario) -> Iterator[Diagnostic]:
             message = f"{lift.name} has no pose, but places do: robots would not know where to stand in it"
             hint = "write the pose of the middle of its cabin behind it: //[x, y, z, qx, qy, qz, qw]"
             yield warning("PML473", message, lift.span, hint)
+        if _is_shared(scenario, lift):
+            yield from _crowded(scenario, lift)
+
+
+def _crowded(scenario: Scenario, lift: Lift) -> Iterator[Diagnostic]:
+    """Places before a lift at which a robot that waits for it stands, though it has left them."""
+    poses = {poi.name: poi.pose for poi in scenario.pois}
+    near = []
+    for ref in lift.floors:
+        pose, cabin = poses.get(ref.name), lift.cabin_at(ref.name)
+        if pose is not None and cabin is not None and hypot(pose.x - cabin.x, pose.y - cabin.y) < WAITS_AT + _ROOM:
+            near.append(ref.name)
+    if near:
+        far = f"{WAITS_AT + _ROOM:g} m"
+        are = "is" if len(near) == 1 else "are"
+        message = f"{listed(near)} {are} less than {far} from the middle of {lift.name}, where robots wait for it"
+        hint = f"put places {far} away or farther, so that other robots can come there meanwhile"
+        yield warning("PML474", message, lift.span, hint)
 
 
 def _on_way(way: Connection, lift: Lift) -> Iterator[Diagnostic]:

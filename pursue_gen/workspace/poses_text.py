@@ -9,15 +9,13 @@ from typing import Any, Dict, List, Mapping, Sequence
 from pursue_gen import __version__
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.doors import doors_of
-from pursue_gen.language.lifts import rides_of
+from pursue_gen.language.lifts import WAITS_AT, rides_of
 from pursue_gen.language.scenario import Lift, Pose, Scenario
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.workspace.spots import Placing, Table
 from pursue_runtime.doors.lifts import gate_at
 from pursue_runtime.locations import movement
 
-LIFT_DISTANCE = 2.0
-"""Metres from the middle of a cabin at which a robot waits for a lift: half a cabin, and half a robot. Not measured."""
 DOOR_DISTANCE = 1.0
 """Metres from the middle of a door at which a robot waits for it: room for a door that swings and half a robot. Not
 measured."""
@@ -98,7 +96,7 @@ def _halts(lift: Lift, a: str, b: str, start: Pose) -> List[Dict[str, Any]]:
 def before_cabin(cabin: Pose, start: Pose) -> List[float]:
     """The pose on the straight line from a cabin to where a robot sets off, looking at the cabin."""
     distance = math.dist((cabin.x, cabin.y), (start.x, start.y)) or 1.0
-    share = min(LIFT_DISTANCE / distance, 1.0)
+    share = min(WAITS_AT / distance, 1.0)
     x, y = (a + share * (b - a) for a, b in ((cabin.x, start.x), (cabin.y, start.y)))
     yaw = math.atan2(cabin.y - start.y, cabin.x - start.x)
     return [round(number, 3) + 0.0 for number in (x, y, start.z, 0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))]

@@ -147,6 +147,10 @@ POSED = POSED.replace('poi "hall2"', 'poi "hall2" //[20, 0, 0, 0, 0, 0, 1]')
         (hotel(by=""), ("PML472", "no way goes by lift1")),
         (POSED, ("PML473", "lift1 has no pose, but places do: robots would not know where to stand in it")),
         (
+            POSED.replace("to 20", "to 20 //[2.5, 0, 0, 0, 0, 0, 1]"),
+            ("PML474", "hall0 and hall1 are less than 2.7 m from the middle of lift1, where robots wait for it"),
+        ),
+        (
             POSED.replace("to 20", "to 20 //[2, 0, 0, 0, 0, 0, 1] roof [2, 0, 0, 0, 0, 0, 1]"),
             ("PML470", "the cabin of lift1 has a pose at roof, which is none of its floors"),
         ),

@@ -10,12 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.language import parse
+from pursue_gen.language.lifts import WAITS_AT
 from pursue_gen.language.scenario import Pose
 from pursue_gen.solving.rules import DEFAULT
 from pursue_gen.solving.solution import solve_scenario
 from pursue_gen.workspace import Options
 from pursue_gen.workspace.generate import generate
-from pursue_gen.workspace.poses_text import LIFT_DISTANCE, before_cabin
+from pursue_gen.workspace.poses_text import before_cabin
 from pursue_runtime.data import DataError
 from pursue_runtime.doors.lifts import read_lifts
 from pursue_runtime.drives.robots import driven_robots
@@ -96,5 +97,5 @@ def test_robots_wait_between_the_cabin_and_where_they_set_off(x: float, y: float
     cabin, start = Pose(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), Pose(x, y, 1.0, 0.0, 0.0, 0.0, 1.0)
     at = before_cabin(cabin, start)
     far = (x * x + y * y) ** 0.5
-    assert (at[0] ** 2 + at[1] ** 2) ** 0.5 == pytest.approx(min(LIFT_DISTANCE, far), abs=0.01)
+    assert (at[0] ** 2 + at[1] ** 2) ** 0.5 == pytest.approx(min(WAITS_AT, far), abs=0.01)
     assert at[0] * y == pytest.approx(at[1] * x, abs=0.02) and at[2] == 1.0

@@ -30,7 +30,7 @@ _COMES, _RIDES = "40 s", "10 s to 20 s"
 """Within which time a lift comes, and how long it then takes to another level, until people write it. Not measured."""
 _STRAIGHT = 0.1
 """Metres by which a cabin may be elsewhere on another level, and counts as one that goes straight up. Not measured."""
-_BEFORE = 2.0
+_BEFORE = 2.8
 """Metres from the middle of a cabin to the place before its door, or four fifths of the way where that is less. Not
 measured."""
 
