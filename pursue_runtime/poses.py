@@ -3,13 +3,14 @@
 `poses` has a pose for each place, for every robot that commands of this package are for. `robots` (format 2) has, by
 robot and place, those that differ: two robots at one place stand side by side. `spare` (format 3) has, by robot and
 place, where this robot alone may stand instead, if its navigation cannot bring it to its pose. `doors` (format 4) has,
-by robot and location, the doors of a way, and where the robot waits for them.
+by robot and location, the doors of a way, and where the robot waits for them; on a way by lift (format 5) a list: the
+lift where it gets in, and then, in the cabin, where it gets out.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any, Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional
+from typing import Any, Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.data import DataError
 
@@ -21,14 +22,17 @@ Table = Dict[str, List[float]]
 
 
 class Doorway(NamedTuple):
-    """The doors of a way; `wait`: the pose at which a robot waits for them, None: where it sets off."""
+    """The doors of a way; `wait`: the pose at which a robot waits for them, None: where it sets off. `aboard`: that is
+    in the cabin of a lift, which is at `out` on the map of the floor where it gets out; None: at the same pose."""
 
     doors: FrozenSet[str]
     wait: Optional[List[float]] = None
+    aboard: bool = False
+    out: Optional[List[float]] = None
 
 
-Doorways = Dict[str, Doorway]
-"""The location in which the robot is on the way → the doors of the way."""
+Doorways = Dict[str, Tuple[Doorway, ...]]
+"""The location in which the robot is on the way → the doors of the way, one after the other."""
 
 
 class Poses(NamedTuple):
@@ -60,13 +64,19 @@ def _doorways(data: Mapping[str, Any]) -> Dict[str, Doorways]:
         raise DataError("poses.yaml: expected doors: and a table for each robot")
     for robot, ways in robots.items():
         for location, way in ways.items():
-            what = f"poses.yaml: the doors of {robot} on {location}"
-            names = way.get("doors") if isinstance(way, dict) else None
-            if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
-                raise DataError(f"{what}: expected {{doors: [name], wait: [x, y, z, qx, qy, qz, qw]}}, got {way!r}")
-            wait = None if way.get("wait") is None else _pose(way["wait"], f"where {robot} waits on {location}")
-            found.setdefault(str(robot), {})[str(location)] = Doorway(frozenset(names), wait)
+            some = way if isinstance(way, list) and way else [way]
+            found.setdefault(str(robot), {})[str(location)] = tuple(_doorway(robot, location, one) for one in some)
     return found
+
+
+def _doorway(robot: object, location: object, way: Any) -> Doorway:
+    names = way.get("doors") if isinstance(way, dict) else None
+    if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
+        what = f"poses.yaml: the doors of {robot} on {location}"
+        raise DataError(f"{what}: expected {{doors: [name], wait: [x, y, z, qx, qy, qz, qw]}}, got {way!r}")
+    where = f"where {robot} waits on {location}"
+    wait, out = (None if way.get(key) is None else _pose(way[key], where) for key in ("wait", "out"))
+    return Doorway(frozenset(names), wait, way.get("aboard") is True, out)
 
 
 def _of_robots(data: Mapping[str, Any], key: str, places: Table) -> Dict[str, Table]:

@@ -259,8 +259,7 @@ def _conditions(scenario: Scenario) -> Iterator[str]:
         lane = f" at distance {written_time(way.distance)}" if scenario.is_lane(way) else ""
         if way.whom_words:
             yield f"Between {ends}{lane} {way.whom_words}"
-        for door in scenario.doors_on(way):
-            yield f"Between {ends} through {door.in_words}"
+        yield from (f"Between {ends} {words}" for words in scenario.words_on(way))
         if way.only_if is not None:
             yield f"Between {ends} only while {condition_words(way.only_if)}"
     for event in scenario.events:

@@ -52,10 +52,10 @@ class Change:
     """A change that wins.
 
     `what` is ends, reaction, slack, game, deadline, after, agent (its pace), duration, latest or earliest (an end of an
-    event's window), times, room, open, pause, travel, distance, direction, door, whom, rule, dependency, knowledge,
-    start, may_stop, parts, assumption or control; `name` whose; `before` and `after` its values as text; `sentence`
-    describes it; `next_lost` is a smaller change, or what is now, that does not win: the next smaller one, where the
-    change is known to be the `least`; `not_enough`: the same for people, "" where it is what is now.
+    event's window), times, room, open, pause, travel, distance, direction, door, lift, whom, rule, dependency,
+    knowledge, start, may_stop, parts, assumption or control; `name` whose; `before` and `after` its values as text;
+    `sentence` describes it; `next_lost` is a smaller change, or what is now, that does not win: the next smaller one,
+    where the change is known to be the `least`; `not_enough`: the same for people, "" where it is what is now.
     """
 
     what: str

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import Iterator, Sequence, Tuple
+from typing import Any, Iterator, Sequence, Tuple, Union, cast
 
 from pursue_gen.diagnostics import Span, listed
 from pursue_gen.explanation.ablations import without_conditions
@@ -33,6 +33,7 @@ from pursue_gen.language.scenario import (
     Door,
     Endurance,
     Event,
+    Lift,
     Pause,
     Poi,
     Reach,
@@ -67,7 +68,9 @@ def _repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
     for connection in scenario.connections:
         yield from _of_way(scenario, connection)
     for door in scenario.doors:
-        yield from _of_door(scenario, door)
+        yield from _of_waiting(scenario, door, "opens_within", "opening")
+    for lift in scenario.lifts:
+        yield from _of_waiting(scenario, lift, "comes_within", "coming")
     controlled = [agent.name for agent in scenario.agents if agent.controllable]
     for part in (part for part in scenario.for_some if not all(map(part.admits, controlled))):
         if isinstance(part, Connection) and scenario.is_lane(part):
@@ -265,13 +268,13 @@ def _of_way(scenario: Scenario, way: Connection) -> Iterator[Repair]:
         yield _switch("direction", ends, label, "one_way", freer, way.span)
 
 
-def _of_door(scenario: Scenario, door: Door) -> Iterator[Repair]:
-    now = door.opens_within
+def _of_waiting(scenario: Scenario, part: Union[Door, Lift], field: str, does: str) -> Iterator[Repair]:
+    now = getattr(part, field)
     if now > 1:
         yield Repair(
-            "door", door.name, f"{door.shown} opening sooner", now, whole_below(now, 1),
-            lambda k: scenario.with_instead(door, replace(door, opens_within=like(k, now))),
-            lambda k: f"{door.shown} opening within {instead(k, now)}", door.span,
+            part.declares, part.name, f"{part.shown} {does} sooner", now, whole_below(now, 1),
+            lambda k: scenario.with_instead(part, replace(cast(Any, part), **{field: like(k, now)})),
+            lambda k: f"{part.shown} {does} within {instead(k, now)}", part.span,
         )  # fmt: skip
 
 

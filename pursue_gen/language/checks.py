@@ -14,6 +14,7 @@ from pursue_gen.language.behaviour import check_events, check_rules, components
 from pursue_gen.language.condition_checks import check_conditions
 from pursue_gen.language.doors import check_doors
 from pursue_gen.language.labels import check_labels
+from pursue_gen.language.lifts import check_lifts, is_said
 from pursue_gen.language.loads import check_loads
 from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.numbers import MOST_DIGITS, exact, is_fine
@@ -86,6 +87,7 @@ def check_reading(reading: Reading) -> Tuple[Diagnostic, ...]:
                 findings += check_assumptions(scenario)
             findings += check_poses(scenario)
             findings += check_doors(scenario)
+            findings += check_lifts(scenario)
             findings += check_unknown(scenario)
             findings += check_batteries(scenario)
             findings += of_loads
@@ -129,7 +131,7 @@ def _doubtful(scenario: Scenario) -> FrozenSet[str]:
 def _alone(scenario: Scenario) -> Iterator[Diagnostic]:
     """What is wrong with single statements."""
     parts = (*scenario.pois, *scenario.connections, *scenario.events, *scenario.states, *scenario.agents)
-    for part in (*scenario.units, *scenario.rests, *scenario.doors, *parts, *scenario.travels):
+    for part in (*scenario.units, *scenario.rests, *scenario.doors, *scenario.lifts, *parts, *scenario.travels):
         yield from part.check()
 
 
@@ -330,7 +332,7 @@ def _order(scenario: Scenario) -> Iterator[Diagnostic]:
     parts: Dict[str, Tuple[Any, ...]] = {
         "poi": scenario.pois, "connect": scenario.connections, "event": scenario.events, "rule": scenario.rules,
         "state": scenario.states, "stateDependency": scenario.dependencies, "agent": scenario.agents,
-        "objective": scenario.objectives,
+        "objective": tuple(each for each in scenario.objectives if is_said(scenario, each)),
     }  # fmt: skip
     order = list(parts)
     ranked = [(rank, part.span) for rank, kind in enumerate(parts.values()) for part in kind]

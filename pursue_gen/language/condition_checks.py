@@ -21,6 +21,7 @@ from pursue_gen.language.conditions import (
     condition_words,
     predicate_words,
 )
+from pursue_gen.language.lifts import is_said
 from pursue_gen.language.objectives.holds import EveryHolds
 from pursue_gen.language.objectives.holds import Holds as Room
 from pursue_gen.language.scenario import Safety, Scenario
@@ -80,15 +81,18 @@ def _room(scenario: Scenario, safety: Safety, domains: Domains) -> Iterator[Diag
     """An objective on how many are somewhere: where nobody ever is, or no more, and one that is too large."""
     assert isinstance(safety, Room), "there are no other ones"
     rooms = [(room, domains.counted(room)) for room in safety.rooms]
-    if not isinstance(safety, EveryHolds):
+    said = is_said(scenario, safety)
+    if said and not isinstance(safety, EveryHolds):
         impossible = [each for room, counted in rooms for each in _nobody(scenario, domains, room, counted, safety)]
         if impossible:
             yield from impossible
             return
     most, largest = safety.most, max((len(counted) for _, counted in rooms), default=0)
     sizes = [comb(len(counted), most + 1) for _, counted in rooms]
+    if largest <= most and not said:
+        return
     if largest <= most:
-        where = safety.in_one if isinstance(safety, EveryHolds) else predicate_words(rooms[0][0].parts[0])
+        where = safety.in_one if isinstance(safety, EveryHolds) else safety.where
         message = f"this changes nothing: never are more than {largest} {where}"
         yield warning("PML232", message, safety.span, "write a smaller number, or delete it")
     elif max(sizes) > MOST_ROOM or sum(sizes) > MOST_ROOMS:

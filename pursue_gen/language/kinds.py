@@ -13,6 +13,7 @@ from pursue_gen.language.statements.door import Door
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.statements.group import ForEach, Group
 from pursue_gen.language.statements.headed import Assume, Batteries, Objective, ReachObjective
+from pursue_gen.language.statements.lift import Lift
 from pursue_gen.language.statements.mission import MissionEnd
 from pursue_gen.language.statements.optional import Optional
 from pursue_gen.language.statements.poi import Poi
@@ -30,6 +31,7 @@ STATEMENTS: Mapping[str, Type[StatementKind]] = {
         Rest,
         Poi,
         Door,
+        Lift,
         Connection,
         Thing,
         Event,

@@ -93,6 +93,7 @@ def are_names(tokens: Sequence[Token]) -> List[bool]:
         opens = before is not None and before.type == "COLON"
         begins = opens and kind == "OBJECTIVE" and token.type in _OPENING and following != "NEVER_WITH"
         begins = begins or (token.type, following) == ("AT_MOST", "NUMBER")
+        begins = begins or (kind, token.type, index) == ("STATE", "SHOWN_BY", 6)  # behind the comma
         whoever = token.type == "ANY" and following in ("ROBOT", "AGENT")
         whoever = whoever or (token.type, following) == ("EACH", "PLACE")
         stands = (behind and not begins and not whoever) or following in _BEHIND_STATES
@@ -164,7 +165,8 @@ def _occurrences(part: Statement, number: int) -> Iterator[Occurrence]:
         elif token.type == "POSE":
             for name, offset, _ in robots_in(str(token)):
                 start = start_of(token) + offset
-                yield Occurrence(name, "agent", start, start + len(name), False, number)
+                kind = "POI" if part.kind == "LIFT" else "agent"
+                yield Occurrence(name, kind, start, start + len(name), False, number)
     if condition is not None:
         for index, kind in names_in_condition(part.tokens, condition)[0].items():
             yield of(part.tokens[index], kind)

@@ -13,6 +13,7 @@ from pursue_gen.diagnostics import Diagnostic, PursueError, Severity, error, in_
 from pursue_gen.language import scenario as pml
 from pursue_gen.language.document import Document
 from pursue_gen.language.kinds import BY_RULE
+from pursue_gen.language.lifts import with_room_in_lifts
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.statements.base import Labelled
 from pursue_gen.language.statements.unit import Unit, seconds_in
@@ -110,6 +111,7 @@ def read_document(document: Document, name: Optional[str] = None) -> Reading:
         text=document.text,
         **{field: tuple(some) for field, some in parts.items()},
     )
+    value = with_room_in_lifts(value)
     broken = any(finding.severity is Severity.ERROR for finding in syntax.findings)
     lost = syntax.lost if broken else frozenset()
     return Reading(None if broken else value, in_order(findings), value, lost, syntax.whole)

@@ -103,7 +103,7 @@ def _distances(scenario: Scenario) -> Iterator[Diagnostic]:
     lines: List[Tuple[float, Connection]] = []
     for way in scenario.connections:
         a, b = poses.get(way.a), poses.get(way.b)
-        if a is not None and b is not None and way.distance > 0 and _metres(a, b) >= _SAME:
+        if a is not None and b is not None and way.by is None and way.distance > 0 and _metres(a, b) >= _SAME:
             lines.append((_metres(a, b), way))
     if len(lines) < 2:
         return

@@ -29,6 +29,7 @@ from pursue_gen.language.statements.connect import Connection
 from pursue_gen.language.statements.dependency import Dependency
 from pursue_gen.language.statements.door import Door
 from pursue_gen.language.statements.event import Event
+from pursue_gen.language.statements.lift import Lift
 from pursue_gen.language.statements.mission import MissionEnd
 from pursue_gen.language.statements.poi import Poi
 from pursue_gen.language.statements.rest import Rest
@@ -41,8 +42,8 @@ from pursue_gen.language.times import like
 
 __all__ = [
     "Agent", "AllOf", "AnyOf", "At", "AtMostOf", "Battery", "Both", "Choice", "Condition", "Connection", "Dependency",
-    "Doing", "Door", "Event", "Has", "Holds", "MissionEnd", "Not", "OnWay", "Poi", "Pose", "Ref", "Rest", "Rule",
-    "RuleBody", "Scenario", "Sequence", "Spot", "State", "Thing", "Travel", "Unit", "Who", "Window",
+    "Doing", "Door", "Event", "Has", "Holds", "Lift", "MissionEnd", "Not", "OnWay", "Poi", "Pose", "Ref", "Rest",
+    "Rule", "RuleBody", "Scenario", "Sequence", "Spot", "State", "Thing", "Travel", "Unit", "Who", "Window",
 ]
 __all__ += kinds_of_assumptions.__all__
 __all__ += kinds_of_objectives.__all__
@@ -80,6 +81,7 @@ class Scenario:
     ends: Tuple[MissionEnd, ...] = ()
     things: Tuple[Thing, ...] = ()
     doors: Tuple[Door, ...] = ()
+    lifts: Tuple[Lift, ...] = ()
 
     def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
         """Show it in a notebook."""
@@ -137,8 +139,8 @@ class Scenario:
 
     @cached_property
     def labels(self) -> Dict[str, str]:
-        """Name → what people read instead, of all places, events, agents, things and doors with a label."""
-        parts: Tuple[Labelled, ...] = (*self.pois, *self.events, *self.agents, *self.things, *self.doors)
+        """Name → what people read instead, of all places, events, agents, things, doors and lifts with a label."""
+        parts: Tuple[Labelled, ...] = (*self.pois, *self.events, *self.agents, *self.things, *self.doors, *self.lifts)
         return {part.name: part.label for part in reversed(parts) if part.label}
 
     def shown(self, name: str) -> str:
@@ -232,16 +234,28 @@ class Scenario:
         own = {travel.way: travel.window for travel in self.travels if travel.agent.name == agent.name}
         found = {}
         for connection in self.ways_of(agent.name):
-            opening = self.opening(connection)
+            least, most = self.waiting(connection)
             for way in connection.directions:
                 earliest, latest = own.get(way) or agent.window_on(connection.distance)
-                found[way] = earliest, exact(latest + opening) if opening else latest
+                found[way] = exact(earliest + least) if least else earliest, exact(latest + most) if most else latest
         return found
 
-    def opening(self, way: Connection) -> Number:
-        """The time units that whoever sets off on a way waits for its doors at most, all of which are asked at once."""
-        return max((door.opens_within for door in self.doors_on(way)), default=0)
+    def waiting(self, way: Connection) -> Window:
+        """The time units for which whoever sets off on a way does not drive: least and most. Its doors are all asked at
+        once; its lift comes, and then takes its time."""
+        opening = max((door.opens_within for door in self.doors_on(way)), default=0)
+        lift = self.lift_on(way)
+        return (0, opening) if lift is None else (lift.ride[0], opening + lift.comes_within + lift.ride[1])
 
     def doors_on(self, way: Connection) -> Tuple[Door, ...]:
         """The doors of a way, in the order in which they are declared."""
         return tuple(door for door in self.doors if any(ref.name == door.name for ref in way.through))
+
+    def lift_on(self, way: Connection) -> Optional[Lift]:
+        """The lift that a way goes by; None: it goes by none."""
+        return next((lift for lift in self.lifts if way.by is not None and way.by.name == lift.name), None)
+
+    def words_on(self, way: Connection) -> Tuple[str, ...]:
+        """What people read of the doors and the lift of a way, as in `through d1 (opens within 8 s)`."""
+        lift = self.lift_on(way)
+        return (*(door.in_words for door in self.doors_on(way)), *(() if lift is None else (lift.in_words,)))

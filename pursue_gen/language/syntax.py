@@ -32,7 +32,7 @@ MOST_WORDS = 100_000
 """The largest text that is read: many times a floor with 1,000 places, and still read in seconds."""
 
 COMMENTS = frozenset(("LINE_COMMENT", "BLOCK_COMMENT", "UNCLOSED_COMMENT"))
-"""The tokens that are comments; a POSE is one, too, where it does not stand behind a point of interest or a door."""
+"""The tokens that are comments; a POSE is one, too, where it does not stand behind what may have one."""
 
 _DEEPEST = 40
 """Brackets within brackets in a rule or a condition; beyond it is no scenario, and Python's own stack has an end."""
@@ -59,10 +59,10 @@ _ENDS = frozenset(
 """Tokens behind which no name can stand: one that opens the next line begins something else."""
 _LENGTHS = ("SECOND", "MINUTE", "HOUR", "NUMBER")
 """What a unit of time may be."""
-_PLACED = ("POI", "DOOR")
+_PLACED = ("POI", "DOOR", "LIFT")
 """The tokens that begin what may have a pose."""
-_OF_POIS = NAMES | {"NAME", "LABEL", "FOR", "EXCEPT", "COMMA", "OPENS", "WITHIN", "NUMBER"}
-"""What a point of interest, or a door, consists of, before its pose."""
+_OF_POIS = NAMES | set("NAME LABEL FOR EXCEPT COMMA OPENS WITHIN NUMBER AT COMES TAKES TO".split())
+"""What a point of interest, a door or a lift consists of, before its pose."""
 
 
 @dataclass(frozen=True)
@@ -315,7 +315,7 @@ def accepts(tokens: Sequence[Token]) -> FrozenSet[str]:
 
 
 def _significant(tokens: Iterable[Token]) -> List[Token]:
-    """The tokens without comments: a pose is none behind a point of interest, or a door, on its line."""
+    """The tokens without comments: a pose is none behind what may have one, on its line."""
     kept: List[Token] = []
     of_poi = False
     for token in tokens:
@@ -368,7 +368,7 @@ def _chunks(tokens: List[Token]) -> List[List[Token]]:
             begins = following == "NUMBER" or (opens_line and ended)
         elif token.type == "MISSION":  # a name may be called so
             begins = following == "ENDS" or (opens_line and ended)
-        elif token.type in ("GROUP", "THING", "DOOR"):  # a name may be called so
+        elif token.type in ("GROUP", "THING", "DOOR", "LIFT"):  # a name may be called so
             begins = goes_on or (opens_line and ended)
         elif token.type in ("OBJECTIVE", "REACH_OBJECTIVE") and _opened(found):
             begins = False

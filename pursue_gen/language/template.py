@@ -77,7 +77,7 @@ def event_or_condition_text(what: Any) -> str:
 FILLINGS: Mapping[str, Filling] = {
     **{
         kind: Filling("ref", TreeReader.ref, name_text, kind)
-        for kind in ("agent", "event", "state", "thing", "door", "POI")
+        for kind in ("agent", "event", "state", "thing", "door", "lift", "POI")
     },
     '"agent"': Filling("(ref | NAME)", TreeReader.agent_ref, lambda ref: f'"{ref.name}"', "agent"),
     "agents": Filling("refs", TreeReader.refs, names_text, "agent"),

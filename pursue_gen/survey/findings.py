@@ -36,7 +36,7 @@ def apart(scenario: Scenario, plan: Plan, clearance: Clearance, needed: float) -
 
     named = set()
     for way in scenario.connections:
-        if {way.a, way.b} <= set(plan.places) and plan.route(way.a, way.b) is None:
+        if way.by is None and {way.a, way.b} <= set(plan.places) and plan.route(way.a, way.b) is None:
             named |= {way.a, way.b}
             message = f"on the map a robot cannot get from {way.a} to {way.b}"
             yield warning("MAP004", message, way.span, hint((way.a, way.b)))
@@ -49,7 +49,7 @@ def apart(scenario: Scenario, plan: Plan, clearance: Clearance, needed: float) -
 def crossing(scenario: Scenario, plan: Plan) -> Iterator[Diagnostic]:
     """Ways that lead through third places."""
     for way in scenario.connections:
-        places = plan.crossed(way.a, way.b) if {way.a, way.b} <= set(plan.places) else []
+        places = plan.crossed(way.a, way.b) if way.by is None and {way.a, way.b} <= set(plan.places) else []
         if places:
             message = f"the way from {way.a} to {way.b} leads through {_listed(places)}, where a robot may stand"
             stops = [way.a, *places, way.b]

@@ -271,6 +271,8 @@ class _Work:
     def _kept(self, way: Connection, route: Optional[Route]) -> str:
         """Why the distance of a way stays as it is; "": it does not."""
         poses = {poi.name: poi.pose for poi in self.scenario.pois}
+        if way.by is not None:
+            return "it goes by lift"
         for name in (way.a, way.b):
             if poses[name] is None:
                 return f"{name} has no pose"

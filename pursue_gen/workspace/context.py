@@ -9,7 +9,7 @@ A template that uses anything else is an error (jinja2's StrictUndefined). Every
 - `free_agents`, the names of the uncontrollable ones; `robots`, those of the robots;
 - `controllers`, the controllers' names in order: their packages and their nodes have them;
 - `reported`, the agents whose ends come from the world: all of them, but for those whose ends a controller decides;
-- `doors`: there are ways through doors that open by themselves;
+- `doors`: there are ways through doors that open by themselves, or by lifts;
 - `reaches`: the mission has a goal to reach; `bringup`: the name of the package with the launch files;
 - `time_unit`: the default length of a time unit in seconds;
 - `machines`, for each node of the mission its name and {host, user, env_loader} of the machine that runs it;
@@ -29,6 +29,7 @@ from typing import Any, Dict, Mapping, Optional, Sequence
 from pursue_gen import __version__
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.language.doors import doors_of
+from pursue_gen.language.lifts import rides_of
 from pursue_gen.language.scenario import Agent, Scenario
 from pursue_gen.partition import SubStrategy
 from pursue_gen.tga.network import Objective
@@ -109,7 +110,7 @@ def common(
         "facts": list(scenario.facts),
         "controllers": [sub.controller for sub in controllers],
         "reported": [agent.name for agent in scenario.agents if agent.name not in decided] + [*scenario.facts],
-        "doors": any(doors_of(scenario, agent) for agent in scenario.agents),
+        "doors": any(doors_of(scenario, agent) or rides_of(scenario, agent) for agent in scenario.agents),
         "reaches": objective.reaches,
         "bringup": bringup_of(scenario),
         "time_unit": float(options.time_unit or scenario.unit or 1),

@@ -67,7 +67,7 @@ NODES: Mapping[str, Mapping[str, Node]] = {
         "": Node("nodes.ui", ""),
         "simulator": Node("nodes.simulator", "The simulated robots, people and other agents."),
         "sim_clock": Node("nodes.sim_clock", "Simulated time, for missions that run faster than life."),
-        "doors": Node("nodes.doors", "Has doors opened for robots, and closed behind them."),
+        "doors": Node("nodes.doors", "Has doors opened for robots, and lifts come."),
         "recorder": Node("nodes.recorder", "Records a mission in a bag."),
         "markers": Node("nodes.markers", "Shows the mission in rviz."),
         "drive_legs": Node("nodes.drive_legs", "Drives robots along all ways, and records how long all takes."),

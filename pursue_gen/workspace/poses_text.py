@@ -9,9 +9,11 @@ from typing import Any, Dict, List, Mapping, Sequence
 from pursue_gen import __version__
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.doors import doors_of
-from pursue_gen.language.scenario import Pose, Scenario
+from pursue_gen.language.lifts import WAITS_AT, rides_of
+from pursue_gen.language.scenario import Lift, Pose, Scenario
 from pursue_gen.partition.yaml_text import inline, yaml_text
 from pursue_gen.workspace.spots import Placing, Table
+from pursue_runtime.doors.lifts import gate_at
 from pursue_runtime.locations import movement
 
 DOOR_DISTANCE = 1.0
@@ -28,7 +30,7 @@ def poses_text(
 
     One robot has a table of its own. Of several, those that differ from the places' poses are named (format 2). Those
     that each robot alone may take if need be are named in any case (`spare`: robot → place → pose, format 3), and so
-    are the doors of ways, and where a robot waits for them (format 4).
+    are the doors of ways, and where a robot waits for them (format 4), in the cabin of a lift, too (format 5).
     """
     places, spots = placing.places, placing.spots
     head = [_title(scenario, robots)]
@@ -49,7 +51,8 @@ def poses_text(
         own = {robot: table for robot, table in differ.items() if table}
     spare = {robot: spare[robot] for robot in robots if robot in spare}
     doors = _doorways(scenario, places, own, robots)
-    form = 4 if doors else 3 if spare else 2 if own else 1
+    by_lift = any(isinstance(way, list) for ways in doors.values() for way in ways.values())
+    form = 5 if by_lift else 4 if doors else 3 if spare else 2 if own else 1
     data: Dict[str, Any] = {"format": form, "computed": placing.computed, "poses": _lines(places, alone)}
     if own:
         data["robots"] = {robot: _lines(table, _computed(scenario, robot)) for robot, table in own.items()}
@@ -61,9 +64,13 @@ def poses_text(
 
 
 def _doorways(scenario: Scenario, places: Table, own: Mapping[str, Table], robots: Sequence[str]) -> Dict[str, Any]:
-    """For each robot the location of each way through doors, the doors, and the pose at which it waits for them."""
+    """For each robot the location of each way through doors, the doors, and the pose at which it waits for them; of a
+    way by lift the same where it gets in, and where it gets out."""
     found: Dict[str, Any] = {}
     for agent in (agent for agent in scenario.agents if agent.name in robots):
+        for (a, b), lift in rides_of(scenario, agent).items():
+            start = own.get(agent.name, places).get(a, places[a])
+            found.setdefault(agent.name, {})[movement(a, b)] = inline(_halts(lift, a, b, start))
         for (a, b), doors in doors_of(scenario, agent).items():
             start = own.get(agent.name, places).get(a, places[a])
             way: Dict[str, Any] = {"doors": sorted(doors)}
@@ -72,6 +79,27 @@ def _doorways(scenario: Scenario, places: Table, own: Mapping[str, Table], robot
                 way["wait"] = in_front_of(min(poses, key=lambda pose: _apart(start, pose)), start)
             found.setdefault(agent.name, {})[movement(a, b)] = inline(way)
     return found
+
+
+def _halts(lift: Lift, a: str, b: str, start: Pose) -> List[Dict[str, Any]]:
+    """Where a robot waits for a lift from one floor to another one, and then in it; one that has no pose in it alone
+    knows how it rides."""
+    cabin, there = lift.cabin_at(a), lift.cabin_at(b)
+    to_get_in: Dict[str, Any] = {"doors": [gate_at(lift.name, a)]}
+    if cabin is None:
+        return [to_get_in]
+    inside = {"doors": [gate_at(lift.name, b)], "wait": _numbers(cabin), "aboard": True}
+    out = {} if there is None or there == cabin else {"out": _numbers(there)}
+    return [{**to_get_in, "wait": before_cabin(cabin, start)}, {**inside, **out}]
+
+
+def before_cabin(cabin: Pose, start: Pose) -> List[float]:
+    """The pose on the straight line from a cabin to where a robot sets off, looking at the cabin."""
+    distance = math.dist((cabin.x, cabin.y), (start.x, start.y)) or 1.0
+    share = min(WAITS_AT / distance, 1.0)
+    x, y = (a + share * (b - a) for a, b in ((cabin.x, start.x), (cabin.y, start.y)))
+    yaw = math.atan2(cabin.y - start.y, cabin.x - start.x)
+    return [round(number, 3) + 0.0 for number in (x, y, start.z, 0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))]
 
 
 def in_front_of(door: Pose, start: Pose) -> List[float]:
@@ -83,6 +111,10 @@ def in_front_of(door: Pose, start: Pose) -> List[float]:
     distance = min(DOOR_DISTANCE, _apart(start, door))
     at = (door.x - distance * ahead[0], door.y - distance * ahead[1], door.z)
     return [round(number, 3) + 0.0 for number in (*at, 0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))]
+
+
+def _numbers(pose: Pose) -> List[float]:
+    return [float(number) for number in (pose.x, pose.y, pose.z, pose.qx, pose.qy, pose.qz, pose.qw)]
 
 
 def _apart(one: Pose, other: Pose) -> float:

@@ -9,6 +9,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 from pursue_gen.drawing.floor import Floor
 from pursue_gen.language.doors import doors_of
+from pursue_gen.language.lifts import rides_of
 from pursue_gen.language.scenario import Connection, Scenario
 from pursue_gen.language.sentences import objective_sentence, objective_words
 from pursue_gen.language.times import unit_name
@@ -56,10 +57,10 @@ def render(
     }
     if scenario.unit is not None:
         data["counts"] = unit_name(scenario.unit)
-    doors = _doors(scenario)
-    if doors:
-        data["nodes"] = inline(("observer", *controllers, "simulator", "doors"))
-        data["doors"] = {name: inline(door) for name, door in doors.items()}
+    for kind, some in (("doors", _doors(scenario)), ("lifts", _lifts(scenario))):
+        if some:
+            data["nodes"] = inline(("observer", *controllers, "simulator", "doors"))
+            data[kind] = {name: inline(one) for name, one in some.items()}
     if options.guarantee is not None:
         data["guarantee"] = number(Fraction(ceil(options.guarantee * 1000), 1000))  # a decimal, and never too little
     if idle:
@@ -117,6 +118,19 @@ def _doors(scenario: Scenario) -> Dict[str, Dict[str, Any]]:
                 if door.name in doors:
                     one = found.setdefault(door.name, {"within": number(door.opens_within), "asked_by": {}})
                     one["asked_by"].setdefault(agent.name, []).append(movement(*way))
+    return found
+
+
+def _lifts(scenario: Scenario) -> Dict[str, Dict[str, Any]]:
+    """The lifts in ui.yaml that robots call: within how many time units each comes, and then is at another floor, its
+    floors, and from which to which of them it is needed in which locations of whom."""
+    found: Dict[str, Dict[str, Any]] = {}
+    for agent in scenario.agents:
+        for way, lift in rides_of(scenario, agent).items():
+            floors = [ref.name for ref in lift.floors]
+            times = {"within": number(lift.comes_within), "takes": number(lift.ride[1])}
+            one = found.setdefault(lift.name, {**times, "floors": floors, "rides": {}})
+            one["rides"].setdefault(agent.name, {})[movement(*way)] = list(way)
     return found
 
 

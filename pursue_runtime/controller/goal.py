@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from typing import Deque, FrozenSet, Iterable, List, NamedTuple, Optional
+from typing import Deque, FrozenSet, Iterable, List, NamedTuple, Optional, Tuple
 
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.whereabouts import Place
@@ -23,15 +23,25 @@ FIRST_WAIT, LAST_WAIT = 1.0, 8.0
 """Seconds of real time without the goal in the robot's status after which it is sent again: at first, and at most."""
 
 
+class Halt(NamedTuple):
+    """Where a robot waits on its way until doors are open; `place` None: where it is. `aboard`: in the cabin of a lift,
+    which goes on when it is told that the robot is there; `out`: where that is on the map of the floor where it gets
+    out, if it is another one."""
+
+    doors: FrozenSet[str]
+    place: Optional[Place] = None
+    aboard: bool = False
+    out: Optional[Place] = None
+
+
 class Movement(NamedTuple):
-    """Where a robot is sent, and the location of the agent meanwhile; `spare`: where it may go at that place, too.
-    `doors`: what has to be open first; `wait`: where the robot waits for that, None: where it is."""
+    """Where a robot is sent, and the location of the agent meanwhile; `spare`: where it may go at that place, too;
+    `halts`: where it waits before that."""
 
     location: str
     place: Place
     spare: Optional[Place] = None
-    doors: FrozenSet[str] = frozenset()
-    wait: Optional[Place] = None
+    halts: Tuple[Halt, ...] = ()
 
 
 class Goal(NamedTuple):

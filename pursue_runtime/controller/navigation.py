@@ -8,15 +8,16 @@ from __future__ import annotations
 from typing import Callable, List, Optional, Sequence, Tuple
 
 from pursue_runtime.controller.answers import meaning_of
-from pursue_runtime.controller.goal import CANCELLED, OVER, SUCCEEDED, Answer, Goal, GoalTracker, Movement
+from pursue_runtime.controller.goal import CANCELLED, OVER, SUCCEEDED, Answer, Goal, GoalTracker, Halt, Movement
 from pursue_runtime.controller.reports import RepeatedReport
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.trip import Trip
 from pursue_runtime.controller.view import Due, View
 from pursue_runtime.controller.whereabouts import Position, Whereabouts
+from pursue_runtime.doors.lifts import IS_ABOARD
 from pursue_runtime.doors.opened import NONE_OPENED
 from pursue_runtime.event_words import BACK, BLOCKED, DISPLACED, FAILED, HELD, RESUME, STUCK, RobotReport, Word
-from pursue_runtime.locations import is_action, is_movement
+from pursue_runtime.locations import is_action
 from pursue_runtime.orders import Order
 from pursue_runtime.sentences import in_words, marked
 
@@ -36,7 +37,8 @@ class Navigation:
     place. A goal that a goal of another node has replaced is sent again, `~retries` times. One that another node has
     cancelled, or replaced once more, is sent again when the state has listed the robot as `held`, and does so no more.
     A goal that fails is sent again, `~retries` times, the last time to the robot's spare pose at the place if it has
-    one. No other robot is sent there. On a way through doors it waits in front of them until they are open for it.
+    one. No other robot is sent there. On a way through doors it waits in front of them until they are open for it;
+    on one by lift also in the cabin.
     """
 
     def __init__(self, name: str, settings: Settings, log: Log) -> None:
@@ -54,6 +56,7 @@ class Navigation:
         self.reaction = 0.0
         """The seconds that the strategy allows a command: reports are sent again by it; 0: not known."""
         self._report: Optional[RepeatedReport] = None
+        self._aboard: Optional[RepeatedReport] = None  # to its lift, which shows that it has it by opening
         self._doubt: Optional[float] = None  # since when it is not known to be where the state has it
         self._was_sent_away = False  # by another node, from where the state has it
         self.opened = NONE_OPENED
@@ -107,7 +110,7 @@ class Navigation:
 
     def start(self, way: Movement, now: float) -> None:
         """Start a movement: its goal is due now."""
-        self._trip = Trip(way, now, goal_at=now, waits_at_door=bool(way.doors))
+        self._trip = Trip(way, now, goal_at=now, halts=way.halts)
 
     def act(self, order: Order) -> None:
         """Start an action: it is due as soon as the robot is known to be at its place."""
@@ -118,7 +121,7 @@ class Navigation:
         trip = self._trip
         if trip is None or trip.has_arrived or not self._goal.ends(answer):
             return
-        if trip.waits_at_door and answer.status not in CANCELLED:
+        if trip.arrives_at is None and answer.status not in CANCELLED:
             return  # it is in front of the door, or as near as it comes
         if answer.status == SUCCEEDED:
             self._on_success(trip)
@@ -167,15 +170,17 @@ class Navigation:
                 self._arrive(trip)
             if trip.cancelled is not None and now >= trip.decided_at:
                 self._hold(trip, trip.cancelled)
-            if trip.waits_at_door and self.opened.all_for(self.name, trip.movement.doors, self._as_of):
-                trip.pass_doors(now)
+            passed = trip.passed(self._may_pass)
+            if passed:
+                self._aboard = None
+                trip.go_on(passed, now)
             goal = self._due_goal(trip, now, real)
         for order in [order for order in self._actions if self._may_act(order, now)]:
             self._actions.remove(order)
             self._given.append((order, RepeatedReport(Word("", order.event, order.seq), self.reaction)))
         actions = [order for order, sent in self._given if sent.due(now, real) and self._may_act(order, now)]
-        word = self._report.due(now, real) if self._report is not None else None
-        return Due(goal, tuple(actions), word)
+        word, aboard = (None if each is None else each.due(now, real) for each in (self._report, self._aboard))
+        return Due(goal, tuple(actions), word, aboard)
 
     def next_moments(self) -> Tuple[Optional[float], Optional[float]]:
         """Return when to call `due` again, in ROS time and on the real clock; None: not before the next input."""
@@ -189,8 +194,8 @@ class Navigation:
             moments += [self._at.stands_at()] if self._at.is_near(post) and not self._goal.is_active else []
             moments += [] if self._reports(DISPLACED) or self._view.displaced else [self._doubt + self._grace]
         finite = [moment for moment in moments if moment < float("inf")]
-        repeated = [*([self._report] if self._report is not None else []), *(sent for _, sent in self._given)]
-        repeats = [each.next_moment() for each in repeated]
+        repeats = [each.next_moment() for each in (self._report, self._aboard) if each is not None]
+        repeats += [sent.next_moment() for _, sent in self._given]
         return min(finite, default=None), min((each for each in repeats if each is not None), default=None)
 
     # Where it is ------------------------------------------------------------------------------------------------------
@@ -245,7 +250,7 @@ class Navigation:
         """Return when the robot has arrived by its position, if it does not move until then."""
         if not self.settings.ends_by_position or trip.has_arrived or self._goal.is_active:
             return float("inf")  # move_base may still turn the robot, by less than amcl publishes
-        if trip.waits_at_door or not self._at.is_near(trip.movement.place):
+        if trip.arrives_at is None or not self._at.is_near(trip.arrives_at):
             return float("inf")
         return max(self._at.stands_at(), trip.since + self.settings.end_settle)
 
@@ -253,10 +258,11 @@ class Navigation:
 
     def _enter(self, view: View, now: float) -> None:
         """Begin with another location: whatever belonged to the one before is over."""
-        self._trip = Trip(view.way, now) if view.way else None  # also one that was begun by hand: its end counts
-        self._actions = [order for order in self._actions if order.at_once and self._is_there(order, view)]
-        self._given = [(order, sent) for order, sent in self._given if order.at_once and self._is_there(order, view)]
-        self._report = self._doubt = None
+        # Also one that was begun by hand, or before this node: its end counts, and it goes on where doors open.
+        self._trip = Trip(view.way, now, halts=view.way.halts) if view.way else None
+        self._actions = [order for order in self._actions if order.at_once and view.is_there(order)]
+        self._given = [(order, sent) for order, sent in self._given if order.at_once and view.is_there(order)]
+        self._report = self._aboard = self._doubt = None
         self._was_sent_away = False
         self._as_of = view.seq
         self.trouble = ""
@@ -292,36 +298,33 @@ class Navigation:
             return None
         trip.goal_at = None
         movement = trip.movement
-        if trip.waits_at_door:
-            doors = " and ".join(sorted(movement.doors))
+        if trip.halts:
+            doors = " and ".join(sorted(trip.halts[0].doors))
             self._log("info", f"{self.name} waits for {doors} to open")
-            if movement.wait is None or self.settings.ends == "words":  # who reports its ends itself would report this
+            if trip.goal is None or self.settings.ends == "words":  # who reports its ends itself would report this
                 return None
-            movement = movement._replace(place=movement.wait)
+            movement = movement._replace(place=trip.goal)
         trip.attempts, trip.is_sent = trip.attempts + 1, True
-        number = f"{'door-' * trip.waits_at_door}{trip.attempts}"
+        number = f"{'door-' * len(trip.halts)}{trip.attempts}"
         goal = Goal(f"{self.name}-{movement.location}-{number}-{now:.6f}", movement)
         self._goal.send(goal, now, real)
         return goal
 
     def _may_act(self, order: Order, now: float) -> bool:
         """Return True if the action may be sent: it has been decided, also if the mission holds."""
-        if not (self._is_there(order, self._view) and self._is_known(now)):
+        if not (self._view.is_there(order) and self._is_known(now)):
             return False
         return order.at_once or (self._may_begin and not self._view.held)
 
-    @staticmethod
-    def _is_there(order: Order, view: View) -> bool:
-        """Return True where the order can be carried out: at its location, or at the end of the way on which something
-        was to be done at once."""
-        if order.location == view.location:
-            return True
-        return order.at_once and is_movement(order.location) and order.location.endswith(f"_to_{view.location}")
+    def _may_pass(self, halt: Halt) -> bool:
+        """Return True if its doors are open; out of a lift, when its position is one on the map of that floor."""
+        knows = halt.out is None or self._at.position is None or self._at.is_near(halt.out)
+        return knows and self.opened.all_for(self.name, halt.doors, self._as_of)
 
     def _on_success(self, trip: Trip) -> None:
         poi = trip.movement.place.poi
         if self.settings.ends_by_position:
-            if not self._at.is_near(trip.movement.place):
+            if trip.arrives_at is None or not self._at.is_near(trip.arrives_at):
                 self._log("warn", f"{self.name}: goal reached, but the position is not at {poi} yet")
         elif trip.is_return or self.settings.ends == "words":
             self._at.on_arrival(poi)
@@ -329,7 +332,12 @@ class Navigation:
             self._arrive(trip)
 
     def _arrive(self, trip: Trip) -> None:
-        """Report the end of the movement until the state shows it; no further goal is due."""
+        """Report the end of the movement until the state shows it; no further goal is due. In the cabin of a lift, say
+        so to the lift."""
+        if trip.halts:
+            trip.is_aboard, self.trouble = True, ""
+            self._aboard = RepeatedReport(Word(self.name, IS_ABOARD, as_of=self._as_of), self.reaction)
+            return
         poi = trip.movement.place.poi
         self._at.on_arrival(poi)
         trip.has_arrived, trip.goal_at, trip.cancelled, self.trouble = True, None, None, ""
@@ -340,7 +348,7 @@ class Navigation:
         meaning = meaning_of(answer)
         what, own_text = trip.describe(meaning.says), f" (move_base: {answer.text})" if answer.text else ""
         elsewhere = meaning.event != FAILED and (trip.attempts >= self.settings.retries or not meaning.again)
-        spare = trip.movement.spare if elsewhere else None
+        spare = trip.movement.spare if elsewhere and not trip.halts else None
         if (meaning.again or spare) and trip.attempts <= self.settings.retries:
             self.trouble = f"{what}; it tries {'another spot there' if spare else 'again'}"
             self._log("warn", f"{self.name} {in_words(self.trouble)}{own_text}")

@@ -6,6 +6,7 @@ from typing import FrozenSet, NamedTuple, Optional, Tuple
 
 from pursue_runtime.controller.goal import Goal, Movement
 from pursue_runtime.controller.whereabouts import Place
+from pursue_runtime.locations import is_movement
 from pursue_runtime.orders import Order
 
 
@@ -25,10 +26,19 @@ class View(NamedTuple):
     seq: int = 0
     unanswered: FrozenSet[int] = frozenset()
 
+    def is_there(self, order: Order) -> bool:
+        """Return True where the order can be carried out: at its location, or at the end of the way on which something
+        was to be done at once."""
+        if order.location == self.location:
+            return True
+        return order.at_once and is_movement(order.location) and order.location.endswith(f"_to_{self.location}")
+
 
 class Due(NamedTuple):
-    """What is to be sent to a robot now, and the word to publish."""
+    """What is to be sent to a robot now, and the words to publish: on pursue/events, and on
+    pursue/aboard."""
 
     goal: Optional[Goal] = None
     actions: Tuple[Order, ...] = ()
     word: Optional[str] = None
+    aboard: Optional[str] = None

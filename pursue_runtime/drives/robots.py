@@ -8,6 +8,7 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Seq
 
 from pursue_runtime.controller.whereabouts import Place
 from pursue_runtime.data import DataError, read_data
+from pursue_runtime.doors.lifts import read_lifts
 from pursue_runtime.drives.actions import Act, Acts, Rules, acts_of, location_of
 from pursue_runtime.drives.session import Plan
 from pursue_runtime.drives.tour import Way
@@ -78,9 +79,12 @@ def driven_robots(read: Read, given: Mapping[str, Any], folder: Folder) -> List[
     pause, start = number(given, "pause", 1.0), text(given, "start")
     actions, rules = whole(given, "actions", 0), Rules(model)
     places, (own, commanded) = read_poses(read(POSES)).places, _of_controllers(read, folder)
+    lifts = read_lifts(read("ui.yaml")).values()
     found: List[Driven] = []
     for name in wanted:
-        ways, poses = tuple(ways_of(robots[name])), {**places, **own.get(name, {})}
+        rides = {location for lift in lifts for location in lift.rides.get(name, ())}  # no lift comes without a mission
+        ways = tuple(way for way in ways_of(robots[name]) if movement(*way) not in rides)
+        poses = {**places, **own.get(name, {})}
         acts = acts_of(robots[name], model, wanted) if actions else ()
         if not ways and not acts:
             continue

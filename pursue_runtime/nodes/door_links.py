@@ -1,119 +1,160 @@
-"""The topics between the doors' node and one door: what it is asked, and what it reports; or a simulated door."""
+"""The topics between the doors' node and one door, or one lift: what it is asked, and what it reports; or a simulated
+one."""
 
 from __future__ import annotations
 
 import random
 from abc import ABC, abstractmethod
-from typing import Any, Callable, Mapping, Optional
+from functools import partial
+from typing import Any, Callable
 
 import rospy
-from std_msgs.msg import Bool, String
+from std_msgs.msg import Bool, Int32, String
 
 from pursue_runtime.data import DataError
-from pursue_runtime.doors.settings import RMF_CLOSED, RMF_OPEN, DoorSettings, command_word, state_of_word
+from pursue_runtime.doors.asking import Word
+from pursue_runtime.doors.lifts import NOWHERE
+from pursue_runtime.doors.settings import (
+    RMF_CLOSED,
+    RMF_END,
+    RMF_OPEN,
+    RMF_RIDE,
+    DoorSettings,
+    command_word,
+    floor_called,
+    floor_number,
+    floor_word,
+    state_of_word,
+)
 from pursue_runtime.nodes.alarm import Alarm
 from pursue_runtime.nodes.node import Ending, subscribe
 from pursue_runtime.nodes.robot_link import needed
 
-Report = Callable[[Optional[bool]], None]
-"""Takes what a door is: open, or not; None: that is not known."""
+Report = Callable[[Any], None]
+"""Takes what it is, as an `asking.Word`; None: that is not known."""
 
 
 class DoorLink(ABC):
-    """The connection to one door."""
+    """The connection to one door, or one lift."""
 
     @abstractmethod
-    def ask(self, is_open: bool) -> None:
-        """Ask the door to open, or to close; it may be asked the same again."""
+    def ask(self, what: Any) -> None:
+        """Ask it for an `asking.Word`; it may be asked the same again."""
 
 
-class _BoolDoor(DoorLink):
-    """A door whose messages are std_msgs/Bool: true is open."""
+class _OwnTopics(DoorLink):
+    """One with topics of its own, whose messages have `data`."""
 
-    def __init__(self, settings: DoorSettings, report: Report, ending: Ending) -> None:
-        self._command = rospy.Publisher(settings.command, Bool, queue_size=10, latch=True)
-        subscribe(settings.state, Bool, lambda message: report(bool(message.data)), ending, queue_size=10)
+    def __init__(
+        self,
+        settings: DoorSettings,
+        kind: Any,
+        written: Callable[[Any], Any],
+        read: Callable[[Any], Any],
+        report: Report,
+        ending: Ending,
+    ) -> None:
+        self._kind, self._written = kind, written
+        self._command = rospy.Publisher(settings.command, kind, queue_size=10, latch=True)
+        subscribe(settings.state, kind, lambda message: report(read(message.data)), ending, queue_size=10)
 
-    def ask(self, is_open: bool) -> None:
-        self._command.publish(Bool(is_open))
-
-
-class _StringDoor(DoorLink):
-    """A door whose messages are std_msgs/String: `open` and `close` to it, what it is from it."""
-
-    def __init__(self, settings: DoorSettings, report: Report, ending: Ending) -> None:
-        self._command = rospy.Publisher(settings.command, String, queue_size=10, latch=True)
-        subscribe(settings.state, String, lambda message: report(state_of_word(message.data)), ending, queue_size=10)
-
-    def ask(self, is_open: bool) -> None:
-        self._command.publish(String(command_word(is_open)))
+    def ask(self, what: Any) -> None:
+        self._command.publish(self._kind(self._written(what)))
 
 
-class _RmfDoor(DoorLink):
-    """A door of Open-RMF: rmf_door_msgs/DoorRequest to it, DoorState from it, on topics that all doors share."""
+class _OfRmf(DoorLink):
+    """One of Open-RMF, whose topics all of them share. `kind`: Door or Lift."""
 
-    def __init__(self, settings: DoorSettings, report: Report, ending: Ending) -> None:
+    def __init__(self, settings: DoorSettings, kind: str, report: Report, ending: Ending) -> None:
+        package = f"rmf_{kind.lower()}_msgs"
         try:
-            self._messages = needed("rmf_door_msgs", "rmf_door_msgs.msg", "adapter: rmf")
+            self._messages = needed(package, f"{package}.msg", "adapter: rmf")
         except DataError:
             raise DataError(
-                "adapter: rmf needs the ROS package rmf_door_msgs, which is not here: build it for ROS 1 from "
+                f"adapter: rmf needs the ROS package {package}, which is not here: build it for ROS 1 from "
                 "rmf_internal_msgs of Open-RMF, as ros1_bridge needs it too, and source its workspace; or choose "
                 "another adapter, such as std_msgs"
             ) from None
-        self._name, self._report = settings.name, report
-        self._command = rospy.Publisher(settings.command, self._messages.DoorRequest, queue_size=10)
-        subscribe(settings.state, self._messages.DoorState, self._on_state, ending, queue_size=100)
+        self._settings, self._report = settings, report
+        self._requester = rospy.get_name().strip("/")
+        request, state = (getattr(self._messages, kind + what) for what in ("Request", "State"))
+        self._command = rospy.Publisher(settings.command, request, queue_size=10)
+        subscribe(settings.state, state, self._on_state, ending, queue_size=100)
 
-    def ask(self, is_open: bool) -> None:
+    @abstractmethod
+    def _on_state(self, message: Any) -> None: ...
+
+
+class _RmfDoor(_OfRmf):
+    """rmf_door_msgs/DoorRequest to it, DoorState from it."""
+
+    def ask(self, what: Any) -> None:
         request = self._messages.DoorRequest()
         request.request_time = rospy.Time.now()
-        request.requester_id = rospy.get_name().strip("/")
-        request.door_name = self._name
-        request.requested_mode.value = RMF_OPEN if is_open else RMF_CLOSED
+        request.requester_id = self._requester
+        request.door_name = self._settings.name
+        request.requested_mode.value = RMF_OPEN if what else RMF_CLOSED
         self._command.publish(request)
 
     def _on_state(self, message: Any) -> None:
-        if message.door_name == self._name:
+        if message.door_name == self._settings.name:
             self._report(message.current_mode.value == RMF_OPEN)
 
 
-class _SimulatedDoor(DoorLink):
-    """A door that opens at a time of its own within its time, and closes at once."""
+class _RmfLift(_OfRmf):
+    """rmf_lift_msgs/LiftRequest to it, LiftState from it: it counts as open in a session of ours alone."""
+
+    def ask(self, what: Any) -> None:
+        request = self._messages.LiftRequest()
+        request.request_time = rospy.Time.now()
+        request.session_id = self._requester
+        request.lift_name = self._settings.name
+        request.destination_floor = self._settings.floors.get(what, "")
+        request.request_type = RMF_RIDE if what else RMF_END
+        request.door_state = RMF_OPEN if what else RMF_CLOSED
+        self._command.publish(request)
+
+    def _on_state(self, message: Any) -> None:
+        if message.lift_name == self._settings.name:
+            is_open = message.door_state == RMF_OPEN and message.session_id == self._requester
+            self._report(floor_called(self._settings, message.current_floor) if is_open else NOWHERE)
+
+
+class _Simulated(DoorLink):
+    """One that has done what it was asked at a time of its own within its time, and closes at once."""
 
     def __init__(self, within: Callable[[], float], seed: str, report: Report, ending: Ending) -> None:
-        """`within`: the seconds in which it is open at the latest."""
+        """`within`: the seconds in which it has done it at the latest."""
         self._within, self._seed, self._report = within, seed, report
-        self._times, self._is_open, self._opens = 0, False, False
-        self._alarm = Alarm(self._on_alarm, ending)
+        self._times = 0
+        self._asked: Word = False
+        self._alarm = Alarm(lambda: report(self._asked), ending)
 
-    def ask(self, is_open: bool) -> None:
-        if is_open == (self._is_open or self._opens):
+    def ask(self, what: Any) -> None:
+        if what == self._asked:
             return
-        self._opens = is_open
-        if not is_open:
-            self._is_open = False
-            self._alarm.set()
-            self._report(False)
-            return
-        self._times += 1
-        share = random.Random(f"{self._seed}/{self._times}").uniform(0.1, 0.9)
-        self._alarm.set(rospy.get_time() + share * self._within())
-
-    def _on_alarm(self) -> None:
-        if self._opens:
-            self._is_open, self._opens = True, False
-            self._report(True)
+        self._asked = what
+        self._alarm.set()
+        self._report(type(what)())
+        if what:
+            self._times += 1
+            share = random.Random(f"{self._seed}/{self._times}").uniform(0.1, 0.9)
+            self._alarm.set(rospy.get_time() + share * self._within())
 
 
-_KINDS: Mapping[str, Callable[[DoorSettings, Report, Ending], DoorLink]] = {
-    "std_msgs": _BoolDoor, "string": _StringDoor, "rmf": _RmfDoor,
-}  # fmt: skip
-
-
-def linked(settings: DoorSettings, within: Callable[[], float], seed: str, report: Report, ending: Ending) -> DoorLink:
-    """Return the connection to a door with these settings. `within` and `seed`: as in a simulated one. Raises DataError
-    where its messages are not installed."""
+def linked(
+    settings: DoorSettings, within: Callable[[], float], seed: str, report: Report, ending: Ending
+) -> DoorLink:
+    """Return the connection to a door, or a lift, with these settings. `within` and `seed`: as in a simulated one.
+    Raises DataError where its messages are not installed."""
     if settings.adapter == "simulated":
-        return _SimulatedDoor(within, seed, report, ending)
-    return _KINDS[settings.adapter](settings, report, ending)
+        return _Simulated(within, seed, report, ending)
+    if settings.adapter == "rmf":
+        kind = _RmfLift if settings.floors else _RmfDoor
+        return kind(settings, "Lift" if settings.floors else "Door", report, ending)
+    called = partial(floor_called, settings)
+    numbers, words = (partial(one, settings) for one in (floor_number, floor_word))
+    of_lift: Any = {"std_msgs": (Int32, numbers, called), "string": (String, words, called)}
+    of_door: Any = {"std_msgs": (Bool, bool, bool), "string": (String, command_word, state_of_word)}
+    kind_of_message, written, read = (of_lift if settings.floors else of_door)[settings.adapter]
+    return _OwnTopics(settings, kind_of_message, written, read, report, ending)

@@ -1,26 +1,31 @@
-"""The doors of a mission: each is asked to open when somebody sets off through it, and stays open until that is over.
+"""The doors and lifts of a mission: a door is asked to open when somebody sets off through it, and stays open until
+that is over; a lift comes to who sets off by it, and brings it to another floor.
 
-Publishes on pursue/doors (std_msgs/String) for whom which door is open. Parameters: ~adapter (simulated, std_msgs,
-string, rmf) of all doors; of one, below its name: adapter, command, state, name (as ~d1/adapter); ~seed, ~received,
-~again (see membership). Argument: --config (another folder of data).
+Publishes on pursue/doors (std_msgs/String) for whom which door is open, and which lift at which floor. Parameters:
+~adapter (simulated, std_msgs, string, rmf) of all; of one, below its name: adapter, command, state, name (as
+~d1/adapter), and of a lift floors; ~seed, ~received, ~again (see membership). Argument: --config (another folder of
+data).
 """
 
 from __future__ import annotations
 
 import threading
 from functools import partial
-from typing import Any, Dict, Mapping, Optional
+from typing import Any, Dict, Mapping, Optional, Union
 
 import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.arguments import CONFIG
 from pursue_runtime.data import Package
+from pursue_runtime.doors.asking import Word
 from pursue_runtime.doors.keeper import DoorKeeper, read_doors
+from pursue_runtime.doors.lifts import ABOARD, IS_ABOARD, LiftKeeper, read_lifts
 from pursue_runtime.doors.opened import DOORS, NONE_OPENED, opened_text
-from pursue_runtime.doors.settings import DoorSettings, read_door_settings
+from pursue_runtime.doors.settings import read_door_settings, read_lift_settings
+from pursue_runtime.event_words import parse_word
 from pursue_runtime.nodes.alarm import Alarm
-from pursue_runtime.nodes.door_links import DoorLink, linked
+from pursue_runtime.nodes.door_links import linked
 from pursue_runtime.nodes.links import Links
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import ERROR, OK, WARN, Diagnostics, Ending, NodeReport, run_node, subscribe
@@ -31,7 +36,7 @@ from pursue_runtime.state import LOST, STOPPED, WON, SystemState
 
 
 class DoorsNode:
-    """The keeper of the doors on ROS: one lock, an alarm for what is due."""
+    """The keepers of doors and lifts on ROS: one lock, an alarm for what is due."""
 
     def __init__(self, package: Package, config: str) -> None:
         """Raises DataError."""
@@ -39,25 +44,37 @@ class DoorsNode:
         self.membership = Membership(package, self.ending, config)
         given: Mapping[str, Any] = rospy.get_param("~", {})
         doors = read_doors(self.membership.source.read("ui.yaml"))
+        lifts = read_lifts(self.membership.source.read("ui.yaml"))
         settings = {name: read_door_settings(name, given) for name in doors}
+        settings.update({name: read_lift_settings(name, lift.floors, given) for name, lift in lifts.items()})
         self.within = {name: door.within for name, door in doors.items()}
-        self.keeper = DoorKeeper(doors)
+        self.within.update({name: min(lift.within, lift.takes) for name, lift in lifts.items()})
+        self.doors, self.lifts = DoorKeeper(doors), LiftKeeper(lifts)
+        self.keepers: Dict[str, Union[DoorKeeper, LiftKeeper]] = {
+            **dict.fromkeys(doors, self.doors), **dict.fromkeys(lifts, self.lifts)
+        }
         self.lock = threading.RLock()
         self.state: Optional[SystemState] = None
         self.opened = NONE_OPENED
         self.publisher = rospy.Publisher(DOORS, String, queue_size=10, latch=True, tcp_nodelay=True)
         self.alarm = Alarm(self.act, self.ending)
         seed = whole(given, "seed", 0, least=None)
-        self.links = {name: self.link(name, one, seed) for name, one in settings.items()}
+        self.links = {
+            name: linked(
+                one, partial(self.seconds, name), f"{seed}/{name}", partial(self.on_report, name), self.ending
+            )
+            for name, one in settings.items()
+        }
+        if lifts:
+            subscribe(ABOARD, String, self.on_aboard, self.ending, queue_size=100)
         states = subscribe_states(self.on_state, self.ending, on_malformed=self.membership.count_malformed)
         pulses = subscribe("/diagnostics", rospy.AnyMsg, lambda _: None, self.ending, queue_size=100)
         links = Links(states, pulses, ending=self.ending, lost=self.ending.without_master)
         Diagnostics(self.report, self.ending, links.amend)
 
-    def link(self, door: str, settings: DoorSettings, seed: int) -> DoorLink:
-        """Return the connection to a door. Raises DataError."""
-        report = partial(self.on_report, door)
-        return linked(settings, lambda: self.within[door] * self.unit, f"{seed}/{door}", report, self.ending)
+    def seconds(self, name: str) -> float:
+        """Return the seconds in which a door, or a lift, has done what it was asked at the latest."""
+        return self.within[name] * self.unit
 
     @property
     def unit(self) -> float:
@@ -70,36 +87,53 @@ class DoorsNode:
             if not self.membership.takes(state):
                 return
             self.state = state
-            self.keeper.on_state(state, rospy.get_time())
+            for keeper in (self.doors, self.lifts):
+                keeper.on_state(state, rospy.get_time())
             self.act()
         if state.status in (WON, LOST, STOPPED):
             self.ending.end(0 if state.status == WON else 1)
 
-    def on_report(self, door: str, is_open: Optional[bool]) -> None:
-        """Handle what a door reports."""
+    def on_report(self, name: str, said: Any) -> None:
+        """Handle what a door, or a lift, reports."""
         with self.lock:
-            self.keeper.on_report(door, is_open, rospy.get_time())
+            self.keepers[name].on_report(name, said, rospy.get_time())
+            self.act()
+
+    def on_aboard(self, message: String) -> None:
+        """Handle that somebody is in the cabin of its lift."""
+        word = parse_word(message.data)
+        if word is None or word.event != IS_ABOARD:
+            rospy.logwarn_throttle(10.0, f"not what is said of who is in a lift: {message.data[:80]!r}")
+            return
+        with self.lock:
+            self.lifts.on_aboard(word.agent, word.as_of, rospy.get_time())
             self.act()
 
     def act(self) -> None:
-        """Ask the doors that are to be asked, publish for whom they are open, and sleep until more is due."""
+        """Ask the doors and lifts that are to be asked, publish for whom they are open, and sleep until more is due."""
         with self.lock:
             now = rospy.get_time()
-            for door, is_open in self.keeper.due(now):
-                self.links[door].ask(is_open)
-                rospy.logdebug("%s is asked to %s", door, "open" if is_open else "close")
-            opened = self.keeper.opened(now)
+            due: Dict[str, Word] = {**dict(self.doors.due(now)), **dict(self.lifts.due(now))}
+            for name, what in due.items():
+                self.links[name].ask(what)
+                rospy.logdebug("%s is asked: %s", name, what)
+            doors, lifts = self.doors.opened(now), self.lifts.opened(now)
+            opened = doors._replace(doors={**doors.doors, **lifts.doors})
             if opened != self.opened:
                 self.opened = opened
                 self.publisher.publish(opened_text(opened))
-            self.alarm.set(self.keeper.next_moment())
+            moments = (keeper.next_moment(now) for keeper in (self.doors, self.lifts))
+            self.alarm.set(min((moment for moment in moments if moment is not None), default=None))
 
     def report(self) -> NodeReport:
         """Return the report for /diagnostics."""
         with self.lock:
             state, refused, trouble = self.state, self.membership.refused, self.membership.trouble
-            waited_for = self.keeper.waited_for(rospy.get_time())
-            late = sorted(door for door, seconds in waited_for.items() if seconds > self.within[door] * self.unit)
+            now = rospy.get_time()
+            shut = self.doors.waited_for(now)
+            late = sorted(door for door, seconds in shut.items() if seconds > self.seconds(door))
+            late += sorted(self.lifts.late(now, self.unit))
+            waited_for = [*shut, *self.lifts.waited_for(now)]
             values: Dict[str, object] = {"mission": self.membership.source.mission, "waited_for": " ".join(waited_for)}
         values.update(self.membership.counts)
         if refused:

@@ -12,11 +12,12 @@ from typing import Callable, Dict, List, Mapping, Optional, Sequence
 import rospy
 from std_msgs.msg import String
 
-from pursue_runtime.controller.goal import Answer, Movement
+from pursue_runtime.controller.goal import Answer, Halt, Movement
 from pursue_runtime.controller.navigation import Navigation
-from pursue_runtime.controller.settings import read_settings
+from pursue_runtime.controller.settings import Settings, read_settings
 from pursue_runtime.controller.view import View
 from pursue_runtime.controller.whereabouts import Place, Position, place_of
+from pursue_runtime.doors.lifts import ABOARD
 from pursue_runtime.doors.opened import DOORS, NONE_OPENED, read_opened
 from pursue_runtime.event_words import EVENTS, ORDERED, Word, format_word
 from pursue_runtime.locations import is_end, is_movement, is_under_way, movement
@@ -26,7 +27,7 @@ from pursue_runtime.nodes.node import Ending, subscribe
 from pursue_runtime.nodes.publishing import Newcomers, ServedFirst, listeners
 from pursue_runtime.nodes.robot_link import RobotLink
 from pursue_runtime.orders import Order, parse_orders
-from pursue_runtime.poses import Doorways, Table
+from pursue_runtime.poses import Doorway, Doorways, Table
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, LIVE, RUNNING, WON, SystemState
 from pursue_runtime.strategy import Command
@@ -58,6 +59,7 @@ class Exeggutor:
         self._next_look = 0.0  # on the monotonic clock
         self._alarm = Alarm(self._on_alarm, ending)
         self._doors: Optional[rospy.Subscriber] = None  # where some way leads through a door
+        self._aboard: Optional[rospy.Publisher] = None  # where some way goes by lift
         rospy.on_shutdown(self._call_back)
 
     def take_up(
@@ -79,14 +81,16 @@ class Exeggutor:
             positions = {name: robot.position for name, robot in self._robots.items()}
             self._robots, self._status = {}, RUNNING
             self._places = {robot: {poi: place_of(poi, pose) for poi, pose in poses[robot].items()} for robot in poses}
-            self._ways = {
-                robot: _ways(places, spare.get(robot, {}), doors.get(robot, {}))
-                for robot, places in self._places.items()
-            }
             if any(doors.values()) and self._doors is None:
                 self._doors = subscribe(DOORS, String, self._on_doors, self._ending, queue_size=10, tcp_nodelay=True)
+            if self._aboard is None and any(len(some) > 1 for ways in doors.values() for some in ways.values()):
+                self._aboard = rospy.Publisher(ABOARD, String, queue_size=10, tcp_nodelay=True)
             given = rospy.get_param("~", {})
             settings = {robot: read_settings(robot, given) for robot in poses}
+            self._ways = {
+                robot: _ways(places, spare.get(robot, {}), doors.get(robot, {}), settings[robot])
+                for robot, places in self._places.items()
+            }
             for robot in set(self._links) - set(settings):
                 self._links.pop(robot).close()
             for robot in settings:
@@ -225,7 +229,7 @@ class Exeggutor:
         now, real = rospy.get_time(), time.monotonic()
         moments, patience = [], []
         for name, robot in self._robots.items():
-            goal, actions, word = robot.due(now, real)
+            goal, actions, word, aboard = robot.due(now, real)
             if goal is not None:
                 self._links[name].go(goal, goal.movement.place.pose)
             for order in actions:
@@ -234,6 +238,8 @@ class Exeggutor:
             if word is not None:
                 self.announce(word)
                 self._log("info", f"reports {in_words(word)}")
+            if aboard is not None and self._aboard is not None:
+                self._aboard.publish(aboard)
             moment, repeat = robot.next_moments()
             moments += [] if moment is None else [moment]
             patience += [] if repeat is None else [repeat - real]
@@ -270,12 +276,19 @@ class Exeggutor:
             self._links[name].cancel(robot.goal)
 
 
-def _ways(places: Mapping[str, Place], spare: Table, doorways: Doorways) -> Dict[str, Movement]:
-    """A robot's movement for each location in which it is under way."""
+def _ways(places: Mapping[str, Place], spare: Table, doorways: Doorways, settings: Settings) -> Dict[str, Movement]:
+    """A robot's movement for each location in which it is under way. One that reports its ends itself rides in a lift
+    by itself, too."""
+    by_itself = settings.ends == "words"
     others = {poi: place_of(poi, pose) for poi, pose in spare.items()}
     ways = {movement(x, y): Movement(movement(x, y), places[y], others.get(y)) for x in places for y in places}
-    for location, (doors, pose) in doorways.items():
-        if location in ways:
-            wait = None if pose is None else place_of(" and ".join(sorted(doors)), pose)
-            ways[location] = ways[location]._replace(doors=doors, wait=wait)
+    for location in doorways.keys() & ways.keys():
+        halts = tuple(_halt(each) for each in doorways[location] if not (each.aboard and by_itself))
+        ways[location] = ways[location]._replace(halts=halts)
     return ways
+
+
+def _halt(doorway: Doorway) -> Halt:
+    name = " and ".join(sorted(doorway.doors))
+    place, out = (None if pose is None else place_of(name, pose) for pose in (doorway.wait, doorway.out))
+    return Halt(doorway.doors, place, doorway.aboard, out)

@@ -12,6 +12,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import String
 
 from pursue_runtime.data import DataError, Package
+from pursue_runtime.doors.opened import DOORS, read_opened
 from pursue_runtime.event_words import EVENTS, FINISH, PLAN, START
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.alarm import Alarm
@@ -68,6 +69,8 @@ class UI(UIState):
         self.states = subscribe_states(self.on_state, ending, on_malformed=membership.count_malformed)
         subscribe(PLAN, String, self.on_plan, ending, queue_size=10, tcp_nodelay=True)
         subscribe(EVENTS, String, self.on_word, ending, queue_size=1000, tcp_nodelay=True)
+        if self.at_doors.has_some:
+            subscribe(DOORS, String, self.on_doors, ending, queue_size=10, tcp_nodelay=True)
         self.pulses = subscribe("/diagnostics", DiagnosticArray, self.on_diagnostics, ending, queue_size=100)
         Diagnostics(self.report, ending, Links(self.states, self.pulses, ending=ending, lost=self.master_lost).amend)
 
@@ -134,6 +137,14 @@ class UI(UIState):
             if orders is not None:
                 self.mission.add_plan(plan["plan"], orders)
                 self.act()
+
+    def on_doors(self, message: String) -> None:
+        """Show for whom doors and lifts are open."""
+        opened = read_opened(message.data)
+        if opened is not None and opened.mission == self.membership.source.mission:
+            with self.lock:
+                self.at_doors.take(opened)
+                self.page.show()
 
     def on_word(self, message: String) -> None:
         """Handle `Finish!`, the observer's last word: should its last state be lost, the UI ends all the same."""

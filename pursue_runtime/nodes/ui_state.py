@@ -15,6 +15,7 @@ from pursue_runtime.model import Model
 from pursue_runtime.nodes.membership import Membership
 from pursue_runtime.nodes.node import Ending
 from pursue_runtime.nodes.ui_orders import UIOrders
+from pursue_runtime.ui.at_doors import AtDoors
 from pursue_runtime.ui.mission_view import Environment, MissionView, Readiness
 from pursue_runtime.ui.options import Options
 from pursue_runtime.ui.strategies import strategies_of
@@ -36,7 +37,8 @@ class UIState:
     ) -> None:
         self.options, self.membership, self.ending, self.model = options, membership, ending, model
         turns = Turns(model, strategies_of(membership.source))
-        self.mission = MissionView(model, player, membership.people(), turns)
+        self.at_doors = AtDoors(membership.source.read("ui.yaml"), model.shown)
+        self.mission = MissionView(model, player, membership.people(), turns, self.at_doors)
         self.readiness = Readiness(options.nodes)
         self.terminal = Terminal(sys.stdout, os.environ)
         self.lock = threading.RLock()

@@ -27,6 +27,7 @@ from pursue_runtime.sentences import Told, in_words
 from pursue_runtime.simulator.simulator import ACTING, report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
+from pursue_runtime.ui.at_doors import AtDoors
 from pursue_runtime.ui.turns import Turns
 from pursue_runtime.vocabulary import deed, instruction, is_fact, said_at_start, sentence, where
 from pursue_runtime.zones import due
@@ -164,15 +165,17 @@ class MissionView:
     """One mission, from its states: the words to publish, the lines to print, and the verdict."""
 
     def __init__(
-        self, model: Model, player: Environment, orders: Optional[Strategy] = None, turns: Optional[Turns] = None
-    ) -> None:
-        """`orders`: the part of the strategy that people carry out; `turns`: whose turn it is at places."""
+        self, model: Model, player: Environment, orders: Optional[Strategy] = None, turns: Optional[Turns] = None,
+        at_doors: Optional[AtDoors] = None,
+    ) -> None:  # fmt: skip
+        """`orders`: the part of the strategy that people carry out; `turns`: whose turn it is at places; `at_doors`:
+        who waits for which door or lift."""
         self.state: Optional[SystemState] = None
         self.start: Optional[float] = None
         self.counts = "time units"  # what times count, as people say it
         self._model, self._told = model, Told()
         self._environment = player
-        self._turns = turns or Turns(model, ())
+        self._turns, self._at_doors = turns or Turns(model, ()), at_doors or AtDoors({}, str)
         self._orders = None if orders is None else Plans(orders)
         self._since: Dict[Entry, SystemState] = {}  # in which is decided what stands in the present state
         self._ordered: Tuple[int, float, int] = (-1, 0.0, 0)  # the state of the last order, when (real), how often
@@ -274,7 +277,8 @@ class MissionView:
         """Return a line with the location of each agent, and for whom it waits."""
         if self.state is None:
             return "waiting for the first state"
-        model, at, waits = self._model, self.state.locations, self._turns.waits(self.state)
+        model, at = self._model, self.state.locations
+        waits = {**self._turns.waits(self.state), **self._at_doors.says(self.state)}
         places = [
             f"{model.shown(automaton.name)} {where(model, automaton, at.get(automaton.name, '?'))}"
             + (f" ({waits[automaton.name]})" if automaton.name in waits else "")

@@ -16,6 +16,7 @@ from pursue_runtime.sentences import Told, in_words, listed
 from pursue_runtime.simulator.simulator import ACTING, end_window, report_word
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
 from pursue_runtime.strategy import Strategy
+from pursue_runtime.ui.at_doors import AtDoors
 from pursue_runtime.ui.floor import Floor
 from pursue_runtime.ui.lanes import Lanes
 from pursue_runtime.ui.mission_view import possible_words, tasks
@@ -87,12 +88,13 @@ class Page:
         promise: Promise = NOTHING,
         strategies: Sequence[Strategy] = (),
         floor: Optional[Floor] = None,
+        at_doors: Optional[AtDoors] = None,
     ) -> None:
         """`reporters`: the agents whose ends are reported on the page; `statuses`: the words for all but agents;
         `promise`: what is to be achieved; `strategies`: those of all controllers, where they are known; `floor`: what
-        lies under the map."""
+        lies under the map; `at_doors`: who waits for which door or lift."""
         self._model = model
-        self._told = Told()
+        self._told, self._at_doors = Told(), at_doors or AtDoors({}, str)
         self._statuses = statuses
         self._promise = promise
         watching = {name for objective in promise.objectives for name in objective.of}
@@ -245,6 +247,7 @@ class Page:
             ("is not known to be there", [name for name in state.displaced if name not in state.returning]),
             ("is sent back there", state.returning), ("has finished", state.finished),
             ("is not needed in this mission", () if state.plan else self._promise.unneeded),
+            *((says, [name]) for name, says in self._at_doors.says(state).items()),
         )
 
     def _where(self, automaton: Automaton, location: str) -> Tuple[str, str]:

@@ -12,6 +12,7 @@ from pursue_runtime.missions import Source
 from pursue_runtime.model import Model
 from pursue_runtime.parameters import ParameterError
 from pursue_runtime.state import SystemState
+from pursue_runtime.ui.at_doors import AtDoors
 from pursue_runtime.ui.floor import read_floor
 from pursue_runtime.ui.mission_view import reporters
 from pursue_runtime.ui.options import Options
@@ -141,7 +142,12 @@ def read_address(text: str) -> Tuple[int, str]:
 
 
 def open_page(
-    model: Model, options: Options, settings: Mapping[str, Any], source: Source, node: PageNode
+    model: Model,
+    options: Options,
+    settings: Mapping[str, Any],
+    source: Source,
+    node: PageNode,
+    at_doors: Optional[AtDoors] = None,
 ) -> Optional[PageServer]:
     """Serves a page, where one is wanted, at the address of the one before if the node has begun anew. Raises
     ParameterError and other DataErrors.
@@ -159,7 +165,7 @@ def open_page(
     people = reporters(model, options.ends, settings)
     words = read_statuses(settings), read_promise(settings)
     floor = read_floor(source.folder) if source.digests is None else None  # it is the workspace's, not a mission's
-    page = Page(model, read_floor_plan(poses, settings), people, *words, strategies_of(source), floor)
+    page = Page(model, read_floor_plan(poses, settings), people, *words, strategies_of(source), floor, at_doors)
     board = PageServer(page, node)
     try:
         board.web = Web(

@@ -34,14 +34,25 @@ def test_ways_of_a_robot_may_have_doors_and_a_place_in_front_of_them() -> None:
     poses = read_poses({"poses": {"a": A, "b": B}, "doors": {"bot2": ways}})
     assert poses.doors == {
         "bot2": {
-            "going_a_to_b": Doorway(frozenset({"d1"}), OWN), "going_b_to_a": Doorway(frozenset({"d1", "d2"}))
+            "going_a_to_b": (Doorway(frozenset({"d1"}), OWN),), "going_b_to_a": (Doorway(frozenset({"d1", "d2"})),)
         }
     }  # fmt: skip
 
 
+def test_on_a_way_by_lift_a_robot_waits_twice() -> None:
+    inside = {"doors": ["l1 at b"], "wait": B, "aboard": True, "out": A}
+    by_lift = [{"doors": ["l1 at a"], "wait": OWN}, inside]
+    poses = read_poses({"poses": {"a": A, "b": B}, "doors": {"bot2": {"going_a_to_b": by_lift}}})
+    halts = Doorway(frozenset({"l1 at a"}), OWN), Doorway(frozenset({"l1 at b"}), B, True, A)
+    assert poses.doors == {"bot2": {"going_a_to_b": halts}}
+
+
 @pytest.mark.parametrize(
     "doors",
-    [7, {"b": 7}, {"b": {"x": ["d"]}}, {"b": {"x": {"doors": []}}}, {"b": {"x": {"doors": ["d"], "wait": [1]}}}],
+    [
+        7, {"b": 7}, {"b": {"x": ["d"]}}, {"b": {"x": []}}, {"b": {"x": {"doors": []}}},
+        {"b": {"x": {"doors": ["d"], "wait": [1]}}},
+    ],
 )
 def test_doors_that_cannot_be_read_are_refused(doors: object) -> None:
     with pytest.raises(DataError, match="poses.yaml"):
@@ -78,9 +89,9 @@ def test_what_is_no_table_of_poses_is_refused(data: Dict[str, Any], what: str) -
 
 def test_all_formats_of_the_file_are_read_and_a_newer_one_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "poses.yaml"
-    for number in (1, 2, 3, 4):
+    for number in (1, 2, 3, 4, 5):
         file.write_text(f"format: {number}\nposes: {{a: {A}}}\n")
         assert read_poses(read_data(str(file))).places == {"a": A}
-    file.write_text("format: 5\nposes: {}\n")
-    with pytest.raises(DataError, match=r"poses\.yaml has format 5, and pursue_runtime [\d.]+ reads format 4"):
+    file.write_text("format: 6\nposes: {}\n")
+    with pytest.raises(DataError, match=r"poses\.yaml has format 6, and pursue_runtime [\d.]+ reads format 5"):
         read_data(str(file))

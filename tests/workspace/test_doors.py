@@ -43,13 +43,13 @@ def test_a_controller_knows_the_doors_of_its_robots_ways_and_where_the_robot_wai
     made = files(" //[2, 0, 0, 0, 0, 0.7071068, 0.7071068]")
     poses = read_poses(yaml.safe_load(made["src/controller_bot/config/poses.yaml"]))
     assert set(poses.doors) == {"bot"} and set(poses.doors["bot"]) == {"going_hall_to_lab", "going_lab_to_hall"}
-    assert poses.doors["bot"]["going_hall_to_lab"].doors == {"d1"}
+    assert poses.doors["bot"]["going_hall_to_lab"][0].doors == {"d1"}
     assert "doors" not in yaml.safe_load(made["src/UI/config/poses.yaml"])
 
 
 def test_without_a_pose_of_the_door_no_place_to_wait_is_known() -> None:
     poses = read_poses(yaml.safe_load(files()["src/controller_bot/config/poses.yaml"]))
-    assert poses.doors["bot"]["going_hall_to_lab"].wait is None
+    assert poses.doors["bot"]["going_hall_to_lab"][0].wait is None
 
 
 def test_the_node_for_doors_knows_whom_it_opens_them_for() -> None:

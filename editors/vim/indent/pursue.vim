@@ -13,16 +13,16 @@ if exists('*PursueIndent')
 endif
 
 let s:statement = split('
-      \ agent assume battery connect door event for group mission objective optional poi reach_objective rest rule
-      \ state stateDependency thing travel unit')
+      \ agent assume battery connect door event for group lift mission objective optional poi reach_objective rest
+      \ rule state stateDependency thing travel unit')
 let s:goes_on = split('
       \ after agents all always and answered any apart at at_least at_most avoid before between by can_do capacity
-      \ carries charges collaborative controllable distance do does doing duration each ends escort every except false
-      \ false_if from gives has holds hour human if in inflation initially is is_false is_true label lasts leaves
-      \ location may_stop metre minute mobile mounts needs never never_with no none not of on_order on_way one_way
-      \ only_if open opens or order parts patrol per place radius reaches reacts_to recharges robot robots second
-      \ seen_at shown_by speed stays takes then through times to together tolerance true true_if twice two unknown
-      \ uses waits way when within')
+      \ carries charges collaborative comes controllable distance do does doing duration each ends escort every except
+      \ false false_if from gives has holds hour human if in inflation initially is is_false is_true label lasts
+      \ leaves location may_stop metre minute mobile mounts needs never never_with no none not of on_order on_way
+      \ one_way only_if open opens or order parts patrol per place radius reaches reacts_to recharges robot robots
+      \ second seen_at shown_by speed stays takes then through times to together tolerance true true_if twice two
+      \ unknown uses waits way when within')
 
 function! s:Begins(line, words) abort
   return index(a:words, matchstr(a:line, '^\s*\zs\w\+')) >= 0

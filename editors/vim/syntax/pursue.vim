@@ -6,17 +6,17 @@ endif
 syntax case match
 syntax iskeyword @,48-57,_
 
-syntax keyword pursueStatement agent assume battery connect door event for group mission objective optional poi
+syntax keyword pursueStatement agent assume battery connect door event for group lift mission objective optional poi
 syntax keyword pursueStatement reach_objective rest rule state stateDependency thing travel unit
 syntax keyword pursueConstant false is_false is_true true
 syntax keyword pursueKeyword after agents all always and answered any apart at at_least at_most avoid before between by
-syntax keyword pursueKeyword can_do capacity carries charges collaborative controllable distance do does doing duration
-syntax keyword pursueKeyword each ends escort every except false_if from gives has holds hour human if in inflation
-syntax keyword pursueKeyword initially is label lasts leaves location may_stop metre minute mobile mounts needs never
-syntax keyword pursueKeyword never_with no none not of on_order on_way one_way only_if open opens or order parts patrol
-syntax keyword pursueKeyword per place radius reaches reacts_to recharges robot robots second seen_at shown_by speed
-syntax keyword pursueKeyword stays takes then through times to together tolerance true_if twice two unknown uses waits
-syntax keyword pursueKeyword way when within
+syntax keyword pursueKeyword can_do capacity carries charges collaborative comes controllable distance do does doing
+syntax keyword pursueKeyword duration each ends escort every except false_if from gives has holds hour human if in
+syntax keyword pursueKeyword inflation initially is label lasts leaves location may_stop metre minute mobile mounts
+syntax keyword pursueKeyword needs never never_with no none not of on_order on_way one_way only_if open opens or order
+syntax keyword pursueKeyword parts patrol per place radius reaches reacts_to recharges robot robots second seen_at
+syntax keyword pursueKeyword shown_by speed stays takes then through times to together tolerance true_if twice two
+syntax keyword pursueKeyword unknown uses waits way when within
 syntax match pursueNumber "\<[+-]\?\d[[:alnum:]_.]*\%([ \t]\+\%(s\|min\|h\|c\?m\)\>\%([ \t]\+\d[0-9.]*[ \t]\+\%(s\|min\|h\|c\?m\)\>\)*\)\?"
 syntax match pursueName +"[^"]*"+
 syntax match pursueTail "control[ \t]*:.*"

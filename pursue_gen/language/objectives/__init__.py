@@ -10,7 +10,7 @@ from pursue_gen.language.objectives.avoid import Always, Avoid
 from pursue_gen.language.objectives.base import Safety, StatedObjective
 from pursue_gen.language.objectives.endurance import Endurance
 from pursue_gen.language.objectives.escort import Escort
-from pursue_gen.language.objectives.holds import EveryPlaceHolds, EveryWayHolds, PlaceHolds, WayHolds
+from pursue_gen.language.objectives.holds import EveryPlaceHolds, EveryWayHolds, LiftHolds, PlaceHolds, WayHolds
 from pursue_gen.language.objectives.never_with import NeverWith
 from pursue_gen.language.objectives.patrol import Patrol
 from pursue_gen.language.objectives.pause import Pause
@@ -19,14 +19,14 @@ from pursue_gen.language.objectives.request import Request
 from pursue_gen.language.objectives.respond import Respond
 
 __all__ = [
-    "Always", "Avoid", "Endurance", "Escort", "EveryPlaceHolds", "EveryWayHolds", "GivenUp", "NeverWith", "Patrol",
-    "Pause", "PlaceHolds", "Reach", "Request", "Respond", "Safety", "StatedObjective", "WayHolds",
+    "Always", "Avoid", "Endurance", "Escort", "EveryPlaceHolds", "EveryWayHolds", "GivenUp", "LiftHolds", "NeverWith",
+    "Patrol", "Pause", "PlaceHolds", "Reach", "Request", "Respond", "Safety", "StatedObjective", "WayHolds",
 ]  # fmt: skip
 """Parts of scenarios: `language.scenario` hands them on."""
 
 KINDS: Mapping[str, Type[Safety]] = {
     "respond": Respond, "avoid": Avoid, "always": Always, "never_with": NeverWith, "patrol": Patrol,
-    "place_holds": PlaceHolds, "way_holds": WayHolds, "every_place_holds": EveryPlaceHolds,
+    "place_holds": PlaceHolds, "way_holds": WayHolds, "lift_holds": LiftHolds, "every_place_holds": EveryPlaceHolds,
     "every_way_holds": EveryWayHolds, "pause": Pause, "escort": Escort,
     "request": Request,
 }  # fmt: skip

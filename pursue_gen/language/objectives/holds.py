@@ -1,5 +1,5 @@
-"""`place a holds 1 robot`, `way a to b holds 1 robot`, and the same for every place and every way: for how many there
-is room."""
+"""`place a holds 1 robot`, `way a to b holds 1 robot`, `lift lift1 holds 1 robot`, and the same for every place and
+every way: for how many there is room."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any, Callable, ClassVar, Iterator, Sequence, Tuple, cast
 
-from pursue_gen.diagnostics import NOWHERE, Span, listed
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed
 from pursue_gen.language.conditions import AllOf, At, AtMostOf, Atom, Not, OnWay, Who, some_text
 from pursue_gen.language.objectives.base import Breaks, Safety
 from pursue_gen.language.refs import Ref
@@ -124,6 +124,45 @@ class WayHolds(Holds):
         if kind == "POI" and name in (self.a.name, self.b.name):
             other = self.b if self.a.name == name else self.a
             yield f"the way to {other.name} holds {some_text(self.most, self.who)}, in both directions together"
+
+
+@dataclass(frozen=True)
+class LiftHolds(Holds):
+    """`lift lift1 holds 1 robot`: never are more than `most` of `who` on the ways by it, all together. `building`:
+    these ways.
+    """
+
+    lift: Ref
+    most: int
+    who: Tuple[Who, ...]
+    span: Span = NOWHERE
+    building: Tuple[Tuple[Ref, Ref], ...] = ()
+    optional: int = 0
+
+    template: ClassVar[Template] = Template("lift {lift:lift=lift1} holds {most,who:some=1 robot}")
+    note: ClassVar[str] = "without it, each lift holds 1 robot"
+    forms: ClassVar[Tuple[Form, ...]] = (Form("what a lift holds", "lift {lift} holds {=1} robot"),)
+
+    @property
+    def where(self) -> str:
+        return f"in {self.lift.shown}"
+
+    @property
+    def rooms(self) -> Tuple[AtMostOf, ...]:
+        return super().rooms if self.building else ()
+
+    def there(self, who: Who) -> Sequence[Atom]:
+        return [OnWay(who, a, b, True) for a, b in self.building]
+
+    def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
+        if (kind, name) == ("lift", self.lift.name):
+            yield f"holds {some_text(self.most, self.who)}"
+
+    def check(self) -> Iterator[Diagnostic]:
+        yield from super().check()
+        if self.optional:
+            hint = f"delete optional {self.optional}: how long {self.lift.name} takes is true of so many only"
+            yield error("PML470", f"what {self.lift.name} holds is kept in any case", self.span, hint)
 
 
 class EveryHolds(Holds):

@@ -22,7 +22,7 @@ class Connection(ForSome):
 
     `ends` are the places in the text where it names them. `one_way`: from `a` to `b` only, else in both directions.
     Agents set off only while `only_if` holds (None: always); `only_for` and `not_for` say which agents may, as in
-    `ForSome`. `through`: the doors that it passes.
+    `ForSome`. `through`: the doors that it passes; `by`: the lift that it goes by.
     """
 
     a: str
@@ -35,6 +35,7 @@ class Connection(ForSome):
     only_for: Tuple[Ref, ...] = ()
     not_for: Tuple[Ref, ...] = ()
     through: Tuple[Ref, ...] = ()
+    by: Optional[Ref] = None
 
     listed_in: ClassVar[str] = "connections"
     symbol: ClassVar[str] = "Interface"
@@ -50,16 +51,19 @@ class Connection(ForSome):
         Word("through", "The doors that the way leads through, each of which opens for whoever sets off.", True),
     )
     template: ClassVar[Template] = Template(
-        "connect {a:POI=a} and {b:POI=b} distance {distance=3} [one_way] [through {through:doors}] "
+        "connect {a:POI=a} and {b:POI=b} distance {distance=3} [one_way] [through {through:doors}] [by {by:lift}] "
         + ForSome.for_whom
         + " [only_if {only_if:condition=open is_true}]"
     )
-    note: ClassVar[str] = "one_way and only_if are optional; between them: through d1; for agv, cart, or except gerda"
+    note: ClassVar[str] = (
+        "one_way and only_if are optional; between them: through d1; by lift1; for agv, cart, or except gerda"
+    )
     forms: ClassVar[Tuple[Form, ...]] = (
         Form("a way between two places", "connect {POI} and {POI} distance {=1}"),
         Form("a way in one direction only", "connect {POI} and {POI} distance {=1} one_way"),
         Form("a way that is not always open", "connect {POI} and {POI} distance {=1} only_if {state} is_true"),
         Form("a way through a door", "connect {POI} and {POI} distance {=1} through {door}"),
+        Form("a way by lift", "connect {POI} and {POI} distance {=1} by {lift}"),
         Form("a way for some agents only", "connect {POI} and {POI} distance {=1} for {agent}"),
     )
     parts: ClassVar[Tuple[str, ...]] = template.begins
@@ -74,6 +78,7 @@ class Connection(ForSome):
         yield from (("POI", Ref(name, span)) for name, span in zip((self.a, self.b), self.ends))
         yield from (("agent", ref) for ref in (*self.only_for, *self.not_for))
         yield from (("door", ref) for ref in self.through)
+        yield from (("lift", ref) for ref in (self.by,) if ref is not None)
 
     @property
     def directions(self) -> Tuple[Tuple[str, str], ...]:
@@ -83,7 +88,8 @@ class Connection(ForSome):
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if kind == "state" and self.only_if is not None and self.speaks_of(kind, name):
             yield f"between {self.a} and {self.b} only while {shown(condition_words(self.only_if))}"
-        if kind == "door" and any(ref.name == name for ref in self.through):
+        on_it = {"door": self.through, "lift": () if self.by is None else (self.by,)}.get(kind, ())
+        if any(ref.name == name for ref in on_it):
             yield f"on the way between {self.a} and {self.b}"
         if kind == "agent" and not self.admits(name):
             yield f"never takes the way between {self.a} and {self.b} at distance {written_time(self.distance)}"

@@ -57,7 +57,7 @@ class Door(Labelled):
     @property
     def in_words(self) -> str:
         """What people read of it on a way."""
-        return f"{self.shown} (opens within {written_time(self.opens_within)})"
+        return f"through {self.shown} (opens within {written_time(self.opens_within)})"
 
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if (kind, name) == ("door", self.name):

@@ -23,6 +23,10 @@ def _read_poses(reader: TreeReader, comment: Any) -> Tuple[Optional[Pose], Tuple
     return read_poses(str(comment), reader.at(comment), reader.findings)
 
 
+POSES = Filling("POSE", _read_poses, _poses_text)
+"""The pose of a place in a comment behind it, and those behind names."""
+
+
 @dataclass(frozen=True)
 class Poi(Labelled, ForSome):
     """A point of interest; `pose` is None where the author gave none or left the thesis's placeholder.
@@ -47,7 +51,7 @@ class Poi(Labelled, ForSome):
     )
     template: ClassVar[Template] = Template(
         'poi {name="a"} [label {label:name}] ' + ForSome.for_whom + " [{pose,spots:poses}]",
-        poses=Filling("POSE", _read_poses, _poses_text),
+        poses=POSES,
     )
     note: ClassVar[str] = (
         'or with what people read: poi "a" label "security door"; for agv, cart or except gerda behind it: '

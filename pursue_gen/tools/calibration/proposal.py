@@ -10,6 +10,7 @@ from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Tuple
 from pursue_gen.diagnostics import counted
 from pursue_gen.language.checks import checked
 from pursue_gen.language.document import Edit, edited
+from pursue_gen.language.lifts import driven
 from pursue_gen.language.numbers import Number, decimal_text, exact
 from pursue_gen.language.rewriting import Movement, Rewriting
 from pursue_gen.language.scenario import Scenario, Window
@@ -206,7 +207,7 @@ def _present(scenario: Scenario, slack: Mapping[str, int]) -> Dict[Measured, Win
     """The windows of the scenario as it is played, in its order."""
     found: Dict[Measured, Window] = {}
     for agent in scenario.agents:
-        for way, (low, high) in scenario.movements(agent).items():
+        for way, (low, high) in driven(scenario, agent).items():
             found[Way(agent.name, *way)] = low, exact(high + slack.get(agent.name, 0))
     for event in scenario.events:
         if event.window is not None:

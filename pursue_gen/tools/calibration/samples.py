@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple, Union
 
+from pursue_gen.language.lifts import driven
 from pursue_gen.language.network_names import agent_clock, going
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import UNDER_WAY, Role, role_of
@@ -130,8 +131,9 @@ class _Names:
         self._ways: Dict[Tuple[str, str], Way] = {
             (agent.name, going(*way)): Way(agent.name, *way)
             for agent in scenario.agents
-            for way in scenario.movements(agent)
+            for way in driven(scenario, agent)
         }
+        self.rides = {(each.name, going(*way)) for each in scenario.agents for way in scenario.movements(each)}
         self._events = {event.name: event.split or 1 for event in scenario.events if event.window is not None}
 
     def whole(self, what: Measured, seconds: float) -> float:
@@ -221,7 +223,7 @@ class _Stays:
         if agent_clock(agent) not in state.clocks or role_of(location) is Role.SOMEWHERE:
             return None  # no agent, or one of whom it is to be said where it starts
         start, what = _start(agent, state), self._names.what(agent, location)
-        if what is None:
+        if what is None and (agent, location) not in self._names.rides:
             self.strangers.add(f"{agent} {place(self._names.scenario, location)}")
         leads = True
         if isinstance(what, Work):  # several may do it together, and it counts once

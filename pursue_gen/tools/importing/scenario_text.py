@@ -26,8 +26,13 @@ _HANDLING = "30 s"
 """How long an action at a dispenser or an ingestor takes, until people write what it is. Not measured."""
 _OPENS = "10 s"
 """Within which time a door opens, until people write what it is. Not measured."""
-_LIFT = "20 s to 60 s"
-"""How long a robot takes from level to level, until people write what it is. Not measured."""
+_COMES, _RIDES = "40 s", "10 s to 20 s"
+"""Within which time a lift comes, and how long it then takes to another level, until people write it. Not measured."""
+_STRAIGHT = 0.1
+"""Metres by which a cabin may be elsewhere on another level, and counts as one that goes straight up. Not measured."""
+_BEFORE = 2.8
+"""Metres from the middle of a cabin to the place before its door, or four fifths of the way where that is less. Not
+measured."""
 
 
 def chosen(plan: FloorPlan, names: Optional[str]) -> Sequence[RobotStart]:
@@ -73,13 +78,16 @@ class _Writer:
         self._tracks = [track for track in plan.tracks if track.graphs & self._used]
         ends = {node for track in self._tracks for node in (track.start, track.end)} | {robot.node for robot in robots}
         self._stops = [stop for stop in plan.stops if stop.node in ends]
-        self._lifts = {name: [node for node in some if node in ends] for name, some in plan.lifts.items()}
+        lifts = {name: [node for node in some if node in ends] for name, some in plan.lifts.items()}
+        self._lifts = {name: some for name, some in lifts.items() if len(some) > 1}
+        self._before = {node: self._in_front(node) for some in self._lifts.values() for node in some}
         self._taken: Set[str] = set()
         self._shown = dict(told_apart({stop.node: self._title(stop) for stop in self._stops}))
         self._places: Dict[Node, str] = {node: self._name(title) for node, title in self._shown.items()}
         passed = {door for track in self._tracks for door in track.doors}
         titles = {node: door.name or "door" for node, door in plan.doors.items() if node in passed}
         self._doors = {node: (plan.doors[node], title, self._name(title)) for node, title in told_apart(titles)}
+        self._called = {name: self._name(name) for name in self._lifts}
         self._agents = {robot.name: self._name(robot.name) for robot in robots}
         self._groups = self._named_groups()
         self._reached = {robot.name: self._from(robot) for robot in robots}
@@ -87,9 +95,9 @@ class _Writer:
 
     def text(self, file: str) -> str:
         """All of it."""
-        parts = [self._head(), ["unit second"], self._poi_lines(), self._door_lines()]
+        parts = [self._head(), ["unit second"], self._poi_lines(), self._door_lines(), self._lift_lines()]
         parts += [self._group_lines(), self._way_lines()]
-        parts += [self._lift_lines(), self._event_lines(), self._agent_lines(), self._slow_lines(), self._objectives()]
+        parts += [self._ride_lines(), self._event_lines(), self._agent_lines(), self._slow_lines(), self._objectives()]
         return format_text("\n\n".join("\n".join(part) for part in parts if part) + "\n", file)
 
     def _title(self, stop: Stop) -> str:
@@ -143,20 +151,49 @@ class _Writer:
         return found
 
     def _head(self) -> List[str]:
-        left_out = len(self._building.levels) > 1 and any(self._lifts.values())
-        lines = [
+        return [
             f"// {one_line(self._building.name)}, from Open-RMF's traffic editor. Metres and seconds.",
             "// Say what is wanted below (docs/language.md); durations are first guesses.",
         ]
-        return lines + (["// How long lifts take is a guess, too: write what you know."] if left_out else [])
 
     def _poi_lines(self) -> List[str]:
         lines = []
         for stop in self._stops:
             name, title = self._places[stop.node], self._shown[stop.node]
             label = f' label "{one_line(title)}"' if title != name else ""
-            pose = ", ".join(f"{round(value, 2) + 0.0:.2f}" for value in (stop.x, stop.y, stop.z))  # no -0.00
-            lines.append(f'poi "{name}"{label} //[{pose}, 0, 0, 0, 1]')
+            x, y, _ = self._before.get(stop.node, (stop.x, stop.y, 0.0))
+            lines.append(f'poi "{name}"{label} //[{_metres(x, y, stop.z)}, 0, 0, 0, 1]')
+        return lines
+
+    def _in_front(self, cabin: Node) -> Tuple[float, float, float]:
+        """Where the place before the door of a cabin is, on its first way, and how many metres from its middle."""
+        where = {stop.node: (stop.x, stop.y) for stop in self._stops}
+        first = next((each for each in self._tracks if cabin in (each.start, each.end)), None)
+        x, y = where[cabin]
+        if first is None:
+            return x, y, 0.0
+        far_x, far_y = where[first.end if first.start == cabin else first.start]
+        distance = math.dist((x, y), (far_x, far_y)) or 1.0
+        share = min(_BEFORE / distance, 0.8)
+        return x + share * (far_x - x), y + share * (far_y - y), share * distance
+
+    def _lift_lines(self) -> List[str]:
+        """The lifts, and what Open-RMF calls their floors."""
+        lines = []
+        stops = {stop.node: stop for stop in self._stops}
+        for lift, nodes in self._lifts.items():
+            name, floors = self._called[lift], [self._places[node] for node in nodes]
+            label = f' label "{one_line(lift)}"' if lift != name else ""
+            poses = [_metres(stops[node].x, stops[node].y, stops[node].z) for node in nodes]
+            middle = [(stops[node].x, stops[node].y) for node in nodes]
+            beside = [math.dist(each, middle[0]) > _STRAIGHT for each in middle]
+            more = "".join(f" {floors[k]} [{poses[k]}, 0, 0, 0, 1]" for k, is_beside in enumerate(beside) if is_beside)
+            called = ", ".join(f"{floor}: {one_line(node[0])}" for floor, node in zip(floors, nodes))
+            lines += [
+                f"// For door_settings: {name}: {{adapter: rmf, name: {one_line(lift)}, floors: {{{called}}}}}",
+                f'lift "{name}"{label} at {", ".join(floors)} comes within {_COMES} takes {_RIDES}'
+                f" //[{poses[0]}, 0, 0, 0, 1]{more}",
+            ]
         return lines
 
     def _door_lines(self) -> List[str]:
@@ -164,8 +201,8 @@ class _Writer:
         for door, title, name in self._doors.values():
             label = f' label "{one_line(title)}"' if title != name else ""
             turned = math.sin(door.yaw / 2), math.cos(door.yaw / 2)
-            pose = ", ".join(f"{round(value, 2) + 0.0:.2f}" for value in (door.x, door.y, door.z))
             turn = ", ".join(f"{round(value, 4) + 0.0:g}" for value in turned)
+            pose = _metres(door.x, door.y, door.z)
             lines.append(f'door "{name}"{label} opens within {_OPENS} //[{pose}, 0, 0, {turn}]')
         return lines
 
@@ -184,7 +221,8 @@ class _Writer:
             frozenset(robot.name for robot in self._robots if robot.graphs & graphs)
             for graphs in (track.there, track.back)
         )
-        metres = max(math.floor(track.metres * 10 + 0.5), 1) / 10
+        before = sum(self._before.get(node, (0.0, 0.0, 0.0))[2] for node in (track.start, track.end))
+        metres = max(math.floor((track.metres - before) * 10 + 0.5), 1) / 10
         doors = f" through {', '.join(self._doors[door][2] for door in track.doors)}" if track.doors else ""
         for some, way, one_way in (
             (there & back, track, ""),
@@ -201,19 +239,14 @@ class _Writer:
             return ""
         return f" for {self._groups.get(some) or ', '.join(self._agents_of(some))}"
 
-    def _lift_lines(self) -> List[str]:
-        lines: List[str] = []
-        heights = {stop.node: stop.z for stop in self._stops}
-        for nodes in self._lifts.values():
-            for k, low in enumerate(nodes):
-                for high in nodes[k + 1 :]:
-                    a, b = self._places[low], self._places[high]
-                    metres = max(abs(heights[high] - heights[low]), 0.1)
-                    lines.append(f"connect {a} and {b} distance {metres:g} // by lift")
-                    riders = [self._agents[name] for name, reached in self._reached.items() if low in reached]
-                    for start, end in ((a, b), (b, a)):
-                        lines += [f"travel {robot} from {start} to {end} takes {_LIFT}" for robot in riders]
-        return lines
+    def _ride_lines(self) -> List[str]:
+        """The ways by lift: what is driven into the cabin, and out of it."""
+        return [
+            f"connect {self._places[low]} and {self._places[high]} distance {metres:g} by {self._called[lift]}"
+            for lift, nodes in self._lifts.items()
+            for low, high in combinations(nodes, 2)
+            for metres in [max(round(self._before[low][2] + self._before[high][2], 1), 0.1)]
+        ]
 
     def _slow_lines(self) -> List[str]:
         """How long robots take that may not drive as fast as they can."""
@@ -266,10 +299,6 @@ class _Writer:
         alone = self._traffic and len(self._robots) > 1
         lines = [f"objective: every {room} holds 1 robot" for room in ("place", "way") if alone]
         lines += self._mutex_lines()
-        for name, nodes in self._lifts.items():
-            if len(nodes) > 1 and len(self._robots) > 1:
-                places = ", ".join(self._places[node] for node in nodes)
-                lines.append(f"objective: always at_most 1 robots at {places} // one in lift {one_line(name)}")
         patrols: Dict[FrozenSet[str], List[str]] = {}
         for stop in self._stops:
             able = frozenset(name for name, reached in self._reached.items() if stop.node in reached)
@@ -293,6 +322,11 @@ def told_apart(titles: Mapping[Key, str]) -> Iterator[Tuple[Key, str]]:
     for node, title in titles.items():
         seen[title] += 1
         yield node, title if seen[title] == 1 else f"{title} {seen[title]}"
+
+
+def _metres(*values: float) -> str:
+    """Coordinates as poses have them."""
+    return ", ".join(f"{round(value, 2) + 0.0:.2f}" for value in values)  # no -0.00
 
 
 def one_line(text: str) -> str:

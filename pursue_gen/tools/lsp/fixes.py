@@ -78,6 +78,7 @@ _PROPOSERS: Dict[str, _Proposer] = {
     "PML420": numbers.say_unit,
     "PML422": meaning.delete_statement,
     "PML461": meaning.delete_statement,
+    "PML472": meaning.delete_statement,
 }
 
 

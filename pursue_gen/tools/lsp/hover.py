@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 from itertools import takewhile
-from typing import Callable, Dict, List, Optional, Tuple
+from typing import Callable, Dict, List, Optional, Tuple, Union
 
 from lark import Token
 
@@ -24,6 +24,7 @@ from pursue_gen.language.scenario import (
     Both,
     Door,
     Event,
+    Lift,
     Poi,
     Ref,
     Rule,
@@ -127,7 +128,8 @@ def _about(scenario: Scenario, kind: str, name: str) -> Optional[str]:
         "state": (scenario.states, _state),
         "agent": (scenario.agents, _agent),
         "thing": (scenario.things, _thing),
-        "door": (scenario.doors, _door),
+        "door": (scenario.doors, partial(_opening, "a door that opens by itself")),
+        "lift": (scenario.lifts, partial(_opening, "a lift")),
     }
     found, explain = parts[kind]
     part = next((part for part in found if getattr(part, "name", None) == name), None)
@@ -152,7 +154,7 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
         only = f", only while {in_markdown(scenario, condition_words(way.only_if))}" if way.only_if is not None else ""
         whom = f", {in_markdown(scenario, way.whom_words)}" if way.whom_words else ""
         words += f": distance {written_time(way.distance)}"
-        doors = "".join(f", through {in_markdown(scenario, door.in_words)}" for door in scenario.doors_on(way))
+        doors = "".join(f", {in_markdown(scenario, said)}" for said in scenario.words_on(way))
         lines.append(f"- {words}" + (f" ({times})" if times else "") + doors + whom + only)
     lines = [*lines[:2], *_listed(lines[2:])]
     if not ways:
@@ -229,16 +231,16 @@ def _thing(scenario: Scenario, thing: Thing) -> List[str]:
     return [head, "", *_said(scenario, "thing", thing.name)]
 
 
-def _door(scenario: Scenario, door: Door) -> List[str]:
-    head = f"**{door.name}**: a door that opens by itself{_read_as(door.label)}"
-    return [head, "", *_said(scenario, "door", door.name)]
+def _opening(what: str, scenario: Scenario, part: Union[Door, Lift]) -> List[str]:
+    return [f"**{part.name}**: {what}{_read_as(part.label)}", "", *_said(scenario, part.declares, part.name)]
 
 
 def _said(scenario: Scenario, kind: str, name: str) -> List[str]:
     """What statements say of a thing that another one declares."""
     parts: Tuple[Written, ...] = (
-        *scenario.pois, *scenario.doors, *scenario.rules, *scenario.dependencies, *scenario.connections,
-        *scenario.events, *scenario.states, *scenario.batteries, *scenario.assumptions, *scenario.objectives,
+        *scenario.pois, *scenario.doors, *scenario.lifts, *scenario.rules, *scenario.dependencies,
+        *scenario.connections, *scenario.events, *scenario.states, *scenario.batteries, *scenario.assumptions,
+        *scenario.objectives,
     )  # fmt: skip
     return [f"- {line}" for part in parts for line in part.about(kind, name, partial(in_markdown, scenario))]
 

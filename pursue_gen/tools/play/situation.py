@@ -115,7 +115,7 @@ def ending(setup: Setup, play: PlayState) -> str:
 def _only(scenario: Scenario, way: Connection) -> str:
     """Behind the length of a way: its doors, for whom it is, and while what it is open; nothing where it always is for
     all."""
-    whom = "".join(f", through {door.in_words}" for door in scenario.doors_on(way))
+    whom = "".join(f", {said}" for said in scenario.words_on(way))
     whom += f", {way.whom_words}" if way.whom_words else ""
     return whom if way.only_if is None else f"{whom}, only while {condition_words(way.only_if)}"
 

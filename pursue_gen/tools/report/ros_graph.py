@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Dict, List, Sequence, Tuple
 
 from pursue_gen.language.doors import doors_of
+from pursue_gen.language.lifts import rides_of
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.partition import SubStrategy
 from pursue_gen.partition.split import UI
@@ -14,7 +15,7 @@ from pursue_gen.tools.report.graphviz import Graph, arrow, node, quoted
 from pursue_gen.tools.report.html import Section, rendered
 
 EVENTS, STATE, TEXT, PLAN = "/pursue/events", "/pursue/state", "/pursue/system_state", "/pursue/plan"
-SEEN, DOORS = "/pursue/seen", "/pursue/doors"
+SEEN, DOORS, ABOARD = "/pursue/seen", "/pursue/doors", "/pursue/aboard"
 DIAGNOSTICS = "/diagnostics"
 _STATE = "pursue_msgs/SystemState"
 _STRING, _POSE, _STATUS = "std_msgs/String", "geometry_msgs/PoseStamped", "diagnostic_msgs/DiagnosticArray"
@@ -38,8 +39,9 @@ def topics(scenario: Scenario, subs: Sequence[SubStrategy]) -> Tuple[Topic, ...]
     """
     controllers = tuple(f"/{sub.controller}" for sub in subs if sub.controller != UI)
     robots = {agent.name for agent in scenario.agents if agent.is_robot}
-    through = {agent.name for agent in scenario.agents if agent.is_robot and doors_of(scenario, agent)}
-    doors = (_DOORS,) if any(doors_of(scenario, agent) for agent in scenario.agents) else ()
+    by_lift = {agent.name for agent in scenario.agents if rides_of(scenario, agent)}
+    through = by_lift | {agent.name for agent in scenario.agents if agent.is_robot and doors_of(scenario, agent)}
+    doors = (_DOORS,) if by_lift or any(doors_of(scenario, agent) for agent in scenario.agents) else ()
     nodes = (_OBSERVER, *controllers, _SIMULATOR, f"/{UI}")
     result = [
         Topic(EVENTS, _STRING, nodes, (_OBSERVER, f"/{UI}")),
@@ -50,8 +52,14 @@ def topics(scenario: Scenario, subs: Sequence[SubStrategy]) -> Tuple[Topic, ...]
         Topic(DIAGNOSTICS, _STATUS, (*nodes, *doors), (_OBSERVER, _SIMULATOR, *doors, f"/{UI}")),
     ]
     if doors:
-        waiting = tuple(f"/{sub.controller}" for sub in subs if sub.controller != UI and through & set(sub.agents))
-        result.append(Topic(DOORS, _STRING, doors, waiting))
+        waiting, riding = (
+            tuple(f"/{sub.controller}" for sub in subs if sub.controller != UI and some & set(sub.agents))
+            for some in (through, by_lift)
+        )
+        result.append(Topic(DOORS, _STRING, doors, (*waiting, f"/{UI}")))
+        if by_lift:
+            posed = any(each.pose is not None for each in scenario.lifts)
+            result.append(Topic(ABOARD, _STRING, riding if posed else (), doors))
     for sub in subs:
         for robot in (agent for agent in sub.agents if agent in robots and sub.controller != UI):
             for name, kind in ((f"/{robot}/move_base_simple/goal", _POSE), (f"/{robot}/pursue/actions", _STRING)):

@@ -25,9 +25,12 @@ unit second
 rest 0.5
 poi "a" label "the hall" //[1, 2, 0, 0, 0, 0, 1] bot [3, 4, 0, 0, 0, 0, 1]
 poi "b"
+poi "c"
 connect a and b distance 3 one_way only_if open is_true
 door "d1" label "glass door" opens within 8 s //[2, 2, 0, 0, 0, 0, 1]
 connect b and a distance 2.5 through d1
+lift "lift1" label "goods" at a, c comes within 40 s takes 10 to 20 s //[2, 2, 0, 0, 0, 0, 1] c [2, 2, 3, 0, 0, 0, 1]
+connect a and c distance 4 by lift1
 thing "box" label "parcel"
 event "work" collaborative together location a duration 6 to 9 at_most 2 times only_if not (bot on_way)
 event "first" label "do it" duration 3
@@ -143,6 +146,6 @@ def test_its_words_are_words_of_the_language(kind: Type[StatementKind]) -> None:
 @each_kind
 def test_its_forms_ask_for_things_that_there_are(kind: Type[StatementKind]) -> None:
     assert kind.forms and len({form.title for form in kind.forms}) == len(kind.forms)
-    things = {"POI", "event", "state", "agent", "group", "thing", "door"}
+    things = {"POI", "event", "state", "agent", "group", "thing", "door", "lift"}
     for form in kind.forms:
         assert all(example or what in things for example, what in HOLE.findall(form.words)), form

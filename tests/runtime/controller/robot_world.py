@@ -39,6 +39,7 @@ class World:
         self.acknowledged: Set[int] = set()
         self.ordered: List[Order] = []
         self.texts: List[str] = []
+        self.to_lifts: List[str] = []
 
     @property
     def words(self) -> List[str]:
@@ -46,7 +47,8 @@ class World:
         return [text.split(" ")[0].partition("#")[0] for text in self.texts]
 
     def act(self) -> None:
-        goal, actions, word = self.robot.due(self.now, self.now)
+        goal, actions, word, aboard = self.robot.due(self.now, self.now)
+        self.to_lifts += [aboard] if aboard else []
         self.goals += [goal] if goal else []
         self.actions += [order.event for order in actions]
         self.texts += [word] if word else []

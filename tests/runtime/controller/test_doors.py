@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from pursue_runtime.controller.goal import Halt
 from pursue_runtime.controller.whereabouts import place_of
 from pursue_runtime.doors.opened import Opened
 from tests.runtime.controller.robot_world import ABORTED, END, HELD, PREEMPTED, SUCCEEDED, WAY, World
 
 WAIT = place_of("d1", [1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0])
-THROUGH = WAY._replace(doors=frozenset({"d1"}), wait=WAIT)
+DOOR = frozenset({"d1"})
+THROUGH = WAY._replace(halts=(Halt(DOOR, WAIT),))
 """The way, through a door."""
 
 
 def on_its_way(wait: bool = True, **settings: object) -> World:
     robot = World(**{"goals": "action", "ends": "result", **settings})
-    way = THROUGH if wait else THROUGH._replace(wait=None)
+    way = THROUGH if wait else THROUGH._replace(halts=(Halt(DOOR),))
     robot.state(way, seq=7)
     robot.robot.start(way, robot.now)
     robot.act()

@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_runtime.data import DataError
-from pursue_runtime.doors.keeper import REPEAT, SETTLE, DoorData, DoorKeeper, read_doors
+from pursue_runtime.doors.asking import REPEAT, SETTLE
+from pursue_runtime.doors.keeper import DoorData, DoorKeeper, read_doors
 from pursue_runtime.state import RUNNING, WAITING, SystemState
 
 WAYS = ("going_hall_to_lab", "going_lab_to_hall")
@@ -65,9 +66,10 @@ def test_what_it_reported_before_it_was_asked_counts_when_it_has_stayed_so() -> 
     world.now += 0.1  # it has been asked to close, and has not begun to
     world.see(3, bot1=WAYS[1])
     assert world.open_for() == frozenset()
-    assert world.keeper.next_moment() == pytest.approx(world.now + min(REPEAT, SETTLE))
+    assert world.keeper.next_moment(world.now) == pytest.approx(world.now + min(REPEAT, SETTLE))
     world.now += SETTLE
     assert world.open_for() == {"bot1"}
+    assert world.keeper.next_moment(world.now) is None, "there is nothing to look at while somebody passes"
     world.keeper.on_report("d1", False, world.now)
     assert world.open_for() == frozenset()
 

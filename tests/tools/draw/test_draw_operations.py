@@ -243,7 +243,7 @@ def test_what_makes_no_sense_is_refused_with_a_reason(operation: Any) -> None:
 )
 def test_every_form_can_be_filled(kind: str, form: int) -> None:
     given_ = {"POI": "room", "event": "fetch", "agent": "nurse", "state": "dark", "group": "rooms", "thing": "tray"}
-    given_["door"] = "d9"
+    given_["door"], given_["lift"] = "d9", "lift9"
     holes = re.findall(r"\{(=?)([^}]*)\}", STATEMENTS[kind].forms[form].words)
     values = [(what if what.isdigit() else f"{what}9") if example else given_[what] for example, what in holes]
     before = HOTEL if kind == "FOR" else COMMENTED

@@ -130,11 +130,20 @@ levels:
 
 def test_levels_are_joined_by_lifts_and_lie_above_each_other(tmp_path: Path) -> None:
     text = imported(tmp_path, TOWER)
-    assert 'poi "Lift1_L2" //[10.00, 0.00, 5.00, 0, 0, 0, 1]' in text.replace("-0.00", "0.00")
-    assert "connect Lift1_L2 and lobby_L2 distance 5\n" in text  # half as many pixels a metre as on the first level
-    assert "connect Lift1_L1 and Lift1_L2 distance 5 // by lift\n" in text
-    assert "travel bot from Lift1_L1 to Lift1_L2 takes 20 s to 60 s\n" in text
-    assert "objective: always at_most 1 robots at Lift1_L1, Lift1_L2 // one in lift Lift1\n" in text
+    assert 'poi "Lift1_L2" //[10.00, -2.80, 5.00, 0, 0, 0, 1]' in text, "2.8 m before the middle of the cabin"
+    assert "connect Lift1_L2 and lobby_L2 distance 2.2\n" in text  # half as many pixels a metre as on the first level
+    lift = 'lift "Lift1" at Lift1_L1, Lift1_L2 comes within 40 s takes 10 s to 20 s //[10.00, 0.00, 0.00, 0, 0, 0, 1]\n'
+    called = "{adapter: rmf, name: Lift1, floors: {Lift1_L1: L1, Lift1_L2: L2}}"
+    assert f"// For door_settings: Lift1: {called}\n{lift}" in text
+    assert "connect Lift1_L1 and Lift1_L2 distance 5.6 by Lift1\n" in text
+    assert not check(parse(text, "made.pur")) and "at_most" not in text, "it holds one robot in any case"
+
+
+def test_a_cabin_that_is_elsewhere_on_another_level_has_a_pose_there(tmp_path: Path) -> None:
+    apart = TOWER.replace("fiducials: [[0, 100, a], [500, 100, b]]", "measurements: [[0, 1, {distance: [3, 5]}]]")
+    text = imported(tmp_path, apart)
+    assert re.search(r"//\[10\.00, 0\.00, 0\.00, 0, 0, 0, 1\] Lift1_L2 \[[-\d., ]+\]\n", text)
+    assert not check(parse(text, "made.pur"))
 
 
 def test_longitude_and_latitude_become_metres(tmp_path: Path) -> None:

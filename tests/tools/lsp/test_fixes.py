@@ -135,6 +135,7 @@ MISTAKES = {
     "PML343": carrying(" gives box", "").replace('event "rest"', 'event "rest" gives box'),
     "PML344": SMALL + 'thing "box" // it is here\n',
     "PML461": SMALL + 'door "d1" opens within 8 // it is shut\n',
+    "PML472": SMALL + 'lift "lift1" at a, b comes within 40 takes 10 to 20 // it is out of order\n',
     "PML344 room": changed("mobile 2", "mobile 2 carries 2"),
     "PML320": changed("true_if work", "true_if work, rest"),
     "PML320 in a list": changed("true_if work false_if rest", "true_if work false_if work, rest"),

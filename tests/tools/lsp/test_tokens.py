@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, List, Set, Tuple
 
 import pytest
@@ -12,8 +13,9 @@ from lark import Token
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.for_each import body_of
 from pursue_gen.language.kinds import DECLARED
+from pursue_gen.language.lifts import is_said
 from pursue_gen.language.names import KINDS
-from pursue_gen.language.occurrences import VARIABLE, kinds_behind
+from pursue_gen.language.occurrences import GROUP, VARIABLE, kinds_behind
 from pursue_gen.language.parser import parse
 from pursue_gen.language.scenario import Ref, Scenario
 from pursue_gen.language.syntax import accepts
@@ -35,8 +37,10 @@ def parsed(scenario: Scenario) -> Set[Tuple[str, int, int, bool]]:
             for field in value.__dataclass_fields__:
                 visit(getattr(value, field))
 
-    declared = scenario.pois, scenario.doors, scenario.events, scenario.rules, scenario.states, scenario.agents
-    for parts in (*declared, scenario.things):
+    said = tuple(each for each in scenario.safety if is_said(scenario, each))
+    scenario = replace(scenario, safety=said)
+    declared = scenario.pois, scenario.doors, scenario.lifts, scenario.events, scenario.rules, scenario.states
+    for parts in (*declared, scenario.agents, scenario.things):
         for part in parts:  # type: ignore[attr-defined]
             found.add((part.name, part.span.line, part.span.column + 1, True))
     visit(scenario)
@@ -75,7 +79,8 @@ def test_what_a_name_stands_for_is_known_wherever_the_grammar_has_one(data: st.D
         expected = accepts(tokens)
         body = body_of(tokens)
         if "WORD" in expected and (body or not tokens):
-            assert kinds_behind(tokens) and set(kinds_behind(tokens)) <= set(KINDS)
+            of_groups = {VARIABLE, GROUP} if tokens and tokens[-1].type == "OF" else set()
+            assert kinds_behind(tokens) and set(kinds_behind(tokens)) <= {*KINDS, *of_groups}
         if tokens and "NAME" in expected:
             declares = len(body) == 1 and body[0].type in {*DECLARED, "TRAVEL", "BATTERY", "GROUP"}
             assert declares or tokens[-1].type == "LABEL"

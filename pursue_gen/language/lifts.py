@@ -1,0 +1,113 @@
+"""Lifts: what each holds unless a scenario says more, which rides there are, and what is wrong with them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import hypot
+from typing import Dict, Iterator, Tuple
+
+from pursue_gen.diagnostics import Diagnostic, error, listed, warning
+from pursue_gen.language.conditions import Who
+from pursue_gen.language.numbers import Window
+from pursue_gen.language.objectives.holds import LiftHolds
+from pursue_gen.language.refs import Ref
+from pursue_gen.language.scenario import Agent, Connection, Lift, Safety, Scenario, StatedObjective
+
+Way = Tuple[str, str]
+"""From and to."""
+
+WAITS_AT = 2.0
+"""Metres from the middle of a cabin at which a robot waits for a lift: half a cabin, and half a robot. Not measured."""
+_ROOM = 0.7
+"""Metres between a robot that waits and one that stands at the place before the lift. Not measured."""
+
+
+def rides_of(scenario: Scenario, agent: Agent) -> Dict[Way, Lift]:
+    """By way of a robot the lift that it calls when it sets off; people call lifts themselves."""
+    if not agent.is_robot or agent.mobile is None:
+        return {}
+    by_lift = ((way, scenario.lift_on(way)) for way in scenario.ways_of(agent.name))
+    return {ends: lift for way, lift in by_lift if lift is not None for ends in way.directions}
+
+
+def driven(scenario: Scenario, agent: Agent) -> Dict[Way, Window]:
+    """The movements of an agent on ways by no lift: how long these take is what it takes from place to place."""
+    rides = {ends for way in scenario.ways_of(agent.name) if way.by is not None for ends in way.directions}
+    return {way: window for way, window in scenario.movements(agent).items() if way not in rides}
+
+
+def with_room_in_lifts(scenario: Scenario) -> Scenario:
+    """The scenario in which each lift holds one robot, unless an objective says what it holds, each of these with the
+    ways by the lift: how long a lift takes would not be true otherwise."""
+    said = {each.lift.name for each in scenario.safety if isinstance(each, LiftHolds)}
+    more = [lift for lift in scenario.lifts if lift.name not in said and _is_shared(scenario, lift)]
+    if not said and not more:
+        return scenario
+    ones = (LiftHolds(Ref(lift.name, lift.span, lift.label or ""), 1, (Who(None, True),), lift.span) for lift in more)
+    safety = (_with_ways(scenario, each) for each in (*scenario.safety, *ones))
+    return replace(scenario, safety=tuple(sorted(safety, key=lambda each: each.last)))
+
+
+def is_said(scenario: Scenario, objective: StatedObjective) -> bool:
+    """False for what `with_room_in_lifts` has added."""
+    return not (isinstance(objective, LiftHolds) and any(lift.span == objective.span for lift in scenario.lifts))
+
+
+def _is_shared(scenario: Scenario, lift: Lift) -> bool:
+    """True where several robots may ride in a lift."""
+    return sum(lift in rides_of(scenario, agent).values() for agent in scenario.agents) > 1
+
+
+def _with_ways(scenario: Scenario, objective: Safety) -> Safety:
+    if not isinstance(objective, LiftHolds):
+        return objective
+    places = {poi.name: Ref(poi.name, poi.span, poi.label or "") for poi in scenario.pois}
+    ways = [way for way in scenario.connections if way.by is not None and way.by.name == objective.lift.name]
+    ends = {frozenset((way.a, way.b)): (way.a, way.b) for way in ways if places.keys() >= {way.a, way.b}}
+    return replace(objective, building=tuple((places[a], places[b]) for a, b in ends.values()))
+
+
+def check_lifts(scenario: Scenario) -> Iterator[Diagnostic]:
+    """Ways that do not go between floors of their lift; lifts that no way goes by, or whose cabin has no pose."""
+    for way in scenario.connections:
+        lift = scenario.lift_on(way)
+        if lift is not None:
+            yield from _on_way(way, lift)
+    posed = any(poi.pose is not None for poi in scenario.pois)
+    for lift in scenario.lifts:
+        if not any(scenario.lift_on(way) is lift for way in scenario.connections):
+            hint = f"write by {lift.name} behind the distance of a way between two of its floors, or delete this line"
+            yield warning("PML472", f"no way goes by {lift.name}", lift.span, hint)
+        elif posed and any(lift.cabin_at(ref.name) is None for ref in lift.floors):
+            message = f"{lift.name} has no pose, but places do: robots would not know where to stand in it"
+            hint = "write the pose of the middle of its cabin behind it: //[x, y, z, qx, qy, qz, qw]"
+            yield warning("PML473", message, lift.span, hint)
+        if _is_shared(scenario, lift):
+            yield from _crowded(scenario, lift)
+
+
+def _crowded(scenario: Scenario, lift: Lift) -> Iterator[Diagnostic]:
+    """Places before a lift at which a robot that waits for it stands, though it has left them."""
+    poses = {poi.name: poi.pose for poi in scenario.pois}
+    near = []
+    for ref in lift.floors:
+        pose, cabin = poses.get(ref.name), lift.cabin_at(ref.name)
+        if pose is not None and cabin is not None and hypot(pose.x - cabin.x, pose.y - cabin.y) < WAITS_AT + _ROOM:
+            near.append(ref.name)
+    if near:
+        far = f"{WAITS_AT + _ROOM:g} m"
+        are = "is" if len(near) == 1 else "are"
+        message = f"{listed(near)} {are} less than {far} from the middle of {lift.name}, where robots wait for it"
+        hint = f"put places {far} away or farther, so that other robots can come there meanwhile"
+        yield warning("PML474", message, lift.span, hint)
+
+
+def _on_way(way: Connection, lift: Lift) -> Iterator[Diagnostic]:
+    floors = [ref.name for ref in lift.floors]
+    for end, span in zip((way.a, way.b), way.ends):
+        if end not in floors:
+            hint = f"write {end} behind at, too, or connect two of {', '.join(floors)}"
+            yield error("PML471", f"{end} is no floor of {lift.name}", span, hint)
+    for ref in way.through[:1]:
+        hint = f"delete through {ref.name}, or write a place between the two"
+        yield error("PML471", f"a way by {lift.name} leads through no door but that of the lift", ref.span, hint)

@@ -1,0 +1,63 @@
+"""What a door or a lift was asked, what it says, and since when that counts. Times are seconds of ROS time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Iterable, Optional, Union
+
+REPEAT = 1.0
+"""Seconds after which what has not done what it was asked is asked again."""
+
+SETTLE = 1.0
+"""Seconds for which what it was asked has to stay true where it was so already: what was reported before may be older
+than an order to the contrary. Half of the time that it may take, where that is less."""
+
+Word = Union[bool, str]
+"""Of a door whether it is open; of a lift the floor at which it is open, "": none, or anywhere."""
+
+
+@dataclass
+class Asking:
+    """`said`: what it reported last, None: nothing that counts; `asked`: what it was asked last, None: nothing."""
+
+    settle: float = SETTLE
+    said: Optional[Word] = None
+    said_at: float = 0.0
+    asked: Optional[Word] = None
+    asked_since: float = 0.0
+    asked_last: float = field(default=float("-inf"))
+
+    def ask(self, what: Word, now: float) -> None:
+        """Have it asked this, unless it was."""
+        if self.asked != what:
+            self.asked, self.asked_since, self.asked_last = what, now, float("-inf")
+
+    def take(self, said: Optional[Word], now: float) -> None:
+        """Take what it reports."""
+        self.said, self.said_at = said, now
+
+    @property
+    def done_at(self) -> Optional[float]:
+        """Return from when on it counts as having done what it was asked, as things stand; None: it does not."""
+        if self.asked is None or self.said != self.asked:
+            return None
+        return self.asked_since if self.said_at > self.asked_since else self.asked_since + self.settle
+
+    @property
+    def ask_at(self) -> float:
+        """Return when it is asked next: at once what is new, and again what it has not done."""
+        if self.asked is None:
+            return float("inf")
+        if self.asked_last == float("-inf"):
+            return self.asked_last
+        return float("inf") if self.said == self.asked or self.asked == "" else self.asked_last + REPEAT
+
+    def is_done(self, now: float) -> bool:
+        """Return True if it has done what it was asked."""
+        return self.done_at is not None and now >= self.done_at
+
+
+def next_moment(several: Iterable[Asking], now: float) -> Optional[float]:
+    """Return when to look again at these, later than now; None: not before the next state or report."""
+    moments = [moment for each in several for moment in (each.ask_at, each.done_at) if moment is not None]
+    return min((moment for moment in moments if now < moment < float("inf")), default=None)
