@@ -22,8 +22,19 @@ ATTEMPTS = 20
 WINDOW = 2.0
 """Seconds for which such a plan may come into force, from its begin on."""
 
+QUIET = 0.2
+"""Seconds for which nothing may be expected to happen where such a plan begins. Not measured."""
+
+FAR = 5.0
+"""Seconds after the first moment at which a plan can come within which one begins that has to come later. Not
+measured."""
+
+MOST_LEAD_TIME = 10.0
+"""Seconds between a request and the first moment at which its plan can come, at most. Not measured."""
+
 PATIENCE = 60.0
-"""Seconds for which an order waits at most for a moment in which nothing ends before a plan can come."""
+"""Seconds for which an order waits at most for a moment in which it is known what the mission will be at when a plan
+can come."""
 
 _UNITS = {"": 0.0, "s": 1.0, "min": 60.0, "h": 3600.0}
 """Units behind the time of an order, in seconds; without one it is in time units of the scenario."""

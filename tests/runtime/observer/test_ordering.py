@@ -155,7 +155,7 @@ def test_a_plan_comes_into_force_when_its_proof_begins_and_no_later_than_that_ho
     assert counter.tick() == [] and counter.mission.state(counter.now).plan == 0
     again = counter.mission.plan_request
     assert again is not None and again.number > request.number and again.ahead > request.ahead
-    assert again.clocks["Cobj"] == pytest.approx(counter.now - 100.0)
+    assert again.clocks["Cobj"] == pytest.approx(counter.now + again.ahead - 100.0)
 
 
 def test_what_happens_meanwhile_is_looked_at_again(counter: Counter) -> None:
@@ -213,6 +213,7 @@ def test_orders_are_looked_at_one_after_the_other(counter: Counter) -> None:
     counter.order("tea1")
     counter.order("tea2")
     assert [each.order for each in counter.answered()] == ["tea1"]
+    counter.mission.on_word(f"bot:bot_kitchen2room1@{counter.mission.seq}", counter.now)
     assert [each.order for each in counter.answered()] == ["tea2"]
     assert counter.mission.state(counter.now).plan == 2 and counter.mission.plan_request is None
 
