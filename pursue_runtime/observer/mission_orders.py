@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Callable, FrozenSet, List, Mapping, Optional, Tuple
 
-from pursue_runtime.model import Move, Position
+from pursue_runtime.model import ORDER_DESK, Move, Position
 from pursue_runtime.observer.foresight import Foreseen, Foresight
 from pursue_runtime.observer.mission_status import MissionStatus
 from pursue_runtime.observer.ordering import (
     ATTEMPTS,
+    CANCEL,
     FAR,
     MOST_LEAD_TIME,
     PATIENCE,
@@ -45,6 +46,8 @@ class MissionOrders(MissionStatus):
                 raise Refused(f"the mission is {self.status}{why}; order it again when it runs")
             if self.ending.says:
                 raise Refused(self.ending.says)
+            if order.how == CANCEL and self._withdraw(order):
+                return self._status_changes(now)
             effect(self.model, self.position(now), order)
             self.ordering.add(order)
         except Refused as refusal:
@@ -52,6 +55,15 @@ class MissionOrders(MissionStatus):
             return []
         self._log("info", f"ordered: {order.text}")
         return self._status_changes(now)
+
+    def _withdraw(self, cancel: PersonOrder) -> bool:
+        """Take back an order that waits for its answer; return False where none does."""
+        order = self.ordering.withdraw(cancel.event)
+        if order is None:
+            return False
+        self._say(self.ordering.say, order.text, "it was cancelled")
+        self.ordering.say(OrderAnswer(cancel.text, True))
+        return True
 
     def _refuse(self, order: PersonOrder, why: str, possible: float = 0.0) -> None:
         """Refuse the order that is looked at."""
@@ -96,8 +108,8 @@ class MissionOrders(MissionStatus):
             self._planning.reset()
             return  # something ends before a plan can come: then the order is looked at again
         after, ahead, spread = foreseen
-        ordered = Ordered(order.event, order.came, done.clocks, WINDOW / self._unit, spread)
-        place = now + ahead * self._unit, order.came
+        ordered = Ordered(order.word, order.came, done.clocks, WINDOW / self._unit, spread)
+        place = now + ahead * self._unit, order.text
         before = self._planning.request
         self._planning.request_plan(place, after, now, ahead, excused, {}, self.ways, ordered)
         request = self._planning.request
@@ -112,7 +124,7 @@ class MissionOrders(MissionStatus):
 
     def _still_comes(self, asked: PlanRequest, order: PersonOrder, excused: FrozenSet[str], now: float) -> bool:
         """Return True while the plan that is asked for can come into force."""
-        mine = asked.order is not None and (asked.order.event, asked.order.came) == (order.event, order.came)
+        mine = asked.order is not None and (asked.order.event, asked.order.came) == (order.word, order.came)
         if not mine or asked[6:9] != (tuple(sorted(excused)), *self.ways.revision()):
             return False
         left = (asked.begin(self._unit) - now) / self._unit
@@ -149,6 +161,7 @@ class MissionOrders(MissionStatus):
         if request is None or request.number != number or request.order is None or order is None:
             return super().on_no_plan(number, why, now)
         self._planning.reset()
+        why = f"no plan without it was found, so it goes on: {why}" if order.how == CANCEL else why
         self._refuse(order, why, (order.within or 0.0) + more if more else 0.0)
         return self._status_changes(now)
 
@@ -167,7 +180,7 @@ class MissionOrders(MissionStatus):
         if now < begin - 1e-9:
             return []  # it is proven from then on
         ordered = proposal.request.order
-        if order is None or (order.event, order.came) != (ordered.event, ordered.came) or self.status != RUNNING:
+        if order is None or (order.word, order.came) != (ordered.event, ordered.came) or self.status != RUNNING:
             self._planning.reset()
             return self._status_changes(now)
         try:
@@ -195,16 +208,32 @@ class MissionOrders(MissionStatus):
         by = 0.0 if done.deadline is None else order.came + done.deadline * self._unit
         self.ordering.answer(OrderAnswer(order.text, True, by))
         self._log("info", f"the order {order.text} is accepted, with plan {self.plan}")
+        if order.how == CANCEL:
+            return self._forget(order, done, now)
         since = {clock: order.came - at * self._unit for clock, at in done.clocks.items()}
         states = self._take(done.moves, now, since=since)
         self.ending.on_order(done.clocks)
         self._since = {}  # nothing that was decided with the plan before stands
         return states
 
+    def _forget(self, order: PersonOrder, done: Effect, now: float) -> List[SystemState]:
+        """Let a promise fall away, in a state with the plan that does without it."""
+        self.ending.on_cancel(done.moves)
+        self._automata.turn(done.moves, now)
+        self._new_state(now)
+        self._event, self._agent = order.word, self.model.of_kind(ORDER_DESK)[0].name
+        self.counts["taken"] += 1
+        moves = self._evaluate(now, "")
+        return [self.state(now), *self._take(moves, now)]
+
     def _conclude(self, trigger: str, reason: str, now: float) -> None:
         super()._conclude(trigger, reason, now)
         for order in tuple(self.ordering.waiting):
             self._refuse(order, f"the mission is {self.status}")
+
+    def _evaluate(self, now: float, why: str) -> Optional[Tuple[Move, ...]]:
+        """Return what objectives do next by themselves."""
+        raise NotImplementedError
 
     def _take(
         self, moves: Optional[Tuple[Move, ...]], now: float, why: str = "", commanded: bool = False,
