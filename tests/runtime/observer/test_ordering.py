@@ -200,12 +200,16 @@ def test_a_restarted_observer_goes_on_with_what_was_ordered_and_accepted() -> No
     call("planned", request.number, answer)
     call("hear", f"controller_bot:_plan_@{request.number}")
     call("order", "tea2")
+    call("order", "urgent tea2 within 40")
+    call("order", "cancel tea1")
+    call("order", "cancel tea2")
     second = Counter.__new__(Counter)
     second.log, second.now = [], first.now
     second.mission = first.fresh()
     replay(second.mission, entries)
     assert second.mission.state(first.now) == first.mission.state(first.now)
     assert second.mission.plan_request == first.mission.plan_request
+    assert [each.text for each in second.mission.ordering.waiting] == ["cancel tea1", "tea2"]
     assert second.mission.state(first.now).clocks["Cobj"] == 11.0
 
 
