@@ -13,6 +13,8 @@ SEEN = "pursue/seen"
 PLAIN_WORDS = "pursue/plain_words"
 ORDERS, ANSWERS = "pursue/orders", "pursue/answers"
 """What people order while a mission is under way, a topic and a service, and the answers."""
+CANCELLED = "_cancelled_"
+"""Behind the event of an order: the event of the state in which it is cancelled."""
 
 START, PING, STOP, FINISH = "_start_", "_ping_", "_stop_", "Finish!"
 PLANNED = "_plan_"

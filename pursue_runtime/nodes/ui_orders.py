@@ -11,6 +11,7 @@ from std_msgs.msg import String
 from pursue_runtime.event_words import ANSWERS, ORDERS
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.node import Ending, subscribe
+from pursue_runtime.observer.ordering import CANCEL, URGENT
 
 
 class UIOrders:
@@ -23,8 +24,11 @@ class UIOrders:
             subscribe(ANSWERS, OrderAnswer, self._on_answer, ending, queue_size=100)
 
     def order(self, text: str) -> bool:
-        """Publish an order, such as `tea within 5 min`; return False for what is none of this scenario."""
-        if self._orders is None or text.split(maxsplit=1)[:1] not in [[word] for word in self._menu]:
+        """Publish an order, such as `tea within 5 min`, or `cancel tea`; return False for what is none of this
+        scenario."""
+        words = text.split(maxsplit=2)
+        named = words[1:2] if words[:1] in ([CANCEL], [URGENT]) and len(words) > 1 else words[:1]
+        if self._orders is None or named not in [[word] for word in self._menu]:
             return False
         self._orders.publish(text)
         return True

@@ -55,6 +55,14 @@ class Ending:
         """Take that an order has started these clocks, with their values when it came."""
         self._ahead.update(clocks)
 
+    def on_cancel(self, moves: Tuple[Move, ...]) -> None:
+        """Take that what was due is wanted no longer."""
+        for name, edge in moves:
+            for bound in self._model.automaton(name).invariants[edge.source]:
+                self._ahead.pop(bound.left, None)
+            if self._awaited is not None:
+                self._awaited.discard(name)
+
     def on_moves(self, moves: Tuple[Move, ...], clocks: Mapping[str, float]) -> None:
         """Take what an event does, at the time of these clocks: some of it may be an answer."""
         for name, edge in moves:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Callable, List, Mapping, Optional, Tuple
+from typing import Callable, FrozenSet, List, Mapping, Optional, Tuple
 
-from pursue_runtime.model import Move
+from pursue_runtime.model import ORDER_DESK, Move, Position
+from pursue_runtime.observer.foresight import Foreseen, Foresight
 from pursue_runtime.observer.mission_status import MissionStatus
 from pursue_runtime.observer.ordering import (
     ATTEMPTS,
+    CANCEL,
+    FAR,
+    MOST_LEAD_TIME,
     PATIENCE,
+    QUIET,
     WINDOW,
     Effect,
     OrderAnswer,
@@ -18,10 +23,9 @@ from pursue_runtime.observer.ordering import (
     effect,
     read_order,
 )
-from pursue_runtime.observer.planning import Ordered, PlanRequest, Proposal, covers
+from pursue_runtime.observer.planning import MIN_LEAD_TIME, Ordered, PlanRequest, Proposal, covers
 from pursue_runtime.sentences import as_sentence, in_words
 from pursue_runtime.state import LIVE, RUNNING, SystemState
-from pursue_runtime.zones import INFINITY
 
 BUSY = "what is under way changes faster than plans are found; order it again later"
 """Why an order is refused that no plan came for in time."""
@@ -42,6 +46,8 @@ class MissionOrders(MissionStatus):
                 raise Refused(f"the mission is {self.status}{why}; order it again when it runs")
             if self.ending.says:
                 raise Refused(self.ending.says)
+            if order.how == CANCEL and self._withdraw(order):
+                return self._status_changes(now)
             effect(self.model, self.position(now), order)
             self.ordering.add(order)
         except Refused as refusal:
@@ -49,6 +55,15 @@ class MissionOrders(MissionStatus):
             return []
         self._log("info", f"ordered: {order.text}")
         return self._status_changes(now)
+
+    def _withdraw(self, cancel: PersonOrder) -> bool:
+        """Take back an order that waits for its answer; return False where none does."""
+        order = self.ordering.withdraw(cancel.event)
+        if order is None:
+            return False
+        self._say(self.ordering.say, order.text, "it was cancelled")
+        self.ordering.say(OrderAnswer(cancel.text, True))
+        return True
 
     def _refuse(self, order: PersonOrder, why: str, possible: float = 0.0) -> None:
         """Refuse the order that is looked at."""
@@ -75,29 +90,65 @@ class MissionOrders(MissionStatus):
 
     def _request_with(self, order: PersonOrder, done: Effect, now: float) -> None:
         """Request a plan from the state behind the order, unless there is a request. Raises Refused after too many."""
-        passed = (now - order.came) / self._unit
-        if done.deadline is not None and passed >= done.deadline:
-            raise Refused("its time was over before a plan was found")
-        ends = [delay for name, delay in self._bounds(self.position(now)) if name not in self.late | set(self.lost)]
         if self.ways.turns:
             raise Refused("a robot that cannot go on is about to turn round; order it again then")
-        ahead = max(self._planning.lead_time, self.ordering.lead_time) / self._unit
-        if min(ends, default=INFINITY) < ahead:
+        excused = frozenset(self.late | set(self.lost))
+        asked = self._asked()
+        if asked is not None and self._still_comes(asked, order, excused, now):
+            return
+        if done.deadline is not None and (now - order.came) / self._unit >= done.deadline:
+            raise Refused("its time was over before a plan was found")
+        if asked is not None and self._planning.request is not None and now > asked.begin(self._unit):
+            self.ordering.lead_time = min(MOST_LEAD_TIME, (now - asked.stamp) * 1.3 + MIN_LEAD_TIME)  # it takes longer
+        least = max(MIN_LEAD_TIME, self.ordering.lead_time) / self._unit
+        foreseen = self._foresee(order, excused, now, least, least + FAR / self._unit)
+        if foreseen is None:
             if now > order.came + PATIENCE:
                 raise Refused(BUSY)
             self._planning.reset()
             return  # something ends before a plan can come: then the order is looked at again
-        ordered = Ordered(order.event, order.came, done.clocks, WINDOW / self._unit)
-        excused = frozenset(self.late | set(self.lost))
-        place = self.counts["taken"], order.came
+        after, ahead, spread = foreseen
+        ordered = Ordered(order.word, order.came, done.clocks, WINDOW / self._unit, spread)
+        place = now + ahead * self._unit, order.text
         before = self._planning.request
-        self._planning.request_plan(
-            place, done.after(self.position(now), passed), now, ahead, excused, {}, self.ways, ordered
-        )  # fmt: skip
+        self._planning.request_plan(place, after, now, ahead, excused, {}, self.ways, ordered)
         request = self._planning.request
         self.ordering.attempts += request is not None and request is not before
         if self._planning.no_plan_reason or self.ordering.attempts > ATTEMPTS:
             raise Refused(BUSY)
+
+    def _asked(self) -> Optional[PlanRequest]:
+        """Return the request that is looked at, or whose plan goes to the controllers."""
+        proposal = self._planning.proposal
+        return self._planning.request or (None if proposal is None else proposal.request)
+
+    def _still_comes(self, asked: PlanRequest, order: PersonOrder, excused: FrozenSet[str], now: float) -> bool:
+        """Return True while the plan that is asked for can come into force."""
+        mine = asked.order is not None and (asked.order.event, asked.order.came) == (order.word, order.came)
+        if not mine or asked[6:9] != (tuple(sorted(excused)), *self.ways.revision()):
+            return False
+        left = (asked.begin(self._unit) - now) / self._unit
+        if left > 0.0:
+            foreseen = self._foresee(order, excused, now, left, left)
+            return foreseen is not None and asked.is_of(foreseen.position, 0.0)
+        return left >= -WINDOW / self._unit and asked.is_of(self._behind(order, self.position(now), now), -left)
+
+    def _foresee(
+        self, order: PersonOrder, gone: FrozenSet[str], now: float, least: float, most: float
+    ) -> Optional[Foreseen]:
+        """Return the state behind the order that comes in so many time units; None: that is not known."""
+        foresight = Foresight(self._automata, self._cover, gone)
+        found = foresight.find(self.position(now), least, most, QUIET / self._unit)
+        if found is None:
+            return None
+        try:
+            return found._replace(position=self._behind(order, found.position, now + found.begins * self._unit))
+        except Refused:
+            return None
+
+    def _behind(self, order: PersonOrder, position: Position, at: float) -> Position:
+        """Return the position behind the order at that time. Raises Refused."""
+        return effect(self.model, position, order).after(position, (at - order.came) / self._unit)
 
     def on_no_plan(self, number: int, why: str, now: float) -> List[SystemState]:
         """Take that there is no plan for the request of this number: an order is refused, or as in MissionStatus."""
@@ -110,6 +161,7 @@ class MissionOrders(MissionStatus):
         if request is None or request.number != number or request.order is None or order is None:
             return super().on_no_plan(number, why, now)
         self._planning.reset()
+        why = f"no plan without it was found, so it goes on: {why}" if order.how == CANCEL else why
         self._refuse(order, why, (order.within or 0.0) + more if more else 0.0)
         return self._status_changes(now)
 
@@ -118,17 +170,17 @@ class MissionOrders(MissionStatus):
     def order_begins(self) -> Optional[float]:
         """Return when an acknowledged plan with an order may come into force; None: there is none."""
         proposal = self._planning.acknowledged()
-        return None if proposal is None or proposal.request.order is None else _begin(proposal.request, self._unit)
+        return None if proposal is None or proposal.request.order is None else proposal.request.begin(self._unit)
 
     def _put_plan_in_force(self, now: float) -> List[SystemState]:
         proposal, order = self._planning.acknowledged(), self.ordering.first
         if proposal is None or proposal.request.order is None or self.status not in LIVE:
             return super()._put_plan_in_force(now)
-        begin = _begin(proposal.request, self._unit)
+        begin = proposal.request.begin(self._unit)
         if now < begin - 1e-9:
             return []  # it is proven from then on
         ordered = proposal.request.order
-        if order is None or (order.event, order.came) != (ordered.event, ordered.came) or self.status != RUNNING:
+        if order is None or (order.word, order.came) != (ordered.event, ordered.came) or self.status != RUNNING:
             self._planning.reset()
             return self._status_changes(now)
         try:
@@ -138,9 +190,8 @@ class MissionOrders(MissionStatus):
             self._refuse(order, str(refusal))
             return self._status_changes(now)
         position = done.after(self.position(now), (now - order.came) / self._unit)
-        asked = proposal.request
-        if (position.locations, position.values) != (asked.locations, asked.values):
-            self._planning.reset()  # an assumption was broken: it is proven for another state
+        if not proposal.request.is_of(position, (now - begin) / self._unit):
+            self._planning.reset()  # it is proven for another state
             return self._status_changes(now)
         late = now > begin + ordered.window * self._unit + 1e-9
         if late or not covers(proposal.cover, position, self._tolerance):
@@ -157,16 +208,32 @@ class MissionOrders(MissionStatus):
         by = 0.0 if done.deadline is None else order.came + done.deadline * self._unit
         self.ordering.answer(OrderAnswer(order.text, True, by))
         self._log("info", f"the order {order.text} is accepted, with plan {self.plan}")
+        if order.how == CANCEL:
+            return self._forget(order, done, now)
         since = {clock: order.came - at * self._unit for clock, at in done.clocks.items()}
         states = self._take(done.moves, now, since=since)
         self.ending.on_order(done.clocks)
         self._since = {}  # nothing that was decided with the plan before stands
         return states
 
+    def _forget(self, order: PersonOrder, done: Effect, now: float) -> List[SystemState]:
+        """Let a promise fall away, in a state with the plan that does without it."""
+        self.ending.on_cancel(done.moves)
+        self._automata.turn(done.moves, now)
+        self._new_state(now)
+        self._event, self._agent = order.word, self.model.of_kind(ORDER_DESK)[0].name
+        self.counts["taken"] += 1
+        moves = self._evaluate(now, "")
+        return [self.state(now), *self._take(moves, now)]
+
     def _conclude(self, trigger: str, reason: str, now: float) -> None:
         super()._conclude(trigger, reason, now)
         for order in tuple(self.ordering.waiting):
             self._refuse(order, f"the mission is {self.status}")
+
+    def _evaluate(self, now: float, why: str) -> Optional[Tuple[Move, ...]]:
+        """Return what objectives do next by themselves."""
+        raise NotImplementedError
 
     def _take(
         self, moves: Optional[Tuple[Move, ...]], now: float, why: str = "", commanded: bool = False,
@@ -175,7 +242,3 @@ class MissionOrders(MissionStatus):
         """Apply the moves of one event."""
         raise NotImplementedError
 
-
-def _begin(request: PlanRequest, unit: float) -> float:
-    """When the proof of a plan begins."""
-    return request.stamp + request.ahead * unit

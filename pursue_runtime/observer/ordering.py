@@ -7,10 +7,10 @@ state behind it. Times are seconds of ROS time, unless they are said to be time 
 from __future__ import annotations
 
 import re
-from typing import Dict, List, NamedTuple, Optional, Tuple
+from typing import Dict, Iterator, List, NamedTuple, Optional, Tuple
 
-from pursue_runtime.event_words import one_line
-from pursue_runtime.model import ORDER_DESK, Edge, Model, Move, Position
+from pursue_runtime.event_words import CANCELLED, one_line
+from pursue_runtime.model import ORDER_DESK, Automaton, Edge, Model, Move, Position
 from pursue_runtime.sentences import marked
 
 MOST_WAITING = 20
@@ -22,25 +22,50 @@ ATTEMPTS = 20
 WINDOW = 2.0
 """Seconds for which such a plan may come into force, from its begin on."""
 
+QUIET = 0.2
+"""Seconds for which nothing may be expected to happen where such a plan begins. Not measured."""
+
+FAR = 5.0
+"""Seconds after the first moment at which a plan can come within which one begins that has to come later. Not
+measured."""
+
+MOST_LEAD_TIME = 10.0
+"""Seconds between a request and the first moment at which its plan can come, at most. Not measured."""
+
 PATIENCE = 60.0
-"""Seconds for which an order waits at most for a moment in which nothing ends before a plan can come."""
+"""Seconds for which an order waits at most for a moment in which it is known what the mission will be at when a plan
+can come."""
 
 _UNITS = {"": 0.0, "s": 1.0, "min": 60.0, "h": 3600.0}
 """Units behind the time of an order, in seconds; without one it is in time units of the scenario."""
 
-_TEXT = re.compile(r"\s*([A-Za-z]\w*)(?:\s+within\s+(\d{1,9}(?:\.\d{1,6})?)\s*(s|min|h)?)?\s*", re.ASCII)
+CANCEL, URGENT = "cancel", "urgent"
+"""The words before an order that withdraw it, or have it looked at before those without such a word."""
 
-EXPECTED = "the name of an order, perhaps with a time, as in: tea within 300 (time units), tea within 5 min"
+_TEXT = re.compile(
+    r"\s*(?:(cancel|urgent)\s+)?([A-Za-z]\w*)(?:\s+within\s+(\d{1,9}(?:\.\d{1,6})?)\s*(s|min|h)?)?\s*", re.ASCII
+)
+
+EXPECTED = (
+    "the name of an order, perhaps with a time, as in: tea within 300 (time units), tea within 5 min, urgent tea; "
+    "or cancel tea"
+)
 
 
 class PersonOrder(NamedTuple):
     """An order as it came: its event, within how many time units it is to be answered (None: as the scenario promises),
-    when it came, and the text that it is called by."""
+    when it came, the text that it is called by, and the word before it (CANCEL, URGENT, "": none)."""
 
     event: str
     within: Optional[float]
     came: float
     text: str
+    how: str = ""
+
+    @property
+    def word(self) -> str:
+        """Return the event of the state in which it is taken."""
+        return self.event + CANCELLED if self.how == CANCEL else self.event
 
 
 class OrderAnswer(NamedTuple):
@@ -56,6 +81,8 @@ class OrderAnswer(NamedTuple):
 
     def text(self, now: float) -> str:
         """Return the answer as a sentence at the time `now`, with names in braces."""
+        if self.order.startswith(f"{CANCEL} "):
+            return "cancelled" if self.accepted else f"not cancelled: {self.why}"
         if self.accepted:
             return "accepted" + (f": answered in {max(0.0, self.by - now):.0f} s at the latest" if self.by else "")
         could = f"; it could be promised within {self.possible:g} time units" if self.possible else ""
@@ -82,14 +109,14 @@ class Refused(Exception):
 
 
 def read_order(text: str, came: float, unit: float) -> PersonOrder:
-    """Read `event` or `event within 5 min`; `unit`: seconds per time unit. Raises Refused."""
+    """Read `event`, `urgent event within 5 min` or `cancel event`; `unit`: seconds per time unit. Raises Refused."""
     match = _TEXT.fullmatch(text) if len(text) <= 200 else None
-    if match is None:
+    how, event, number, unit_name = match.groups() if match is not None else ("", "", None, None)
+    if match is None or (how == CANCEL and number is not None):
         raise Refused(f"this is no order; expected {EXPECTED}")
-    event, number, unit_name = match.groups()
     seconds = _UNITS[unit_name or ""]
     within = None if number is None else float(number) * seconds / unit if seconds else float(number)
-    return PersonOrder(event, within, came, called(text))
+    return PersonOrder(event, within, came, called(text.strip()), how or "")
 
 
 def called(text: str) -> str:
@@ -103,6 +130,8 @@ def effect(model: Model, position: Position, order: PersonOrder) -> Effect:
     if order.event not in orders:
         known = f"expected one of {', '.join(map(marked, orders))}" if orders else "this scenario has no orders"
         raise Refused(f"nobody can order {order.event}; {known}")
+    if order.how == CANCEL:
+        return Effect(tuple(_withdrawn(model, position, order.event)), {}, None)
     (desk,) = model.of_kind(ORDER_DESK)
     closed = _edge(desk.edges, order.event).assign
     open_ = position._replace(values={**position.values, **dict.fromkeys(closed, 1)})
@@ -126,6 +155,30 @@ def effect(model: Model, position: Position, order: PersonOrder) -> Effect:
         most = f"{min(limits.values()):g}"
         raise Refused(f"the scenario promises {marked(order.event)} within {most} time units: order it within that")
     return Effect(moves, {clock: limit - order.within for clock, limit in limits.items()}, order.within)
+
+
+def _withdrawn(model: Model, position: Position, event: str) -> List[Move]:
+    """Return what the objectives of an order do when it is withdrawn: each as if the one that waits longest had its
+    answer. Raises Refused where none waits for one, or somebody is at it."""
+    moves: List[Move] = []
+    for automaton in model.of_kind("safety"):
+        answers = list(_answers(model, automaton, position)) if _listens(automaton.edges, event) else []
+        for ends in (model.joint_move(position, edge.word, timed=False) for edge in answers):
+            if ends is not None and ends[0].edge.is_end:
+                raise Refused(f"{marked(ends[0].automaton)} is at it already")
+        moves += [Move(automaton.name, edge) for edge in answers[:1]]
+    if not moves:
+        raise Refused(f"no {marked(event)} waits for its answer")
+    return moves
+
+
+def _answers(model: Model, automaton: Automaton, position: Position) -> Iterator[Edge]:
+    """The edges with which what an objective waits for comes in time."""
+    here, bounds = position.locations[automaton.name], automaton.invariants
+    for edge in automaton.edges_from(here) if bounds[here] else ():
+        answered = edge.sync == "receive" and not bounds[edge.target] and (automaton.name, edge.target) not in model.bad
+        if answered and edge.allowed(position.values):
+            yield edge
 
 
 def _edge(edges: Tuple[Edge, ...], event: str) -> Edge:
@@ -162,8 +215,22 @@ class Ordering:
         """Take an order. Raises Refused where too many wait."""
         if len(self.waiting) == MOST_WAITING:
             raise Refused(f"{MOST_WAITING} orders wait for their answer already; order it again later")
-        self.waiting.append(order)
+        first = sum(bool(each.how) for each in self.waiting) if order.how else len(self.waiting)
+        self.waiting.insert(first, order)
         self._count += 1
+        if first == 0:
+            self.attempts, self.lead_time = 0, 0.0
+
+    def withdraw(self, event: str) -> Optional[PersonOrder]:
+        """Take back the newest order of an event that waits for its answer, and return it; None: none waits."""
+        for order in sorted(self.waiting, key=lambda each: -each.came):
+            if order.event == event and order.how != CANCEL:
+                if order is self.first:
+                    self.attempts, self.lead_time = 0, 0.0
+                self.waiting.remove(order)
+                self._count += 1
+                return order
+        return None
 
     def answer(self, answer: OrderAnswer) -> None:
         """Answer the first order."""

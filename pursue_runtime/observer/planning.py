@@ -17,23 +17,33 @@ MIN_LEAD_TIME = 1.0
 MOST_LATE_PLANS = 5
 """Plans in a row that may arrive too late to be put in force."""
 
+EXACT = 0.001
+"""Time units by which clocks may differ that are differences of the same two times. Not measured."""
+
 UNKNOWN = 1000
 """More requests than a mission can have made without a trace of them in the journal."""
 
 
+Spread = Mapping[str, Mapping[str, float]]
+"""By how much more or less clocks of a foreseen state may be, in time units: for each the events on whose moments its
+own depends, and by how much each of them may be sooner or later than expected. Clocks that are not named are exact."""
+
+
 class Ordered(NamedTuple):
     """What a person has ordered, in the state of a request: the event, when it came (seconds), the clocks that it
-    starts, with the values that they began with, and for how many time units its plan may come into force once it has
-    begun."""
+    starts, with the values that they began with, for how many time units its plan may come into force once it has
+    begun, and by what clocks of the state may differ, which is foreseen."""
 
     event: str
     came: float
     clocks: Dict[str, float]
     window: float
+    spread: Spread
 
 
 class PlanRequest(NamedTuple):
-    """A request for a plan from this state; clocks are those at `stamp` (seconds), `ahead` is in time units.
+    """A request for a plan from this state; clocks are those at `stamp` (seconds), `ahead` is in time units. With an
+    `order` the state is that of its begin: `ahead` time units after the stamp.
 
     The plan must not rely on the agents in `excused`, nor send anybody along the ways in `blocked`, or the agent alone
     that stands behind a way. The robots in `turning` turn round when it begins, and may be back at any time. Those in
@@ -59,7 +69,30 @@ class PlanRequest(NamedTuple):
         asked = {key: value for key, value in self._asdict().items() if key not in own}
         if self.order is None:
             return asked
-        return {**asked, "window": self.order.window, "sooner": self.order.clocks}
+        ordered = {"window": self.order.window, "sooner": self.order.clocks, "spread": self.order.spread}
+        return {**asked, "ahead": 0.0, **ordered}
+
+    def begin(self, unit: float) -> float:
+        """Return when the proof of its plan begins, in seconds; `unit`: those of a time unit."""
+        return self.stamp + self.ahead * unit
+
+    def is_of(self, position: Position, since: float) -> bool:
+        """Return True where a mission is where the order's plan is proven from, so many time units after its begin."""
+        if (position.locations, position.values) != (self.locations, self.values):
+            return False
+        off = {clock: position.clocks[clock] - value - since for clock, value in self.clocks.items()}
+        spread = {} if self.order is None else self.order.spread
+        exact = all(abs(value) <= EXACT for clock, value in off.items() if clock not in spread)
+        pairs = ((one, other) for one in spread for other in ("", *spread))
+        return exact and all(
+            abs(off[one] - off.get(other, 0.0)) <= apart(spread[one], spread.get(other, {})) + EXACT
+            for one, other in pairs
+        )
+
+
+def apart(one: Mapping[str, float], other: Mapping[str, float]) -> float:
+    """Return by how much more or less the difference of two clocks may be: what both have in common cancels out."""
+    return sum(value for key, value in (*one.items(), *other.items()) if (key in one) != (key in other))
 
 
 class Proposal(NamedTuple):

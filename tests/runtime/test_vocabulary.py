@@ -12,7 +12,7 @@ from pursue_runtime.state import SystemState
 from pursue_runtime.ui.mission_view import possible_words
 from pursue_runtime.ui.page import Facts, FloorPlan, Page
 from pursue_runtime.vocabulary import Deed, deed, instruction, place, sentence, where
-from tests.runtime.models import model_data, mover, state, worker
+from tests.runtime.models import desk, model_data, mover, state, worker
 
 
 def shouter(kind: str) -> Dict[str, Any]:
@@ -79,3 +79,10 @@ def test_what_is_done_on_the_way_is_no_setting_off_on_the_page_and_the_terminal(
     labels = {button["word"]: button["label"] for button in page.scene()["buttons"]}
     assert (labels["shout"], labels["bot_a2b"]) == ("call out", "front desk → b")
     assert sentence(MODEL, under_way(4, "shout"), now) == "Porter 1 does call out"
+
+
+def test_an_order_is_accepted_or_cancelled() -> None:
+    model = Model({**model_data(mover("bot", "robot", 9), desk("tea")), "labels": {"tea": "Green tea"}})
+    for event, says in (("tea", "is ordered, and accepted"), ("tea_cancelled_", "is cancelled")):
+        now = state(model, 4, 100.0, dict.fromkeys(model.clocks, 2.0), event=event, agent="order_desk")
+        assert sentence(model, now, None) == f"Green tea {says}"

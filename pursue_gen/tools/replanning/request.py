@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any, Dict, FrozenSet, Iterator, List, Mapping, Tuple
+from typing import Any, Dict, FrozenSet, Iterable, Iterator, List, Mapping, Tuple
 
 from pursue_gen.diagnostics import PursueError, Severity, error
 from pursue_gen.language.checks import check_reading
@@ -30,7 +30,8 @@ class Request:
     plan, in its lines; their automata are in the state. The plan may come into force up to `window` time units after
     its begin. `sooner`: the clocks that an order of a person has started, with how much sooner it is to be answered
     than the scenario promises. `shares`: the automata of robots that keep those promises by the workspace's plan, for
-    each of its shares.
+    each of its shares. `spread`: the state is foreseen, and by so much more or less its clocks may be: for each
+    the parts of that, and those that two have in common are the same for both.
     """
 
     scenario: Scenario
@@ -50,6 +51,7 @@ class Request:
     shares: Tuple[Tuple[FrozenSet[str], FrozenSet[str]], ...] = ()
     window: Fraction = Fraction(0)
     sooner: Mapping[str, Fraction] = field(default_factory=dict)
+    spread: Mapping[str, Mapping[str, Fraction]] = field(default_factory=dict)
 
 
 def read_request(data: object) -> Request:
@@ -87,7 +89,8 @@ def read_request(data: object) -> Request:
         follows=_lines(game.get("follows", ()), "follows", "a list of lines of a plan, [] for none"),
         shares=tuple(_shares(game.get("shares", ()))),
         window=_time(request.get("window", 0), "window"),
-        sooner={key: _time(value, key) for key, value in _object(request.get("sooner", {}), "sooner").items()},
+        sooner=_times(request, "sooner"),
+        spread={key: _times(each, key) for key, each in _tables(request, "spread")},
     )
 
 
@@ -198,6 +201,14 @@ def _text(data: Mapping[str, Any], key: str, name: str) -> str:
     if not isinstance(value, str):
         raise wrong(f"{key} is {_shown(value)}", "text")
     return value
+
+
+def _times(request: Mapping[str, Any], name: str) -> Dict[str, Fraction]:
+    return {key: _time(value, key) for key, value in _object(request.get(name, {}), name).items()}
+
+
+def _tables(request: Mapping[str, Any], name: str) -> Iterable[Tuple[str, Dict[str, Any]]]:
+    return [(key, {key: _object(each, key)}) for key, each in _object(request.get(name, {}), name).items()]
 
 
 def _time(value: Any, name: str) -> Fraction:

@@ -24,6 +24,7 @@ from pursue_gen.tools.replay.record import MissionRecord
 from pursue_gen.tools.replay.robots import Done, check_robots
 from pursue_gen.tools.replay.steps import ReplayedStep, aged, change, delays, where
 from pursue_gen.tools.replay.word_matches import match_words, unmatched_words
+from pursue_runtime.event_words import CANCELLED
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, LOST, RUNNING, WAITING, WON, SystemState
 
@@ -219,7 +220,7 @@ class _Checker:
                 self._ordered(resets, state)
         elif self._turned(before, state):
             self.turns.append((before, state, "", False))
-        elif state.discrete() != before.discrete():
+        elif not self._cancelled(before, state) and state.discrete() != before.discrete():
             could = ", ".join(self.moves.possible(place_of(before))) or "nothing"
             what = f"{state.event} by {state.agent}" if state.event else "what happened"
             changed = change(before, state)
@@ -239,7 +240,7 @@ class _Checker:
     def _with_order(self, before: SystemState, state: SystemState) -> SystemState:
         """The state before with its desk open where an order of a person is taken, together with the plan for it."""
         plan = self._record.plans.get(state.plan, {})
-        if state.agent != names.ORDER_DESK or names.DESK_OPEN not in before.values:
+        if state.agent != names.ORDER_DESK or names.DESK_OPEN not in before.values or state.event.endswith(CANCELLED):
             return before
         if state.plan == before.plan or plan.get("order") != state.event:
             self._report(FAULT, "order", state, f"{state.event} was taken without a plan that is proven with it")
@@ -283,6 +284,16 @@ class _Checker:
         for name in changed:
             self._report(WORLD, "turned", state, f"{name} turned round: it could not go on")
         return True
+
+    def _cancelled(self, before: SystemState, state: SystemState) -> bool:
+        """True where an order is wanted no longer, with a plan that does without it."""
+        event = state.event[: -len(CANCELLED)]
+        if (event + CANCELLED, state.agent) != (state.event, names.ORDER_DESK):
+            return False
+        if state.plan == before.plan or self._record.plans.get(state.plan, {}).get("order") != state.event:
+            self._report(FAULT, "order", state, f"{event} was cancelled without a plan that is proven without it")
+        self._report(NOTE, "order", state, f"{event} was cancelled: what it asked for is not due any more")
+        return self.moves.is_withdrawn(event, place_of(before), place_of(state))
 
     def _clocks_at(self, state: SystemState) -> Dict[str, float]:
         return {clock: (state.stamp - zero) / state.unit for clock, zero in self._zeros.items()}

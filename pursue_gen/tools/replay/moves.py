@@ -112,6 +112,17 @@ class Moves:
                 if edge.sync is None and edge.target == bad:
                     yield ((name, edge),)
 
+    def is_withdrawn(self, event: str, place: DiscreteState, later: DiscreteState) -> bool:
+        """True where the objectives that an order begins change as if it had been answered, and nothing else does."""
+        move: List[Part] = []
+        for name, there in later.locations.items():
+            own = [edge for (of, _), edges in self._edges.items() if of == name for edge in edges if edge.sync]
+            asks = any(edge.sync and edge.sync.channel == event and not edge.sync.sends for edge in own)
+            answers = [edge for edge in self._enabled(name, place) if edge.sync and not edge.sync.sends]
+            if asks and there != place.locations[name]:
+                move += [(name, edge) for edge in answers if edge.target == there][:1]
+        return bool(move) and after(tuple(move), place)[0] == later
+
     def way_back(self, place: DiscreteState, robot: str) -> Optional[Part]:
         """How a robot that moves there would set out on the same way in the other direction; None if it cannot."""
         here = place.locations.get(robot, "")

@@ -35,6 +35,12 @@ class OpenRequests:
         """How often each was called upon so far, and how late it was answered at most."""
         return self._duties
 
+    def on_cancel(self, event: str) -> None:
+        """The oldest request with this event is wanted no longer."""
+        for number, request in self._requests.items():
+            if event == request.trigger.name:
+                del self._waiting[number][:1]
+
     def on_event(self, event: str, at: float, latest: float) -> Iterator[int]:
         """An event happens, "" where none does: the numbers of those whose oldest one has waited for too long now.
         `latest`: the moment as deadlines count it."""

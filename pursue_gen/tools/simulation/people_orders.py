@@ -1,4 +1,5 @@
-"""People who order in a simulated mission: at any time, what the scenario lets them, as soon as they like."""
+"""People who order in a simulated mission: at any time, what the scenario lets them, as soon as they like, and who
+change their minds."""
 
 from __future__ import annotations
 
@@ -13,6 +14,9 @@ from pursue_gen.tools.simulation.stage import Stage
 USUAL = 60.0
 """Time units between orders where none has a deadline. Not measured."""
 
+CANCELLED, URGENT = 0.2, 0.1
+"""The shares of orders that are cancelled some time later, and that are urgent. Not measured."""
+
 
 class PeopleOrders:
     """Orders of a mission, which `order` gets as texts: one after the other, at random times."""
@@ -26,7 +30,7 @@ class PeopleOrders:
             if event in self._menu:
                 self._deadlines[event] = min(longest, self._deadlines.get(event, longest))
         self._events, self._order = events, order
-        self._draw = random.Random(f"{seed}/orders")
+        self._draw, self._mood = random.Random(f"{seed}/orders"), random.Random(f"{seed}/mood")
 
     def begin(self) -> None:
         """Order from now on, where there is something to order."""
@@ -38,5 +42,9 @@ class PeopleOrders:
         event = self._draw.choice(self._menu)
         deadline = self._deadlines.get(event)
         sooner = deadline is not None and self._draw.random() < 0.5
-        self._order(f"{event} within {self._draw.uniform(0.2, 1.0) * (deadline or 0):.1f}" if sooner else event)
+        text = f"{event} within {self._draw.uniform(0.2, 1.0) * (deadline or 0):.1f}" if sooner else event
+        self._order(f"urgent {text}" if self._mood.random() < URGENT else text)
+        if self._mood.random() < CANCELLED:
+            later = self._events.now + self._mood.uniform(0, 0.5) * (deadline or USUAL)
+            self._events.schedule(later, lambda: self._order(f"cancel {event}"))
         self.begin()

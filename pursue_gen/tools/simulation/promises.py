@@ -14,11 +14,12 @@ from pursue_gen.language.conditions import EventOrCondition
 from pursue_gen.language.network_names import going, has_happened
 from pursue_gen.language.objectives.base import Breaks
 from pursue_gen.language.objectives.request import is_further
-from pursue_gen.language.scenario import Endurance, Ref, Request, Safety, Scenario
+from pursue_gen.language.scenario import Endurance, Ref, Request, Respond, Safety, Scenario
 from pursue_gen.tools.simulation.charges import Charges
 from pursue_gen.tools.simulation.meaning import holds
 from pursue_gen.tools.simulation.open_requests import Duty, OpenRequests
 from pursue_gen.tools.simulation.recorder import EPSILON
+from pursue_runtime.event_words import CANCELLED
 from pursue_runtime.locations import is_action, is_under_way, place_of
 from pursue_runtime.state import LOST, WON, SystemState
 
@@ -86,6 +87,8 @@ class Promises:
         event = self._events.get(word, "")
         self._seq = max(self._seq, state.seq)
         visited = self._visited(state)
+        if word.endswith(CANCELLED) and word not in self._events:
+            self._cancel(word[: -len(CANCELLED)])
         late = [number for number in range(len(self._scenario.safety)) if self._is_empty(number, latest)]
         late += self._open.on_event(event, at, latest)
         self._charges.on_state(state.locations, at)
@@ -109,6 +112,14 @@ class Promises:
             self._check(state)
             self._check_batteries(state, at)
             self._check_assumed(state)
+
+    def _cancel(self, event: str) -> None:
+        """What an order asks for is wanted no longer."""
+        self._open.on_cancel(event)
+        for number, safety in enumerate(self._scenario.safety):
+            if isinstance(safety, Respond) and isinstance(safety.trigger, Ref) and safety.trigger.name == event:
+                self._since.pop(number, None)
+                self._called.pop(number, None)
 
     def _count(self, at: float) -> None:
         """Counts what is called upon since this moment, and takes down how late it is answered."""

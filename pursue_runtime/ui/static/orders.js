@@ -12,18 +12,25 @@ function setOrders() {
     button.dataset.word = word;
     onPress(button, () => {
       const within = $("within").value.trim();
-      ask({ do: "order", word: within === "" ? word : `${word} within ${within}`, seq: view.seq });
-      button.dataset.sent = "true";
-      setTimeout(() => { delete button.dataset.sent; refresh(); }, SENT);
-      refresh();
+      send(button, within === "" ? word : `${word} within ${within}`);
     });
     return button;
   }));
 }
 
+function send(button, word) {
+  ask({ do: "order", word, seq: view.seq });
+  button.dataset.sent = "true";
+  setTimeout(() => { delete button.dataset.sent; refresh(); }, SENT);
+  refresh();
+}
+
 function showOrders(here) {
   for (const button of $("order-buttons").children) {
     enable(button, here && view.status === "running" && button.dataset.sent !== "true" && $("within").checkValidity());
+  }
+  for (const button of document.querySelectorAll("#answers button")) {
+    enable(button, here && view.status === "running" && button.dataset.sent !== "true");
   }
   const known = JSON.stringify(view.ordered);
   if ($("answers").dataset.known === known) return;
@@ -31,6 +38,12 @@ function showOrders(here) {
   $("answers").replaceChildren(...view.ordered.map(({ at, order, accepted, text }) => {
     const line = make("li", accepted ? "good" : "bad");
     line.append(make("span", "at", units(at)), make("span", "", `${shown(order)}: ${text}`));
+    if (accepted && !order.startsWith("cancel ")) {
+      const button = make("button", "small", "Cancel"), word = order.replace(/^urgent /, "").split(" ")[0];
+      button.type = "button";
+      onPress(button, () => send(button, `cancel ${word}`));
+      line.append(button);
+    }
     return line;
   }));
 }

@@ -68,7 +68,9 @@ def test_the_ui_publishes_orders_of_its_scenario_alone_and_gets_the_answers(grap
     model = Model(model_data(mover("bot", "robot", 9), desk("tea")))
     orders = UIOrders(model, None, lambda *answer: answers.append(answer))  # type: ignore[arg-type]
     assert orders.order("tea within 3") and not any(map(orders.order, ("coffee", "", "teapot")))
-    assert graph["published"] == ["tea within 3"]
+    assert orders.order("cancel tea") and orders.order("urgent tea within 3") and not orders.order("cancel")
+    assert graph["published"] == ["tea within 3", "cancel tea", "urgent tea within 3"]
+    assert not any(map(orders.order, ("cancel coffee", "urgent", "cancel cancel tea")))
     graph["pursue/answers"](SimpleNamespace(order="tea", accepted=True, text="accepted"))
     assert answers == [("tea", True, "accepted")]
 

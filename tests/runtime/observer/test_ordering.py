@@ -16,7 +16,7 @@ from pursue_gen.workspace.model_file import model_data
 from pursue_runtime.model import Model
 from pursue_runtime.observer.journal import CALLS, replay
 from pursue_runtime.observer.mission import Mission
-from pursue_runtime.observer.ordering import MOST_WAITING, WINDOW, OrderAnswer, Refused, read_order
+from pursue_runtime.observer.ordering import MOST_WAITING, WINDOW, OrderAnswer, Refused, effect, read_order
 from pursue_runtime.strategy import read_cover
 
 TEA = """\
@@ -155,7 +155,7 @@ def test_a_plan_comes_into_force_when_its_proof_begins_and_no_later_than_that_ho
     assert counter.tick() == [] and counter.mission.state(counter.now).plan == 0
     again = counter.mission.plan_request
     assert again is not None and again.number > request.number and again.ahead > request.ahead
-    assert again.clocks["Cobj"] == pytest.approx(counter.now - 100.0)
+    assert again.clocks["Cobj"] == pytest.approx(counter.now + again.ahead - 100.0)
 
 
 def test_what_happens_meanwhile_is_looked_at_again(counter: Counter) -> None:
@@ -200,12 +200,16 @@ def test_a_restarted_observer_goes_on_with_what_was_ordered_and_accepted() -> No
     call("planned", request.number, answer)
     call("hear", f"controller_bot:_plan_@{request.number}")
     call("order", "tea2")
+    call("order", "urgent tea2 within 40")
+    call("order", "cancel tea1")
+    call("order", "cancel tea2")
     second = Counter.__new__(Counter)
     second.log, second.now = [], first.now
     second.mission = first.fresh()
     replay(second.mission, entries)
     assert second.mission.state(first.now) == first.mission.state(first.now)
     assert second.mission.plan_request == first.mission.plan_request
+    assert [each.text for each in second.mission.ordering.waiting] == ["cancel tea1", "tea2"]
     assert second.mission.state(first.now).clocks["Cobj"] == 11.0
 
 
@@ -213,6 +217,7 @@ def test_orders_are_looked_at_one_after_the_other(counter: Counter) -> None:
     counter.order("tea1")
     counter.order("tea2")
     assert [each.order for each in counter.answered()] == ["tea1"]
+    counter.mission.on_word(f"bot:bot_kitchen2room1@{counter.mission.seq}", counter.now)
     assert [each.order for each in counter.answered()] == ["tea2"]
     assert counter.mission.state(counter.now).plan == 2 and counter.mission.plan_request is None
 
@@ -290,3 +295,100 @@ def test_no_text_is_taken_for_an_order() -> None:
     for text in ("tea within -3", "tea within 1e3", "tea; rm", "tea\n\nwithin", "Tea within 3 minutes", "7"):
         with pytest.raises(Refused):
             read_order(text, 1.0, unit=1.0)
+
+
+# Cancelled, and urgent ------------------------------------------------------------------------------------------------
+
+
+def test_what_waits_is_taken_back_at_once(counter: Counter) -> None:
+    counter.order("tea1")
+    counter.order("cancel tea1")
+    cancelled, answer = counter.mission.ordering.drain()
+    assert (cancelled.order, cancelled.accepted, cancelled.why) == ("tea1", False, "it was cancelled")
+    assert (answer.order, answer.text(0.0)) == ("cancel tea1", "cancelled")
+    assert counter.mission.plan_request is None and counter.mission.ordering.first is None
+
+
+def test_a_promise_falls_away_with_a_plan_that_does_without_it(counter: Counter) -> None:
+    counter.order("tea1")
+    counter.answered()
+    before = counter.mission.seq
+    counter.mission.on_word(f"bot:bot_kitchen2room1@{before}", counter.now)
+    counter.order("cancel tea1")
+    assert counter.mission.state(counter.now).locations["obj"] == "atRisk"  # until then it is kept
+    (answer,) = counter.answered()
+    state = counter.mission.state(counter.now)
+    assert (answer.order, answer.accepted) == ("cancel tea1", True)
+    assert (state.event, state.agent, state.plan) == ("tea1_cancelled_", "order_desk", 2)
+    assert (state.locations["obj"], state.locations["bot"], state.seq) == (
+        "idle", "going_kitchen_to_room1", before + 2
+    )  # fmt: skip
+    counter.order("tea1")
+    assert counter.answered()[0].accepted
+
+
+def test_at_the_end_what_was_cancelled_was_not_answered(counter: Counter) -> None:
+    counter.order("tea1")
+    counter.answered()
+    counter.mission.on_word(f"bot:bot_kitchen2room1@{counter.mission.seq}", counter.now)
+    counter.order("cancel tea1")
+    counter.answered()
+    assert "if tea1 then serve1 within 60 (never answered)" in counter.mission.finish(counter.now)[-1].reason
+
+
+def test_what_is_not_due_or_is_being_done_is_not_cancelled(counter: Counter) -> None:
+    assert counter.refusal("cancel tea1") == "no {tea1} waits for its answer"
+    assert "nobody can order coffee" in counter.refusal("cancel coffee")
+    assert "this is no order" in counter.refusal("cancel tea1 within 5")
+    counter.order("tea1")
+    counter.answered()
+    for word, after in (("bot_kitchen2room1", 0.1), ("bot_going_kitchen_to_room12room1", 10.5), ("serve1", 1.1)):
+        counter.now += after
+        commanded = "" if "going" in word else f"@{counter.mission.seq}"
+        counter.mission.on_word(f"bot:{word}{commanded}", counter.now)
+    assert counter.refusal("cancel tea1") == "{bot} is at it already"
+
+
+def test_what_is_answered_before_the_plan_comes_is_not_cancelled(counter: Counter) -> None:
+    counter.order("tea1")
+    counter.answered()
+    counter.mission.on_word(f"bot:bot_kitchen2room1@{counter.mission.seq}", counter.now)
+    counter.now += 10.5
+    counter.mission.on_word("bot:bot_going_kitchen_to_room12room1", counter.now)
+    counter.order("cancel tea1")
+    counter.now += 1.1
+    counter.mission.on_word(f"bot:serve1@{counter.mission.seq}", counter.now)
+    (answer,) = counter.mission.ordering.drain()
+    assert answer.text(0.0) == "not cancelled: {bot} is at it already"
+
+
+def test_where_no_plan_is_found_the_promise_stands(counter: Counter) -> None:
+    counter.order("tea1")
+    counter.answered()
+    counter.order("cancel tea1")
+    request = counter.mission.plan_request
+    assert request is not None
+    counter.mission.on_no_plan(request.number, "no plan was found within 5 s", counter.now)
+    (answer,) = counter.mission.ordering.drain()
+    assert answer.text(0.0).startswith("not cancelled: no plan without it was found, so it goes on: no plan was found")
+    assert counter.mission.state(counter.now).locations["obj"] == "atRisk"
+
+
+def test_what_is_urgent_is_looked_at_first(counter: Counter) -> None:
+    counter.order("tea1")
+    counter.order("urgent tea2")
+    counter.order("urgent tea1")
+    assert [each.text for each in counter.mission.ordering.waiting] == ["urgent tea2", "urgent tea1", "tea1"]
+    assert [each.order for each in counter.answered()] == ["urgent tea2"]
+
+
+def test_of_several_that_wait_the_oldest_is_cancelled() -> None:
+    text = TEA.replace("serve1 within 60", "serve1 within 60, at_most 3 open")
+    story = parse(text, "tea.pur", "tea")
+    won = solve_scenario(story, DEFAULT)
+    model = Model(plain(model_data(won.network, won.objective, story, DEFAULT.reaction)))
+    here = model.initial()
+    for _ in range(2):
+        here = effect(model, here, read_order("tea1", 0.0, 1.0)).after(here.aged(1.0), 0.0)
+    left = effect(model, here, read_order("cancel tea1", 0.0, 1.0)).after(here, 0.0)
+    assert [left.locations[name] for name in ("obj", "obj2", "obj3")] == ["idle", "atRisk", "idle"]

@@ -81,10 +81,12 @@ def test_an_order_is_asked_with_a_limit_and_what_could_be_promised_is_told(tmp_p
     answer = json.dumps({"won": False, "why": "too soon", "possible": 12.5})
     program = f"import sys; open({str(copy)!r}, 'w').write(sys.stdin.read()); print({answer!r})"
     office = Office(program)
-    office.planner.request_plan(request(3)._replace(order=Ordered("tea", 1.0, {"Cobj": 20.0}, 2.0)))
+    spread = {"Cbot": {"0": 0.5}}
+    office.planner.request_plan(request(3)._replace(order=Ordered("tea", 1.0, {"Cobj": 20.0}, 2.0, spread)))
     assert office.answers.get(timeout=2 * PATIENCE) == ("refused", 3, "too soon", 12.5)
     asked = json.loads(copy.read_text())
     assert (asked["limit"], asked["window"], asked["sooner"]) == (ORDER_LIMIT, 2.0, {"Cobj": 20.0})
+    assert (asked["spread"], asked["ahead"]) == (spread, 0.0)  # its clocks are those at its begin
 
 
 def test_one_that_takes_longer_than_the_limit_goes_on_and_says_so_each_time_later(tmp_path: Path) -> None:

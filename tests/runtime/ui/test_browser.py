@@ -616,6 +616,11 @@ def test_an_order_is_sent_once_with_the_time_that_is_wanted_and_its_answer_is_sh
     says(page, "#answers .good", "coffee: accepted: answered in 40 s at the latest")
     says(page, "#answers .bad", f"refused: {HOSTILE} is too late")
     says(page, "#log", "coffee: accepted")
+    node.show(2, 5.0, event="_start_")
+    page.click("#answers .good button")
+    page.click("#answers .good button")
+    page.wait("document.querySelectorAll('#answers button[aria-disabled=true]').length === 1")
+    assert node.wanted[2:] == [("order", "cancel coffee", 2)]
     assert not page.value("window.hacked || false") and page.complaints == []
 
 

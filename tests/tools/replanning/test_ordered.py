@@ -15,8 +15,9 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tools.replanning import replan
 from pursue_gen.tools.replanning.request import read_request
 from pursue_gen.tools.replanning.start import network_from
-from pursue_runtime.model import Model
+from pursue_runtime.model import Model, Position
 from pursue_runtime.observer.ordering import effect, read_order
+from pursue_runtime.observer.planning import EXACT, Ordered, PlanRequest
 from tests.runtime.observer.test_ordering import DEFAULT, GAME, STORY, WON, model_data, plain
 
 MODEL = Model(plain(model_data(WON.network, WON.objective, STORY, DEFAULT.reaction)))
@@ -60,6 +61,41 @@ def test_answers_are_those_of_the_exact_game(times: Tuple[int, int, int], names:
         assert not is_won(asked(age / 4, *orders[:-1], names[1]))
 
 
+OFF = st.dictionaries(st.sampled_from(["1", "2", "3"]), st.sampled_from([0.05, 0.5, 1.25]), max_size=3)
+
+
+@given(st.fixed_dictionaries({"Cbot": OFF, "Cobj2": OFF}), st.lists(st.floats(-0.8, 0.8), min_size=3, max_size=3),
+       st.floats(0.0, 2.0))  # fmt: skip
+@settings(max_examples=200, deadline=None)
+def test_a_plan_for_a_foreseen_state_begins_in_all_that_the_observer_takes_for_it(
+    spread: Dict[str, Dict[str, float]], offs: List[float], since: float
+) -> None:
+    """Whatever the observer takes for the foreseen state is one that the plan is proven for."""
+    data = asked(5.0, "tea1")
+    start = network_from(played(translate(STORY), DEFAULT), read_request({**data, "spread": spread})).start
+    order = Ordered("tea1", 0.0, {}, 2.0, spread)
+    state = {key: data[key] for key in ("locations", "values", "clocks")}
+    request = PlanRequest(1, **state, stamp=0.0, ahead=1.0, excused=(), order=order)
+    moved = dict(zip(("Cbot", "Cobj", "Cobj2"), offs))
+    clocks = {name: value + 1.0 + since + moved[name] for name, value in data["clocks"].items()}
+    clocks.update({name: data["clocks"][name] + 1.0 + since for name in clocks if not spread.get(name)})
+    ahead = request._replace(clocks={name: value + 1.0 for name, value in data["clocks"].items()})
+    if ahead.is_of(Position(**{**state, "clocks": clocks}), since):
+        for each in start:
+            difference = (clocks[each.left] if each.left else 0.0) - (clocks[each.right] if each.right else 0.0)
+            assert difference <= each.bound + 2 * EXACT, each
+
+
+def test_what_is_not_foreseen_so_exactly_is_planned_for_too() -> None:
+    data = asked(5.0, "tea1")
+    data["locations"]["bot"], data["values"]["Pbot"], data["clocks"]["Cbot"] = "going_kitchen_to_room1", -12, 3.0
+    assert replan({**data, "spread": {"Cbot": {"0": 0.5}}}, states=5000)["won"]
+    soon = asked(5.0, "tea1 within 15")
+    soon["locations"]["bot"], soon["values"]["Pbot"], soon["clocks"]["Cbot"] = "going_kitchen_to_room1", -12, 3.0
+    assert replan(soon, states=5000)["won"]
+    assert not replan({**soon, "spread": {"Cbot": {"0": 3.0, "1": 2.0}}}, states=5000)["won"]
+
+
 def test_an_order_in_a_window_that_ends_with_an_arrival_is_looked_at_before_that() -> None:
     """Clocks above an invariant are no part of the game: a plan comes into force before what is due happens."""
     data = asked(5.0, "tea1")
@@ -69,7 +105,13 @@ def test_an_order_in_a_window_that_ends_with_an_arrival_is_looked_at_before_that
 
 @pytest.mark.parametrize(
     ("key", "value", "why"),
-    [("window", -1, "window is -1"), ("sooner", [], "sooner is"), ("sooner", {"Cobj": "x"}, "Cobj is")],
+    [
+        ("window", -1, "window is -1"),
+        ("sooner", [], "sooner is"),
+        ("sooner", {"Cobj": "x"}, "Cobj is"),
+        ("spread", {"Cobj": 1}, "Cobj is 1"),
+        ("spread", {"Cobj": {"0": -1}}, "Cobj is|0 is -1"),
+    ],
 )
 def test_a_request_that_cannot_be_used_is_refused(key: str, value: object, why: str) -> None:
     with pytest.raises(PursueError, match=why):
