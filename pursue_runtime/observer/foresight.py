@@ -59,7 +59,7 @@ class Foresight:
         self._automata, self._model, self._cover, self._gone = automata, automata.model, cover, gone
         self._spread: Dict[str, Mapping[str, float]] = {}
         self._last = NOTHING  # by what the moment of the last event may differ
-        self._commanded: Dict[Tuple[str, str], Mapping[str, float]] = {}  # what is due: that of its moment
+        self._commanded: Dict[Tuple[str, str], Mapping[str, float]] = {}  # what is commanded: that of its moment
 
     def find(self, here: Position, least: float, most: float, quiet: float) -> Optional[Foreseen]:
         """Return the first position between `least` and `most` in which nothing happens for `quiet`; None: none."""
@@ -92,7 +92,7 @@ class Foresight:
 
     def _next(self, position: Position, passed: float) -> Iterator[_Event]:
         """What may happen first if time passes, so long after the first position."""
-        yield from self._commands(position)
+        yield from self._commands(position, passed)
         yield from map(_Event, self._automata.internal_delays(position))
         ends = list(self._ends(position, passed))
         yield from ends
@@ -101,19 +101,23 @@ class Foresight:
             if name not in known and name not in self._gone:
                 yield _Event(delay, agent=name)
 
-    def _commands(self, position: Position) -> Iterator[_Event]:
-        """What the plan in force commands, each up to the reaction later than it is due."""
+    def _commands(self, position: Position, passed: float) -> Iterator[_Event]:
+        """What the plan in force commands. Controllers send it a quarter of the reaction after it is due, and it takes
+        effect up to the reaction later."""
         found = [] if self._cover is None else self._cover.find(SystemState(0, 0.0, *position))
         known, self._commanded = self._commanded, {}
-        half = self._model.reaction / 2
+        half = 0.75 * self._model.reaction
+        before = position if passed else position.aged(-2 * half)  # what was due a moment ago is on its way
         for what, zones in (each for covered in found for each in covered.commands.items()):
-            delay = due(zones, position.clocks)
+            delay = due(zones, before.clocks)
             if delay is None or what[0] in self._gone:
                 continue
+            delay -= 0.0 if passed else 2 * half
             if delay <= MARGIN:
-                delay, self._commanded[what] = 0.0, known.get(what, self._last)
-            at_once = what in self._commanded
-            because = self._commanded[what] if at_once else self._waits_for(zones, position, delay)
+                delay, because = 0.0, known.get(what, self._last)
+            else:
+                because = self._waits_for(zones, position, delay)
+            self._commanded[what] = because
             yield _Event(delay + half, half, because, *what)
 
     def _waits_for(self, zones: Iterable[Zone], position: Position, delay: float) -> Mapping[str, float]:
