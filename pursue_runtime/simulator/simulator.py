@@ -94,9 +94,9 @@ def _shared_window(model: Model, ending: Edge) -> Optional[EndWindow]:
     return None
 
 
-def report_word(model: Model, agent: str, event: str, as_of: Optional[int] = None) -> str:
+def report_word(model: Model, agent: str, event: str) -> str:
     """Return the text of the word that reports an event, as `report_of`."""
-    return format_word(report_of(model, agent, event, as_of))
+    return format_word(report_of(model, agent, event))
 
 
 def report_of(model: Model, agent: str, event: str, as_of: Optional[int] = None) -> Word:

@@ -154,7 +154,7 @@ def tolerance_factor(count: int, share: float, confidence: float) -> float:
     return normal.inv_cdf((1 + share) / 2) * sqrt((1 + 1 / count) * freedom / chi)
 
 
-def held_out(times: Sequence[float], share: float = SHARE, confidence: float = CONFIDENCE) -> Tuple[int, int]:
+def held_out(times: Sequence[float], share: float = SHARE) -> Tuple[int, int]:
     """How many of the times are in the window that the others make, and of how many that was tried.
 
     The times are dealt into ten parts in turn; each part is held against the window of the nine others.
@@ -165,7 +165,7 @@ def held_out(times: Sequence[float], share: float = SHARE, confidence: float = C
         return 0, 0
     for number, part in enumerate(parts):
         others = [time for other, each in enumerate(parts) if other != number for time in each]
-        window = window_of(others, share, confidence)
+        window = window_of(others, share)
         held += sum(window.low <= time <= window.high for time in part)
     return held, len(times)
 

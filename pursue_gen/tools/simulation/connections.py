@@ -19,9 +19,9 @@ DECIMALS = 2e-6
 """Seconds by which messages come before the last moment that was promised: stamps travel with six decimals."""
 
 
-def drawn_share(draw: random.Random, extremes: float = 0.5) -> float:
-    """A number from 0 to 1; with the probability `extremes`, it is 0 or 1."""
-    if draw.random() < extremes:
+def drawn_share(draw: random.Random) -> float:
+    """A number from 0 to 1; half of the time it is 0 or 1."""
+    if draw.random() < 0.5:
         return float(draw.random() < 0.5)
     return draw.random()
 
