@@ -26,8 +26,7 @@ _MOST = 20_000
 """So many events a course may have. Measured on 30 robots that change places."""
 
 _AHEAD = 6
-"""So many rounds a robot may be ahead of another one on whom it waits. Measured on 20 robots on the lanes of public
-buildings."""
+"""So many rounds a robot may be ahead of another one on whom it waits. Not measured."""
 
 
 class Fault(Exception):
