@@ -66,13 +66,15 @@ class _OfRmf(DoorLink):
     """One of Open-RMF, whose topics all of them share. `kind`: Door or Lift."""
 
     def __init__(self, settings: DoorSettings, kind: str, report: Report, ending: Ending) -> None:
-        package = f"rmf_{kind.lower()}_msgs"
         try:
-            self._messages = needed(package, f"{package}.msg", "adapter: rmf")
+            if kind == "Lift":
+                self._messages = needed("rmf_lift_msgs", "rmf_lift_msgs.msg", "adapter: rmf")
+            else:
+                self._messages = needed("rmf_door_msgs", "rmf_door_msgs.msg", "adapter: rmf")
         except DataError:
             raise DataError(
-                f"adapter: rmf needs the ROS package {package}, which is not here: build it for ROS 1 from "
-                "rmf_internal_msgs of Open-RMF, as ros1_bridge needs it too, and source its workspace; or choose "
+                f"adapter: rmf needs the ROS package rmf_{kind.lower()}_msgs, which is not here: build it for ROS 1 "
+                "from rmf_internal_msgs of Open-RMF, as ros1_bridge needs it too, and source its workspace; or choose "
                 "another adapter, such as std_msgs"
             ) from None
         self._settings, self._report = settings, report

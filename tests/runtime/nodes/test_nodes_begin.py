@@ -54,7 +54,8 @@ def test_a_controller_begins_without_an_observer_and_is_not_ready(monkeypatch: p
 
 
 def test_the_ui_says_again_what_an_observer_has_not_heard_that_connects(monkeypatch: pytest.MonkeyPatch) -> None:
-    replaced(monkeypatch, ui_state, ("MissionView", "Readiness", "Terminal", "Turns", "strategies_of", "UIOrders"))
+    shown = "AtDoors", "MissionView", "Readiness", "Terminal", "Turns", "strategies_of", "UIOrders"
+    replaced(monkeypatch, ui_state, shown)
     parts = ("Alarm", "Typed", "UIPage", "Traffic", "subscribe_states", "subscribe", "Diagnostics", "Links")
     newcomers = replaced(monkeypatch, ui, parts)
     options: Any = SimpleNamespace(nodes=("bot",), wait=1.0)
