@@ -15,8 +15,8 @@ MOST = 3
 
 def random_wishes(seed: int, size: Size) -> str:
     """The PuRSUE-ML of a lab scenario of this size, with one to three statements of the kinds that lab scenarios do
-    not have; in some, what takes time may be broken off, or done in parts, what is delivered is a thing, or it is not
-    known where somebody starts. Some have errors."""
+    not have; in some, what takes time may be broken off, or done in parts, what is delivered is a thing, it is not
+    known where somebody starts, or a way leads through a door or goes by lift. Some have errors."""
     cast, text = lab_scenario_with(seed, size)
     draw = Random(f"wishes {seed} {size}")
     told = {**_drawn(draw, cast, text), **{f"t{time}": draw.randint(time // 2, time * 2) for time in _TIMES}}
@@ -31,7 +31,19 @@ def random_wishes(seed: int, size: Size) -> str:
     if '"pick' in text and draw.randint(0, 1) == 0:  # what is delivered is carried
         text = 'thing "box"\n' + re.sub(r'^(event "pick.*)$', r"\1 takes box", text, flags=re.MULTILINE)
         text = re.sub(r'^(event "drop.*)$', r"\1 gives box", text, flags=re.MULTILINE)
+    if draw.randint(0, 3) == 0:  # a way leads through a door, or goes by lift
+        text = _behind_something(draw, text)
     return text + "".join(f"{form.format(**told)}\n" for form in kinds)
+
+
+def _behind_something(draw: Random, text: str) -> str:
+    line = draw.choice([line for line in text.splitlines() if line.startswith("connect ")])
+    _, one, _, other, *_ = line.split()
+    first, longest = sorted(draw.sample(range(1, 6), 2))
+    if draw.randint(0, 1):
+        return text.replace(line, f'door "gate" opens within {longest}\n{line} through gate', 1)
+    floors = f"{one}, {other} comes within {longest} takes {first} to {longest}"
+    return text.replace(line, f'lift "hoist" at {floors}\n{line} by hoist', 1)
 
 
 _TIMES = (4, 10, 30, 80)
@@ -73,6 +85,8 @@ _FORMS: Tuple[str, ...] = (
     "objective: place {room} holds 1 robot",
     "objective: place {place} holds 2 agents",
     "objective: way {way} holds 1 robot",
+    "objective: every place holds 1 robot",
+    "objective: every way holds 1 robot",
     "objective: at_least {t10} between {done}",
     "objective: at_least {t4} between {done} and {also}",
     "objective: if {called} then {done} within {t80}, at_most 2 open",

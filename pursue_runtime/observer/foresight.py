@@ -12,7 +12,7 @@ from typing import Collection, Dict, Iterable, Iterator, Mapping, NamedTuple, Op
 from pursue_runtime.model import Model, Move, Position
 from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.mission_state import ACTING
-from pursue_runtime.observer.planning import EXACT, Spread
+from pursue_runtime.observer.planning import Spread
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Cover
 from pursue_runtime.zones import EPSILON, INFINITY, Zone, due
@@ -25,6 +25,9 @@ WIDE = 4.0
 
 MARGIN = 0.05
 """A zone that opens with a strict bound is reached less than so many time units later. Not measured."""
+
+SOON = 0.002
+"""Time units that an event may be off of which the moment is known: it is noticed so much later. Not measured."""
 
 NOTHING: Mapping[str, float] = {}
 
@@ -81,14 +84,14 @@ class Foresight:
                 return None
             passed, position = passed + event.middle, Model.after(moves, position)
             settled = max(settled, passed + event.off)
-            self._last = {**event.because, str(number): event.own + 2 * EXACT}
+            self._last = {**event.because, str(number): event.own + SOON}
             self._spread.update((clock, self._last) for move in moves for clock in move.edge.resets)
         return None
 
     def _moves(self, event: _Event, position: Position) -> Optional[Tuple[Move, ...]]:
         if event.word:
             return self._model.joint_move(position, event.word, event.agent, timed=False)
-        return None if event.agent else self._automata.internal_move(position.aged(EXACT))
+        return None if event.agent else self._automata.internal_move(position.aged(SOON))
 
     def _next(self, position: Position, passed: float) -> Iterator[_Event]:
         """What may happen first if time passes, so long after the first position."""

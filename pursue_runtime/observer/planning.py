@@ -17,8 +17,9 @@ MIN_LEAD_TIME = 1.0
 MOST_LATE_PLANS = 5
 """Plans in a row that may arrive too late to be put in force."""
 
-EXACT = 0.001
-"""Time units by which clocks may differ that are differences of the same two times. Not measured."""
+EXACT = 0.00001
+"""Time units by which clocks may differ that are differences of the same two times, as numbers of ROS time have so many
+digits. Not measured."""
 
 UNKNOWN = 1000
 """More requests than a mission can have made without a trace of them in the journal."""
