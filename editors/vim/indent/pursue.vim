@@ -25,7 +25,7 @@ let s:goes_on = split('
       \ unknown uses waits way when within')
 
 function! s:Begins(line, words) abort
-  return index(a:words, matchstr(a:line, '^\s*\zs\w\+')) >= 0
+  return index(a:words, matchstr(a:line, '^\s*\zs\w\+\ze\%(\s*,\)\@!')) >= 0
 endfunction
 
 function! PursueIndent() abort

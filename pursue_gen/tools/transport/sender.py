@@ -9,10 +9,13 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import signal
+import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Callable, Dict, Optional, Sequence, Tuple
+from types import FrameType
+from typing import Callable, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
@@ -104,8 +107,10 @@ def send(
         return _result(mission, sessions, troubles)
     check([session.now for session in sessions])
     try:
-        # Those that have it already, too: what they have may be damaged by now.
-        troubles = _side_by_side(lambda session: session.prepare(mission, content), sessions)
+        with _ctrl_c_noticed() as check_ctrl_c:
+            # Those that have it already, too: what they have may be damaged by now.
+            troubles = _side_by_side(lambda session: session.prepare(mission, content), sessions)
+            check_ctrl_c()
         if not troubles:
             troubles = _commit(sessions, mission)
     except KeyboardInterrupt:
@@ -117,6 +122,32 @@ def send(
         else:
             troubles = _side_by_side(lambda session: session.confirm(mission), sessions)
     return _result(mission, sessions, troubles)
+
+
+@contextlib.contextmanager
+def _ctrl_c_noticed() -> Iterator[Callable[[], None]]:
+    """Gives what raises KeyboardInterrupt if Ctrl-C was pressed since: Python may notice that while it tidies up, as a
+    pool of threads does at its end, and ignores exceptions there."""
+    pressed: List[int] = []
+    before = signal.getsignal(signal.SIGINT)
+
+    def notice(number: int, frame: Optional[FrameType]) -> None:
+        pressed.append(number)
+        assert callable(before)
+        before(number, frame)
+
+    def check() -> None:
+        if pressed:
+            raise KeyboardInterrupt
+
+    if not callable(before) or threading.current_thread() is not threading.main_thread():  # it is nobody's
+        yield check
+        return
+    signal.signal(signal.SIGINT, notice)
+    try:
+        yield check
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def wait(robots: Sequence[Robot], mission: str, seconds: float, every: float = 0.5) -> Tuple[Row, ...]:

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.tools.transport.client import Robot, Status
-from pursue_gen.tools.transport.sender import Sent, look, send, wait
+from pursue_gen.tools.transport.sender import Sent, _ctrl_c_noticed, look, send, wait
 from pursue_runtime.manifest import OWN
 from tests.waiting import PATIENCE
 
@@ -32,8 +32,7 @@ def fleet() -> List[FakeRobot]:
 
 
 def press_ctrl_c() -> None:
-    """A signal, which also ends what the main thread waits for: with interrupt_main it is seen only afterwards, perhaps
-    in what Python calls while it tidies up, where no exception counts."""
+    """A signal, which also ends what the main thread waits for."""
     signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
 
 
@@ -339,6 +338,17 @@ def test_ctrl_c_makes_all_forget_what_they_prepared() -> None:
     assert result.unchanged and not result.done
     assert [(robot.current, robot.prepared) for robot in robots] == [(OWN, None)] * 3
     assert len(said) == 1 and "is taken back" in said[0]
+
+
+def test_ctrl_c_is_noticed_where_its_exception_is_lost() -> None:
+    before = signal.getsignal(signal.SIGINT)
+    with _ctrl_c_noticed() as check:
+        check()
+        with contextlib.suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt):
+            check()
+    assert signal.getsignal(signal.SIGINT) is before
 
 
 def test_looking_changes_nothing() -> None:
