@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from fractions import Fraction
 from itertools import takewhile
@@ -248,7 +249,7 @@ def _meant(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     """Which word was meant, or what is missing before it."""
     token, statement = chunk[index], kind_of(chunk)
     if statement in ("EVENT", "AGENT") and f" {token} " in STATEMENTS[statement].form():
-        return f"its parts come in this order: {STATEMENTS[statement].form()}"
+        return f"{_too_late(chunk, index)}its parts come in this order: {STATEMENTS[statement].form()}"
     if statement == "EVENT" and chunk[index - 1].type == "IN":
         return "did you mean location? behind in stands a number of parts, as in may_stop in 4 parts"
     meant = _MEANT.get(str(token).lower(), "")
@@ -267,6 +268,14 @@ def _meant(chunk: Sequence[Token], index: int, expected: FrozenSet[str]) -> str:
     if statement == "REACH_OBJECTIVE" and token.type in ("IF", "AVOID"):
         return "what must always hold is an objective: if … then … within … or avoid …"
     return ""
+
+
+def _too_late(chunk: Sequence[Token], index: int) -> str:
+    """Before which word of the statement the one at `index` stands; "" where it stands behind all that are there."""
+    order = [word.lower() for word in re.findall(r"[a-z_]{2,}|[A-Z_]{2,}", STATEMENTS[kind_of(chunk)].grammar())]
+    word, places = str(chunk[index]), {word: place for place, word in reversed(list(enumerate(order)))}
+    later = (str(one) for one in chunk[1:index] if places.get(str(one), -1) > places.get(word, len(order)))
+    return next((f"write {word} before {other}; " for other in later), "")
 
 
 def _form(chunk: Sequence[Token]) -> str:

@@ -233,9 +233,9 @@ agent "nurse" controllable human location desk can_do ring
 agent "guest" can_do ring location desk
 reach_objective: do ring
 """, [
-        ("PML010", 3, 'its parts come in this order: agent "bot" human controllable m'),
-        ("PML010", 4, 'its parts come in this order: agent "bot" human controllable m'),
-        ("PML010", 5, 'its parts come in this order: agent "bot" human controllable m'),
+        ("PML010", 3, 'write controllable before mobile; its parts come in this order: agent "bot" human control'),
+        ("PML010", 4, 'write human before controllable; its parts come in this order: agent "bot" human control'),
+        ("PML010", 5, 'its parts come in this order: agent "bot" human control'),
     ]),
     ("who is there, but nobody to command", """\
 poi "desk"
