@@ -7,13 +7,9 @@ from pathlib import Path
 
 import pytest
 import yaml
+from door_missions import CALM, FAKE, made_of, need_messages
 from launched_mission import PLAYED, LaunchedMission, launched
-from ros_world import Ros, lay_over
-
-from pursue_gen.language import parse
-from pursue_gen.solving.rules import DEFAULT
-from pursue_gen.solving.solution import solve_scenario
-from pursue_gen.workspace import Options, write_workspace
+from ros_world import Ros
 
 pytestmark = pytest.mark.ros
 
@@ -27,8 +23,6 @@ agent "bot" controllable mobile 1 location hall can_do fetch
 reach_objective: do fetch
 """
 DOOR = Path(__file__).with_name("fake_door.py")
-FAKE = DOOR.with_name("fake_move_base.py")
-CALM = {"mode": "still", "on_uncovered": "warn", "lost_after": 1000}
 
 RMF = '''
 from genpy.dynamic import generate_dynamic
@@ -43,20 +37,6 @@ DoorState = generate_dynamic(
 )["rmf_door_msgs/DoorState"]
 '''
 """A package with the messages of Open-RMF's doors, as far as they matter here."""
-
-
-def made(ros: Ros, folder: Path) -> Path:
-    """The workspace of the lab."""
-    read = parse(LAB, "lab.pur", "lab")
-    won = solve_scenario(read, DEFAULT)
-    options = Options(reaction=DEFAULT.reaction)
-    return lay_over(ros, write_workspace(read, won.network, won.objective, won.strategy, options, folder / "ws"))
-
-
-def need_messages(ros: Ros) -> None:
-    wanted = "move_base_msgs.msg, actionlib_msgs.msg, tf2_ros"
-    if ros.run(f"python3 -c 'import {wanted}'", ros.home).returncode:
-        pytest.skip(f"not all of {wanted} is here")
 
 
 def passes(run: LaunchedMission, kind: str, *topics: str) -> None:
@@ -84,14 +64,14 @@ def passes(run: LaunchedMission, kind: str, *topics: str) -> None:
 def test_a_robot_passes_a_door_when_that_reports_that_it_is_open(
     ros: Ros, tmp_path: Path, kind: str, adapter: str
 ) -> None:
-    over = made(ros, tmp_path)
+    over = made_of(LAB, "lab", ros, tmp_path)
     with launched(ros, over, tmp_path / "run", ("bot",), **PLAYED, **CALM, doors=adapter) as run:
         passes(run, kind, "pursue/doors/d1/command", "pursue/doors/d1/state")
 
 
 def test_a_robot_with_move_base_waits_in_front_of_the_door(ros: Ros, tmp_path: Path) -> None:
     need_messages(ros)
-    over = made(ros, tmp_path)
+    over = made_of(LAB, "lab", ros, tmp_path)
     bot = {"start": [0.0, 0.0], "travel": 2.0, "acts": 2.2, "plays": ["succeed"]}
     (tmp_path / "fake.yaml").write_text(yaml.safe_dump({"robots": {"bot": bot}}))
     fake = f"rosparam load {tmp_path}/fake.yaml /fake_move_base && exec python3 {FAKE}"
@@ -106,7 +86,7 @@ def test_a_robot_with_move_base_waits_in_front_of_the_door(ros: Ros, tmp_path: P
 
 
 def test_a_door_of_open_rmf_is_asked_by_its_messages(ros: Ros, tmp_path: Path) -> None:
-    over = made(ros, tmp_path)
+    over = made_of(LAB, "lab", ros, tmp_path)
     stub = tmp_path / "stub" / "rmf_door_msgs" / "msg"
     stub.mkdir(parents=True)
     (stub.parent / "__init__.py").touch()
@@ -121,13 +101,13 @@ def test_a_door_of_open_rmf_is_asked_by_its_messages(ros: Ros, tmp_path: Path) -
 
 
 def test_without_open_rmfs_messages_the_node_says_what_is_missing(ros: Ros, tmp_path: Path) -> None:
-    over = made(ros, tmp_path)
+    over = made_of(LAB, "lab", ros, tmp_path)
     with launched(ros, over, tmp_path / "run", ("bot",), **PLAYED, **CALM, doors="rmf", respawn=False) as run:
         run.until(lambda: "needs the ROS package rmf_door_msgs, which is not here" in run.output())
 
 
 def test_simulated_doors_open_for_simulated_robots(ros: Ros, tmp_path: Path) -> None:
-    over = made(ros, tmp_path)
+    over = made_of(LAB, "lab", ros, tmp_path)
     with launched(ros, over, tmp_path / "run", ("bot",), use_sim_time=True, speed=20) as run:
         assert run.until_over() == "won", run.output()
         assert [robot for robot, _ in run.orders()] == ["bot", "bot"]

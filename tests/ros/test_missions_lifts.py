@@ -7,13 +7,9 @@ from pathlib import Path
 
 import pytest
 import yaml
+from door_missions import CALM, FAKE, made_of, need_messages
 from launched_mission import PLAYED, LaunchedMission, launched
-from ros_world import Ros, lay_over
-
-from pursue_gen.language import parse
-from pursue_gen.solving.rules import DEFAULT
-from pursue_gen.solving.solution import solve_scenario
-from pursue_gen.workspace import Options, write_workspace
+from ros_world import Ros
 
 pytestmark = pytest.mark.ros
 
@@ -27,8 +23,6 @@ agent "bot" controllable mobile 1 location hall0 can_do fetch
 reach_objective: do fetch
 """
 LIFT = Path(__file__).with_name("fake_lift.py")
-FAKE = LIFT.with_name("fake_move_base.py")
-CALM = {"mode": "still", "on_uncovered": "warn", "lost_after": 1000}
 
 RMF = '''
 from genpy.dynamic import generate_dynamic
@@ -45,20 +39,6 @@ LiftState = generate_dynamic(
 )["rmf_lift_msgs/LiftState"]
 '''
 """A package with the messages of Open-RMF's lifts."""
-
-
-def made(ros: Ros, folder: Path) -> Path:
-    """The workspace of the hotel."""
-    read = parse(HOTEL, "hotel.pur", "hotel")
-    won = solve_scenario(read, DEFAULT)
-    options = Options(reaction=DEFAULT.reaction)
-    return lay_over(ros, write_workspace(read, won.network, won.objective, won.strategy, options, folder / "ws"))
-
-
-def need_messages(ros: Ros) -> None:
-    wanted = "move_base_msgs.msg, actionlib_msgs.msg, tf2_ros"
-    if ros.run(f"python3 -c 'import {wanted}'", ros.home).returncode:
-        pytest.skip(f"not all of {wanted} is here")
 
 
 def rides(run: LaunchedMission, lift: str, low: str, high: str) -> None:
@@ -85,13 +65,13 @@ def rides(run: LaunchedMission, lift: str, low: str, high: str) -> None:
 def test_a_robot_rides_in_a_lift_that_finds_it_aboard(
     ros: Ros, tmp_path: Path, kind: str, adapter: str, floors: "tuple[str, str]"
 ) -> None:
-    over = made(ros, tmp_path)
+    over = made_of(HOTEL, "hotel", ros, tmp_path)
     with launched(ros, over, tmp_path / "run", ("bot",), **PLAYED, **CALM, doors=adapter) as run:
         rides(run, f"{kind} pursue/lifts/lift1/command pursue/lifts/lift1/state lift1 bot", *floors)
 
 
 def test_a_lift_of_open_rmf_is_called_by_its_messages(ros: Ros, tmp_path: Path) -> None:
-    over = made(ros, tmp_path)
+    over = made_of(HOTEL, "hotel", ros, tmp_path)
     stub = tmp_path / "stub" / "rmf_lift_msgs" / "msg"
     stub.mkdir(parents=True)
     (stub.parent / "__init__.py").touch()
@@ -107,7 +87,7 @@ def test_a_lift_of_open_rmf_is_called_by_its_messages(ros: Ros, tmp_path: Path) 
 
 def test_a_robot_with_move_base_says_when_it_is_in_the_cabin(ros: Ros, tmp_path: Path) -> None:
     need_messages(ros)
-    over = made(ros, tmp_path)
+    over = made_of(HOTEL, "hotel", ros, tmp_path)
     bot = {"start": [0.0, 0.0], "travel": 2.0, "acts": 2.2, "plays": ["succeed"]}
     (tmp_path / "fake.yaml").write_text(yaml.safe_dump({"robots": {"bot": bot}}))
     fake = f"rosparam load {tmp_path}/fake.yaml /fake_move_base && exec python3 {FAKE}"
@@ -125,7 +105,7 @@ def test_a_robot_with_move_base_says_when_it_is_in_the_cabin(ros: Ros, tmp_path:
 
 
 def test_simulated_lifts_are_ridden_by_simulated_robots(ros: Ros, tmp_path: Path) -> None:
-    over = made(ros, tmp_path)
+    over = made_of(HOTEL, "hotel", ros, tmp_path)
     with launched(ros, over, tmp_path / "run", ("bot",), use_sim_time=True, speed=20) as run:
         assert run.until_over() == "won", run.output()
         assert [robot for robot, _ in run.orders()] == ["bot", "bot"]
