@@ -89,16 +89,20 @@ def check_robots(
     if not record.problems:
         commanded = {state.seq for _, state, _, is_command in steps if is_command}
         receipts = receipts_in(record, controllers)
-        last = record.exact_until or max([record.states[-1].stamp, *(order.at for order in record.orders)])
-        is_cut = record.states[-1].status not in ENDED
         for place, (state, _, robot, _) in enumerate(activities):
             way = lateness + (orders[state.plan].reaction if state.plan in orders else 0.0)
-            on_its_way = state.stamp + (way * state.unit if record.is_exact else CUT) >= last
-            on_its_way = on_its_way and (record.is_exact or is_cut)
-            if place not in ordered and state.seq in commanded and not on_its_way:
+            if place not in ordered and state.seq in commanded and not _is_on_its_way(record, state, way):
                 found.append(_untold(record, activities[place], (robot, state.seq) in receipts))
         found += without_receipt(record, _at_once(activities, commanded), receipts)
     return found
+
+
+def _is_on_its_way(record: MissionRecord, state: SystemState, way: float) -> bool:
+    """True if the order that follows from a state may come after the end of the record, so many time units later."""
+    last = record.exact_until or max([record.states[-1].stamp, *(order.at for order in record.orders)])
+    if record.is_exact:
+        return state.stamp + way * state.unit >= last
+    return record.states[-1].status not in ENDED and state.stamp + CUT >= last
 
 
 def _wrong(order: RobotOrder, activity: Activity, again: bool) -> str:
