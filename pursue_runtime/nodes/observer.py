@@ -104,8 +104,7 @@ class Observer:
         returning = self.inbox.returning
         self.publish([self.mission.state(returning.floor if returning else self.now())])
         self.mission.ordering.drain()  # those of before a restart
-        if self.mission.model.orders:
-            self.desk = OrderDesk(partial(self.call, "order"), self.now, self.ending)
+        self.desk = OrderDesk(partial(self.call, "order"), self.now, self.ending)
         self.witnesses.follow(self.on_seen)
         self.words = subscribe(EVENTS, String, self.on_word, self.ending, tcp_nodelay=True)
         pulses = subscribe("/diagnostics", DiagnosticArray, self.on_diagnostics, self.ending, queue_size=100)

@@ -11,7 +11,7 @@ from std_msgs.msg import String
 from pursue_runtime.event_words import ANSWERS, ORDERS
 from pursue_runtime.model import Model
 from pursue_runtime.nodes.node import Ending, subscribe
-from pursue_runtime.observer.ordering import CANCEL, URGENT
+from pursue_runtime.observer.ordering import LONGEST, is_order
 
 
 class UIOrders:
@@ -19,19 +19,20 @@ class UIOrders:
 
     def __init__(self, model: Model, ending: Ending, answered: Callable[[str, bool, str], object]) -> None:
         self._menu, self._answered = model.orders, answered
-        self._orders = rospy.Publisher(ORDERS, String, queue_size=20, tcp_nodelay=True) if self._menu else None
-        if self._menu:
-            subscribe(ANSWERS, OrderAnswer, self._on_answer, ending, queue_size=100)
+        self._orders = rospy.Publisher(ORDERS, String, queue_size=20, tcp_nodelay=True)
+        subscribe(ANSWERS, OrderAnswer, self._on_answer, ending, queue_size=100)
 
-    def order(self, text: str) -> bool:
-        """Publish an order, such as `tea within 5 min`, or `cancel tea`; return False for what is none of this
-        scenario."""
-        words = text.split(maxsplit=2)
-        named = words[1:2] if words[:1] in ([CANCEL], [URGENT]) and len(words) > 1 else words[:1]
-        if self._orders is None or named not in [[word] for word in self._menu]:
+    def typed(self, text: str) -> bool:
+        """Publish an order, such as `tea within 5 min`, `bot1 at room4 within 10 min` or `cancel tea`; return False
+        for what may be something else."""
+        if not is_order(text, self._menu):
             return False
-        self._orders.publish(text)
+        self.order(text)
         return True
+
+    def order(self, text: str) -> None:
+        """Publish what is an order, or is to be one: who takes it says what is wrong with it."""
+        self._orders.publish(text[: 2 * LONGEST])
 
     def _on_answer(self, message: OrderAnswer) -> None:
         self._answered(message.order, message.accepted, message.text)

@@ -4,19 +4,28 @@
 const SENT = 2000; // ms for which a button that was pressed does nothing: a second press would be a second order
 
 function setOrders() {
-  $("menu").hidden = scene.orders.length === 0;
   say($("within-unit"), scene.counts);
+  $("written").placeholder = example();
   $("order-buttons").replaceChildren(...scene.orders.map(({ word, label }) => {
     const button = make("button", "order", label);
     button.type = "button";
     button.dataset.word = word;
-    onPress(button, () => {
-      const within = $("within").value.trim();
-      send(button, within === "" ? word : `${word} within ${within}`);
-    });
+    onPress(button, () => send(button, inTime(word)));
     return button;
   }));
 }
+
+function example() { // what one may write, with names of this scenario
+  const robot = scene.agents.find((agent) => agent.kind === "robot"), places = Object.keys(scene.places);
+  return robot && places.length ? `${robot.name} at ${places[places.length - 1]}` : "";
+}
+
+function inTime(word) { // with the time that stands in the field
+  const within = $("within").value.trim();
+  return within === "" || / within /.test(word) ? word : `${word} within ${within}`;
+}
+
+onPress($("write"), () => { if ($("written").value.trim()) send($("write"), inTime($("written").value.trim())); });
 
 function send(button, word) {
   ask({ do: "order", word, seq: view.seq });
@@ -26,7 +35,7 @@ function send(button, word) {
 }
 
 function showOrders(here) {
-  for (const button of $("order-buttons").children) {
+  for (const button of [$("write"), ...$("order-buttons").children]) {
     enable(button, here && view.status === "running" && button.dataset.sent !== "true" && $("within").checkValidity());
   }
   for (const button of document.querySelectorAll("#answers button")) {
@@ -39,7 +48,7 @@ function showOrders(here) {
     const line = make("li", accepted ? "good" : "bad");
     line.append(make("span", "at", units(at)), make("span", "", `${shown(order)}: ${text}`));
     if (accepted && !order.startsWith("cancel ")) {
-      const button = make("button", "small", "Cancel"), word = order.replace(/^urgent /, "").split(" ")[0];
+      const button = make("button", "small", "Cancel"), word = order.replace(/^urgent /, "").replace(/ within .*$/, "");
       button.type = "button";
       onPress(button, () => send(button, `cancel ${word}`));
       line.append(button);
