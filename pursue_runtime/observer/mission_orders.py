@@ -243,9 +243,11 @@ class MissionOrders(MissionStatus):
         by = 0.0 if done.deadline is None else order.came + done.deadline * self._unit
         self.ordering.answer(OrderAnswer(order.text, True, by))
         self._log("info", f"the order {order.text} is accepted, with plan {self.plan}")
+        self.taken = {"event": order.word, "plan": self.plan, "since": {}}
         if order.how == CANCEL:
             return self._forget(order, done, now)
         since = {clock: order.came - at * self._unit for clock, at in done.clocks.items()}
+        self.taken["since"] = since
         states = self._take(done.moves, now, since=since)
         self.ending.on_order(done.clocks)
         self._since = {}  # nothing that was decided with the plan before stands

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, List, Mapping, Tuple
+from typing import Any, Iterable, List, Mapping, Optional, Tuple
 
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, role_of
@@ -20,40 +20,38 @@ from pursue_runtime.state import WAITING, SystemState
 def with_what_was_written(record: MissionRecord, game: Game) -> Tuple[MissionRecord, Game]:
     """The record and the game with all that was written during the mission; states have it from the start on, as what
     nobody has ordered yet."""
-    said = _said(record)
-    known = {event.name for event in game.scenario.events}
-    if not said or known.issuperset(name for name, _, _ in said):
-        return record, game
     try:
-        scenario = with_written(game.scenario, [(says, within) for _, says, within in said])
+        there = with_orders(game, (record.plans.get(state.plan) for state in reversed(record.states)))
     except NoOrder as problem:
-        return _with_problem(record, f"an order that was written cannot be read: {problem}"), game
+        problems = *record.problems, f"an order that was written cannot be read: {problem}"
+        return replace(record, problems=problems), game
+    return (record if there is game else _padded(record, there)), there
+
+
+def with_orders(game: Game, plans: Iterable[Optional[Mapping[str, Any]]]) -> Game:
+    """The game with what was written by the first of these plans that says that: the newest that was in force. Raises
+    NoOrder."""
+    said = next(filter(None, map(_said, plans)), [])
+    known = {event.name for event in game.scenario.events}
+    if known.issuperset(name for name, _, _ in said):
+        return game
+    scenario = with_written(game.scenario, [(says, within) for _, says, within in said])
     if event_names(game.scenario, len(said)) != tuple(name for name, _, _ in said):
-        return _with_problem(record, "orders that were written have other events than this scenario gives them"), game
-    there = replace(
-        game, scenario=scenario, network=_network(game.network, scenario), objective=scenario_objective(scenario)
-    )
-    return _padded(record, there), there
+        raise NoOrder("its event is not the one that this scenario gives it")
+    network = _network(game.network, scenario)
+    return replace(game, scenario=scenario, network=network, objective=scenario_objective(scenario))
 
 
-def _said(record: MissionRecord) -> List[Tuple[str, str, Fraction]]:
-    """Event, text and time of each order that was written, by the newest plan in force that has any."""
-    for state in reversed(record.states):
-        adds = record.plans.get(state.plan, {}).get("adds")
-        if isinstance(adds, dict):
-            try:
-                return [_one(each) for each in adds["written"]]
-            except (KeyError, TypeError, ValueError, OverflowError):
-                return []
-    return []
+def _said(plan: Optional[Mapping[str, Any]]) -> List[Tuple[str, str, Fraction]]:
+    """Event, text and time of each order that was written by then."""
+    try:
+        return [_one(each) for each in plan["adds"]["written"]] if plan and "adds" in plan else []
+    except (LookupError, TypeError, ValueError, OverflowError):
+        return []
 
 
 def _one(order: Mapping[str, Any]) -> Tuple[str, str, Fraction]:
     return str(order["event"]), str(order["says"]), Fraction(round(Fraction(float(order["within"])) * 1000), 1000)
-
-
-def _with_problem(record: MissionRecord, text: str) -> MissionRecord:
-    return replace(record, problems=(*record.problems, text))
 
 
 def _network(network: Network, scenario: Scenario) -> Network:
@@ -89,7 +87,7 @@ def _heard(automaton: Automaton, heard: Mapping[Tuple[str, str, str], Edge]) -> 
 
 
 def _padded(record: MissionRecord, game: Game) -> MissionRecord:
-    """The record whose states have all automata, variables and clocks of the game."""
+    """The record whose states have all automata, variables and clocks that were added."""
     first = game.moves.initial
     begun = next((state.stamp for state in record.states if state.status != WAITING), 0.0)
 
