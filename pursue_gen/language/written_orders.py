@@ -8,7 +8,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Sequence, Tuple
 
-from pursue_gen.diagnostics import Diagnostic, Severity
+from pursue_gen.diagnostics import Diagnostic, Severity, listed
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.numbers import decimal_text, exact
 from pursue_gen.language.objectives.respond import Respond
@@ -26,7 +26,7 @@ class NoOrder(Exception):
     """What a person has written cannot be ordered; its text, a sentence, says why, and what to write."""
 
 
-_DO = re.compile(r"do\s+(?=\w+\s*$)", re.ASCII)
+_DO = re.compile(r"do\s+(?P<event>\w+)(\s+at\s+(?P<place>\w+))?(\s+by\s+(?P<who>any\s+robot|\w+))?\s*", re.ASCII)
 
 
 def event_names(scenario: Scenario, count: int) -> Tuple[str, ...]:
@@ -41,6 +41,8 @@ def with_written(scenario: Scenario, orders: Sequence[WrittenOrder]) -> Scenario
     """The scenario with these orders behind its own, in this order. Raises NoOrder."""
     if not orders:
         return scenario
+    for says, _ in orders:
+        _check_deed(says, scenario)
     text = scenario.text if scenario.text.endswith("\n") or not scenario.text else f"{scenario.text}\n"
     first, names = text.count("\n") + 1, event_names(scenario, len(orders))
     for name, (phrase, within) in zip(names, orders):
@@ -63,8 +65,27 @@ def _begin(name: str) -> str:
 
 
 def _bare(phrase: str) -> str:
-    """The text without the word that says that an event is to happen."""
-    return _DO.sub("", phrase, count=1) if _DO.match(phrase) else phrase
+    """The text as the language has it: of an event that is to be done its name alone."""
+    deed = _DO.fullmatch(phrase)
+    return deed["event"] if deed else phrase
+
+
+def _check_deed(phrase: str, scenario: Scenario) -> None:
+    """That an event that is to be done happens where it is wanted, and that who is named alone can do it. Raises
+    NoOrder."""
+    deed = _DO.fullmatch(phrase)
+    event = next((each for each in scenario.events if deed and each.name == deed["event"]), None)
+    if deed is None or event is None:
+        return
+    if deed["place"] and (event.location is None or event.location.name != deed["place"]):
+        where = "anywhere" if event.location is None else f"at {event.location.name}"
+        raise NoOrder(f"column {deed.start('place') + 1}: {event.name} happens {where}; order it without at")
+    who, able = deed["who"], {agent.name: agent.is_robot for agent in scenario.doers(event.name)}
+    wanted = {name for name, is_robot in able.items() if name == who or (is_robot and " " in (who or ""))}
+    others = sorted(set(able) - wanted)
+    if who and (others or not wanted):
+        can = f"{listed(others) if others else 'nobody'} can do {event.name}{', too' if wanted else ''}"
+        raise NoOrder(f"column {deed.start('who') + 1}: {can}; order it without by: who does it cannot be chosen")
 
 
 def _sentence(finding: Diagnostic, first: int, names: Sequence[str], orders: Sequence[WrittenOrder]) -> str:
@@ -73,7 +94,7 @@ def _sentence(finding: Diagnostic, first: int, names: Sequence[str], orders: Seq
     number, is_objective = divmod(span.line - first, 2) if span is not None else (-1, 0)
     if span is not None and is_objective and 0 <= number < len(orders):
         phrase = orders[number][0]
-        column = span.column - len(_begin(names[number])) + len(phrase) - len(_bare(phrase))
+        column = span.column - len(_begin(names[number])) + max(0, phrase.find(_bare(phrase)))
         where = f"column {max(1, column)}: "
     hint = CAN_BE_ORDERED if "objective" in finding.hint else finding.hint
     return f"{where}{finding.message}" + (f"; {hint}" if hint else "")

@@ -10,6 +10,7 @@ import re
 from typing import Collection, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from pursue_runtime.event_words import CANCELLED, one_line
+from pursue_runtime.locations import event_of, is_movement
 from pursue_runtime.model import ORDER_DESK, Automaton, Edge, Model, Move, Position
 from pursue_runtime.sentences import marked
 
@@ -209,8 +210,29 @@ def effect(model: Model, position: Position, order: PersonOrder) -> Effect:
         raise Refused(f"the scenario gives {marked(order.event)} no deadline: order it without within")
     if order.within > min(limits.values()):
         most = f"{min(limits.values()):g}"
-        raise Refused(f"the scenario promises {marked(order.event)} within {most} time units: order it within that")
+        why = f"the scenario promises {marked(order.event)} within {most} time units: order it within that"
+        raise Refused(why + _with_more_time(model, order))
     return Effect(moves, {clock: limit - order.within for clock, limit in limits.items()}, order.within)
+
+
+def _with_more_time(model: Model, order: PersonOrder) -> str:
+    """How what an order asks for can be had with more time than the scenario gives it; "" where it is not one event."""
+    asked = [each for each in model.of_kind("safety") if _listens(each.edges, order.event)]
+    words = {
+        edge.word
+        for each in asked
+        for edge in each.edges
+        if each.invariants[edge.source] and edge.sync == "receive" and edge.word != order.event
+    }
+    doing = {edge.word for each in model.automata for edge in each.edges if edge.word in words and _is_deed(edge)}
+    if len(words) != 1 or words != doing:
+        return ""
+    return f", or with more time what is to happen: do {event_of(words.pop())} within {order.within:g}"
+
+
+def _is_deed(edge: Edge) -> bool:
+    """Return True for what somebody does at a place, or ends there."""
+    return edge.sync == "send" and not is_movement(edge.source) and not is_movement(edge.target)
 
 
 def _withdrawn(model: Model, position: Position, event: str) -> List[Move]:

@@ -19,7 +19,11 @@ group "rooms": hall, room1
 event "clean" location room1 duration 3
 event "opens" location hall
 state "open": initially false, true_if opens false_if clean
+event "lift"
+event "call"
 agent "bot" controllable mobile 1 location hall can_do clean, opens
+agent "bot2" controllable mobile 1 location room1 can_do clean, lift
+agent "guest" location hall can_do call
 objective: every place holds 1 robot
 """
 
@@ -34,6 +38,9 @@ STORY = parse(SCENARIO, "story.pur", "story")
         ("not bot at hall", "if order1 then not bot at hall within 10.5"),
         ("clean", "if order1 then clean within 10.5"),
         ("do clean", "if order1 then clean within 10.5"),
+        ("do clean at room1 by any robot", "if order1 then clean within 10.5"),
+        ("do opens by any robot", "if order1 then opens within 10.5"),
+        ("do lift by bot2", "if order1 then lift within 10.5"),
     ],
 )
 def test_what_can_be_ordered_is_an_objective_behind_the_others(says: str, objective: str) -> None:
@@ -61,7 +68,13 @@ def test_several_have_an_event_each() -> None:
         ("do cleen", "column 4: there is no event cleen; did you mean clean?"),
         ("bot is room1", "column 5: expected .* found `is`"),
         ("bot at", "column 8: expected a name after `at`"),
-        ("do clean at room1", "column 1: expected a name.*; expected a condition, as in bot1 at room4"),
+        ("do clean at hall", "column 13: clean happens at room1; order it without at"),
+        ("do lift at hall", "column 12: lift happens anywhere; order it without at"),
+        ("do clean by bot", "column 13: bot2 can do clean, too; order it without by: who does it cannot be chosen"),
+        ("do lift by bot", "column 12: bot2 can do lift; order it without by"),
+        ("do call by any robot", "column 12: guest can do call; order it without by"),
+        ("do nothing by bot", "column 4: there is no event nothing"),
+        ("do clean and opens", "column 1: expected a name.*; expected a condition, as in bot1 at room4"),
         ("avoid clean", "column 1: expected a name"),
         ("patrol hall, room1 every 5 by bot", "column 8: expected"),
         ("if clean then opens", "column 1: expected a name"),

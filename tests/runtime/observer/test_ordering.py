@@ -234,7 +234,11 @@ def test_orders_are_looked_at_one_after_the_other(counter: Counter) -> None:
         ("tea1 within 5 days", "this is no order"),
         ("", "this is no order"),
         ("tea1 " * 100, "this is no order"),
-        ("tea1 within 61", "the scenario promises {tea1} within 60 time units"),
+        (
+            "tea1 within 61",
+            "the scenario promises {tea1} within 60 time units: order it within that, or with more time what is to "
+            "happen: do serve1 within 61",
+        ),
     ],
 )
 def test_what_cannot_be_ordered_is_said_at_once(counter: Counter, text: str, why: str) -> None:

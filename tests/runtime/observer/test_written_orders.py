@@ -194,3 +194,23 @@ def test_a_restarted_observer_goes_on_with_what_was_written() -> None:
     assert answer2.accepted and second.mission.state(second.now).locations["obj4"] == "atRisk"
     driven(second, ARRIVES)
     assert second.mission.state(second.now).locations["obj3"] == "idle"
+
+
+def test_an_observer_that_is_restarted_before_all_have_the_plan_takes_the_order_with_it() -> None:
+    first = Counter()
+    first.order("bot at room1 within 60")
+    request, answer = first.mission.plan_request, json.loads(json.dumps(first.plan()))
+    assert request is not None
+    second = Counter.__new__(Counter)
+    second.log, second.now = [], first.now + 0.5
+    second.mission = first.fresh()
+    replay(second.mission, [
+        {"call": "hear", "args": ["_start_"], "at": first.now, "seq": 1, "status": "running"},
+        {"call": "order", "args": ["bot at room1 within 60"], "at": first.now, "seq": 1, "status": "running"},
+        {"call": "planned", "args": [request.number, answer], "at": second.now, "seq": 1, "status": "running"},
+    ])  # fmt: skip
+    second.mission.on_restart(second.now)
+    second.now += 0.6
+    second.mission.on_word(f"controller_bot:_plan_@{request.number}", second.now)
+    assert second.tick() == [OrderAnswer("bot at room1 within 60", True, 160.0)]
+    assert second.mission.state(second.now).locations["obj3"] == "atRisk"
