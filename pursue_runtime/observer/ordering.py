@@ -200,7 +200,8 @@ def effect(model: Model, position: Position, order: PersonOrder) -> Effect:
         for clock in edge.resets
         if bound.left == clock
     }
-    if len(moves) == 1 and any(_listens(automaton.edges, order.event) for automaton in model.of_kind("safety")):
+    asked = any(_listens(automaton.edges, order.event) for automaton in model.of_kind("safety"))
+    if len(moves) == 1 and (asked or order.says):
         if _waits(model, position, order.event):
             raise Refused(f"{marked(order.event)} was ordered already, and waits for its answer")
         raise Refused("what is asked for is so already")

@@ -41,7 +41,7 @@ def with_asked(request: Request, longer: bool = False) -> Request:
     model = Model(data)
     clocks = {name: float(value) for name, value in request.clocks.items()}
     here = model.completed(Position(dict(request.locations), dict(request.values), clocks))
-    done = effect(model, here, PersonOrder(event_names(_alone(request), len(written))[-1], None, 0.0, says))
+    done = effect(model, here, PersonOrder(event_names(_alone(request), len(written))[-1], None, 0.0, says, says=says))
     after = Model.after(done.moves, here)
     return replace(
         there,

@@ -90,6 +90,15 @@ def test_what_would_need_another_model_of_who_is_under_way_is_refused() -> None:
     assert not answer["won"] and "cannot begin to tell this apart" in answer["why"]
 
 
+def test_what_always_holds_is_refused_too() -> None:
+    text = TEA.replace("mobile 1 location kitchen can_do serve1, serve2", "location room1 can_do serve1")
+    text = text.replace('event "tea2" on_order\n', "").replace("objective: if tea2 then serve2 within 60\n", "")
+    data = {**written(5.0, "", 60), "game": {**GAME, "scenario": text}}
+    data["locations"]["bot"], data["values"]["Pbot"] = "room1", 2
+    answer = replan({**data, "asked": {"says": "bot at room1", "within": 60, "waited": 0.0}}, 5000)
+    assert answer == {"format": 1, "won": False, "why": "what is asked for is so already"}
+
+
 def _with_all(data: Dict[str, Any]) -> Dict[str, Any]:
     data["locations"]["obj2"], data["clocks"]["Cobj2"] = "idle", 5.0
     return data
