@@ -177,7 +177,7 @@ class Model:
             automata = [new.pop(each.name) if each.name in new else _heard(each, heard) for each in self.automata]
             clocks, variables = map(str, data["clocks"]), dict(data["variables"])
             objective = data["objective"]
-            bad = places_of(objective["bad"])
+            goal, bad = places_of(objective["goal"]), places_of(objective["bad"])
             says = {str(name): str(text) for name, text in dict(objective["says"]).items()}
             promises = {str(name): _promised(each) for name, each in dict(objective["promises"]).items()}
             written = tuple(
@@ -186,7 +186,7 @@ class Model:
             self.clocks = tuple(dict.fromkeys((*self.clocks, *clocks)))
         self.automata = (*automata, *new.values())
         self.variables = {**self.variables, **variables}
-        self.bad = tuple(dict.fromkeys((*self.bad, *bad)))
+        self.goal, self.bad = goal, tuple(dict.fromkeys((*self.bad, *bad)))
         self.says, self.promises, self.written = {**self.says, **says}, {**self.promises, **promises}, written
         self.labels = {**self.labels, **{each.event: f"{each.says} within {each.within:g}" for each in written}}
         self._by_name = {automaton.name: automaton for automaton in self.automata}

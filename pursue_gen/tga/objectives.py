@@ -16,6 +16,7 @@ from pursue_gen.language.scenario import (
     Patrol,
     Pause,
     Reach,
+    Ref,
     Request,
     Respond,
     Safety,
@@ -37,8 +38,10 @@ Happened = Mapping[str, str]
 
 
 def scenario_objective(scenario: Scenario) -> Objective:
-    """What the scenario's controller wants. Raises PursueError where it has no objective."""
+    """What the scenario's controller wants: all is achieved once nothing that people have ordered waits for its answer.
+    Raises PursueError where it has no objective."""
     goal = tuple((names.reach_objective(k), names.WIN) for k, _ in enumerate(scenario.reach))
+    goal += tuple(_answered(scenario)) if goal else ()
     bad = [(names.safety_objective(k), names.LOSE) for k, _ in enumerate(scenario.safety)]
     bounded = (k for k, reach in enumerate(scenario.reach) if reach.within is not None)
     bad += [(names.reach_objective(k), names.LATE) for k in bounded]
@@ -48,6 +51,14 @@ def scenario_objective(scenario: Scenario) -> Objective:
         return Objective(Kind.SAFETY, bad=tuple(bad))
     message = f"{scenario.name} has no objective"
     raise Invalid([error("TGA012", message, hint="add a line 'objective: …' or 'reach_objective: …'")])
+
+
+def _answered(scenario: Scenario) -> Iterator[Tuple[Symbol, Symbol]]:
+    """Where the automata are that wait for the answers to orders when none is due."""
+    orders = {event.name for event in scenario.orders}
+    for k, each in enumerate(scenario.safety):
+        if isinstance(each, (Respond, Request)) and isinstance(each.trigger, Ref) and each.trigger.name in orders:
+            yield names.safety_objective(k), IDLE
 
 
 def stated(scenario: Scenario) -> Dict[str, StatedObjective]:

@@ -108,7 +108,7 @@ def with_written(promise: Promise, model: Model, state: SystemState) -> Promise:
 
 def _become(objective: Objective, model: Model, state: SystemState) -> str:
     """What has become of an objective."""
-    goals = dict(model.goal)
+    goals = {name for name, _ in model.goal if model.has(name) and model.automaton(name).kind == "reach"}
     there = {(name, state.locations.get(name, "")) for name in objective.of}
     if not objective.of:
         return NOT_PROMISED

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import List
+
 import pytest
 
 from pursue_gen.language import parse
@@ -34,6 +36,16 @@ def test_the_desk_is_the_environments_and_opens_for_one_event() -> None:
                      [("Pobj", 0), ("Pobj", 1), ("Pobj", 2)]]  # fmt: skip
     assert not edge.controllable and edge.assign == (("order_desk_open", 0),)
     assert dict(network.variables)["order_desk_open"] == 0
+
+
+@pytest.mark.parametrize(("more", "idle"), [("", ["obj"]), (", at_most 2 open", ["obj", "obj2"])])
+def test_where_something_is_to_be_achieved_what_was_ordered_is_answered_first(more: str, idle: List[str]) -> None:
+    story = parse(TEA.format("", 60, more) + 'event "call"\nreach_objective: do serve\n', "x.pur", "x")
+    goal = scenario_objective(story).goal
+    assert goal == (("reachObj", "win"), *((name, "idle") for name in idle))
+    assert solve_scenario(story, DEFAULT).strategy.blocks
+    asked = parse(TEA.format("", 60, more).replace(" on_order", ""), "x.pur", "x")
+    assert scenario_objective(asked).goal == ()
 
 
 def test_a_scenario_without_orders_has_no_desk() -> None:

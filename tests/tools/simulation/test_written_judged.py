@@ -93,6 +93,23 @@ def test_with_faults_no_robot_gets_a_command_that_no_plan_holds() -> None:
         assert outcome.problems == (), outcome.reason
 
 
+def test_what_was_ordered_is_answered_before_a_mission_is_won() -> None:
+    """In this scenario all is achieved after some 25 time units."""
+    mission = ordered("thesis/scenario_1", 3, (), "bot1 at a within 90", "bot1 at c within 99")
+    mission.events.schedule(mission.events.now + 16.0, lambda: mission._order("bot1 at a within 60 min"))
+    assert mission.run().end == GOAL
+    record = mission.recorder.record(mission.events.now)
+    taken = {state.event for state in record.states if state.agent == "order_desk"}
+    last = record.states[-1]
+    waits = [name for name, place in last.locations.items() if place == "atRisk"]
+    assert taken and last.status == "won" and waits == []
+    early = next(state for state in record.states if "atRisk" in state.locations.values())
+    states = [state for state in record.states if state.seq < early.seq]
+    won = replace(record, states=(*states, early._replace(status="won")))
+    found = check(won, stage("thesis/scenario_1").game).findings
+    assert any("status is won, but obj is not idle" in each.text for each in found)
+
+
 def test_a_scenario_without_orders_takes_what_is_written() -> None:
     mission = ordered("thesis/scenario_1", 1, (), "bot1 at a within 40")
     assert mission.run().end == GOAL
