@@ -522,6 +522,7 @@ def test_changes_are_found_where_only_a_policy_shows_that_they_win() -> None:
     found = {change.what: change for change in findings(scenario, DEFAULT, Budget(Limits(work=3_000_000))).changes}
     patrol, charge = found["deadline"], found["charges"]
     assert not patrol.least and patrol.next_lost == patrol.before == "600"
-    for old, new in (("every 10 min", f"every {patrol.after} s"), ("charges in 10 min", f"charges in {charge.after} s")):
+    changes = ((f"every {patrol.after} s", "every 10 min"), (f"charges in {charge.after} s", "charges in 10 min"))
+    for new, old in changes:
         changed = parse(BARN.replace(old, new), "barn.pur", "barn")
         assert solved(translate(changed), scenario_objective(changed), DEFAULT).strategy
