@@ -95,7 +95,7 @@ def findings(scenario: Scenario, rules: Rules, budget: Budget) -> Findings:
     won: Dict[int, _Win] = {}
     lost: Dict[int, str] = {}
     undecided: Dict[int, str] = {}
-    guesses = budget.split(_FOR_GUESSES)
+    for_guesses = budget.work * _FOR_GUESSES
     ideal = next((k for k, repair in enumerate(tried) if repair.what == "game"), None)
     # What says most comes first. Long lists come last: they make numbers larger, and larger games.
     for k in sorted(range(len(tried)), key=lambda k: (_turn(tried[k]), len(tried[k].values) > _PROBES[0], k)):
@@ -118,6 +118,7 @@ def findings(scenario: Scenario, rules: Rules, budget: Budget) -> Findings:
             lost[k] = repair.say(repair.values[-1])
         else:
             won[k] = win
+    guesses = budget.with_work(for_guesses)
     for k in sorted(undecided):
         guess = _guess(tried[k], scenario, rules, guesses)
         if guess is not None:

@@ -5,6 +5,7 @@ The exact game alone does not decide what is large; a strategy in shares or by a
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Optional
 
@@ -42,7 +43,8 @@ def guessed(
     if objective.reaches or len(promises(objective)) <= 1:
         return None
     several, how = can_be_shared(network, objective), (network, objective, reaction)
-    limits = budget.part(shared if several else alone)
+    # of seconds all that is left: a part of a person's limit would be too short even for what takes no work
+    limits = replace(budget.part(shared if several else alone), seconds=budget.part().seconds)
     found = won_beside_tours(*how, SolveOptions(limits))
     if found is None and several:
         found = won_in_shares(*how, SolveOptions(limits), EFFORTS[:2])
