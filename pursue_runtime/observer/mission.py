@@ -251,6 +251,10 @@ class Mission(MissionOrders):
 
     def _take_command(self, moves: Tuple[Move, ...], now: float) -> List[SystemState]:
         """Apply the moves of a command, unless a robot that takes part is not where the state has it."""
+        out = self.service.commanded(moves)
+        if out:
+            self._reject("uncommanded", f"{moves[0].edge.word}: {out} is out of service")
+            return []
         if self.robots.refuse(moves, self.position(now).values):
             self._reject("held", f"{moves[0].edge.word}: {in_words(' and '.join(self.robots.reasons()))}")
             return self._status_changes(now)

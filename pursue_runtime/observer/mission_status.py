@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, Mapping, Optional
+from typing import Any, Dict, List, Mapping, Optional, Set
 
 from pursue_runtime.data import DataError
 from pursue_runtime.event_words import FINISH
@@ -11,7 +11,7 @@ from pursue_runtime.model import Model, Position
 from pursue_runtime.observer import life
 from pursue_runtime.observer.assumptions import broken_reason
 from pursue_runtime.observer.mission_state import ACTING, MissionState
-from pursue_runtime.observer.planning import PlanRequest, covers, is_uncovered
+from pursue_runtime.observer.planning import PlanRequest, covers, is_uncovered, without_commands
 from pursue_runtime.observer.uncovered import uncovered_position, uncovered_reason
 from pursue_runtime.sentences import as_sentence, in_words, marked
 from pursue_runtime.state import ENDED, HOLDING, LIVE, RUNNING, SystemState
@@ -53,7 +53,10 @@ class MissionStatus(MissionState):
     def on_plan(self, number: int, answer: Mapping[str, Any], now: float) -> List[SystemState]:
         """Take the planner's answer to the request of this number."""
         try:
-            found = self._planning.on_plan(number, answer)
+            asked = self._planning.request
+            out = () if asked is None else asked.out_of_service
+            unneeded = self.service.unneeded(out, self.position(now).locations)
+            found = self._planning.on_plan(number, answer, unneeded)
         except (DataError, KeyError, TypeError) as problem:
             return self.on_no_plan(number, f"the plan cannot be read: {problem}", now)
         proposal = self._planning.proposal
@@ -99,6 +102,7 @@ class MissionStatus(MissionState):
         self._relying = -1
         self._planning.adopt(self.late.union(self.lost))
         self.robots.adopt(state)
+        self.service.adopt(state.out_of_service)
         self.orders.adopt(state.orders, now)
         self.shared_ends.adopt(state)
         self._beginnings.forget()
@@ -165,6 +169,7 @@ class MissionStatus(MissionState):
         relied_on = {name: why for name, why in self.lost.items() if self._matters(name, now)}
         trouble = self._planning.unexcused(relied_on)
         trouble = trouble or self._planning.unavoided(self.ways.blocked)
+        trouble = trouble or self._planning.commanding(self.service.out)
         trouble = trouble or broken_reason(self.model, self.position(now), self._planning.not_assumed)
         trouble = trouble or self._uncovered(now, patience)
         waits = self.robots.reasons()
@@ -177,7 +182,7 @@ class MissionStatus(MissionState):
             if not self._warned:
                 self._log("warn", in_words(trouble))
             self._warned, trouble = True, ""
-        reasons = waits + [f"{node} is silent" for node in sorted(self.silent)]
+        reasons = waits + [f"{node} is silent" for node in sorted(self._missed(now))]
         if not trouble and not reasons and self.status == RUNNING and self._look_at_orders(now):
             pass
         elif not trouble and not reasons and self._stands_idle(now):
@@ -214,6 +219,11 @@ class MissionStatus(MissionState):
             self._log("debug", f"no strategy in state {self.seq}: {uncovered_position(position)}")
         return uncovered_reason(self.model, self._cover, position, tolerance, self.late - set(self.lost))
 
+    def _missed(self, now: float) -> Set[str]:
+        """Return the controllers that are silent, but for those of robots out of service that have nothing to do."""
+        unneeded = self.service.unneeded(self.service.out, self.position(now).locations)
+        return self.silent - (without_commands(self.in_force, unneeded) if self.in_force else set())
+
     def _matters(self, name: str, now: float) -> bool:
         """Return True unless what the plan in force does in this state holds whatever the automaton does."""
         if self._cover is None:
@@ -249,7 +259,8 @@ class MissionStatus(MissionState):
         excused = gone - set(self.ways.turns) - set(awaited)
         ends = [delay for name, delay in self._bounds(position) if name not in gone]
         ahead = max(0.0, min([self._planning.lead_time / self._unit, *ends]))
-        self._planning.request_plan(self.counts["taken"], position, now, ahead, excused, awaited, self.ways)
+        what = position, now, ahead, excused, awaited, self.ways
+        self._planning.request_plan(self.counts["taken"], *what, out=self.service.after())
         return not self._planning.no_plan_reason
 
     def _awaited(self, position: Position) -> Dict[str, float]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from typing import Dict, Iterator, List, NamedTuple, Optional, Tuple
 
-from pursue_runtime.event_words import CANCELLED, one_line
+from pursue_runtime.event_words import CANCELLED, JOINS, LEAVES, one_line
 from pursue_runtime.model import ORDER_DESK, Automaton, Edge, Model, Move, Position
 from pursue_runtime.sentences import marked
 
@@ -42,19 +42,25 @@ _UNITS = {"": 0.0, "s": 1.0, "min": 60.0, "h": 3600.0}
 CANCEL, URGENT = "cancel", "urgent"
 """The words before an order that withdraw it, or have it looked at before those without such a word."""
 
+LEAVE, JOIN = "leave", "join"
+"""The words before a robot that is taken out of service, or is brought back."""
+
+_SERVICE = re.compile(rf"\s*({LEAVE}|{JOIN})\s+([A-Za-z]\w*)\s*", re.ASCII)
+
 _TEXT = re.compile(
     r"\s*(?:(cancel|urgent)\s+)?([A-Za-z]\w*)(?:\s+within\s+(\d{1,9}(?:\.\d{1,6})?)\s*(s|min|h)?)?\s*", re.ASCII
 )
 
 EXPECTED = (
     "the name of an order, perhaps with a time, as in: tea within 300 (time units), tea within 5 min, urgent tea; "
-    "or cancel tea"
+    "or cancel tea; or of a robot: leave bot1, join bot1"
 )
 
 
 class PersonOrder(NamedTuple):
     """An order as it came: its event, within how many time units it is to be answered (None: as the scenario promises),
-    when it came, the text that it is called by, and the word before it (CANCEL, URGENT, "": none)."""
+    when it came, the text that it is called by, and the word before it (CANCEL, URGENT, "": none). Behind LEAVE and
+    JOIN the event is the robot."""
 
     event: str
     within: Optional[float]
@@ -65,13 +71,19 @@ class PersonOrder(NamedTuple):
     @property
     def word(self) -> str:
         """Return the event of the state in which it is taken."""
-        return self.event + CANCELLED if self.how == CANCEL else self.event
+        words = {CANCEL: self.event + CANCELLED, LEAVE: LEAVES, JOIN: JOINS}
+        return words.get(self.how, self.event)
+
+    @property
+    def is_service(self) -> bool:
+        """Return True where a robot leaves or joins."""
+        return self.how in (LEAVE, JOIN)
 
 
 class OrderAnswer(NamedTuple):
     """The answer to an order: whether it is accepted, by when it is answered at the latest (ROS time; 0: it has no
     deadline, or is refused), within how many time units it could be promised (0: that is not known), and why it is
-    refused, a sentence."""
+    refused, a sentence; of a robot that leaves or joins what that means."""
 
     order: str
     accepted: bool
@@ -83,6 +95,8 @@ class OrderAnswer(NamedTuple):
         """Return the answer as a sentence at the time `now`, with names in braces."""
         if self.order.startswith(f"{CANCEL} "):
             return "cancelled" if self.accepted else f"not cancelled: {self.why}"
+        if self.accepted and self.why:
+            return self.why
         if self.accepted:
             return "accepted" + (f": answered in {max(0.0, self.by - now):.0f} s at the latest" if self.by else "")
         could = f"; it could be promised within {self.possible:g} time units" if self.possible else ""
@@ -109,7 +123,11 @@ class Refused(Exception):
 
 
 def read_order(text: str, came: float, unit: float) -> PersonOrder:
-    """Read `event`, `urgent event within 5 min` or `cancel event`; `unit`: seconds per time unit. Raises Refused."""
+    """Read `event`, `urgent event within 5 min`, `cancel event`, `leave robot` or `join robot`; `unit`: seconds per
+    time unit. Raises Refused."""
+    service = _SERVICE.fullmatch(text) if len(text) <= 200 else None
+    if service is not None:
+        return PersonOrder(service[2], None, came, called(text.strip()), service[1])
     match = _TEXT.fullmatch(text) if len(text) <= 200 else None
     how, event, number, unit_name = match.groups() if match is not None else ("", "", None, None)
     if match is None or (how == CANCEL and number is not None):
@@ -224,7 +242,7 @@ class Ordering:
     def withdraw(self, event: str) -> Optional[PersonOrder]:
         """Take back the newest order of an event that waits for its answer, and return it; None: none waits."""
         for order in sorted(self.waiting, key=lambda each: -each.came):
-            if order.event == event and order.how != CANCEL:
+            if order.event == event and order.how in ("", URGENT):
                 if order is self.first:
                     self.attempts, self.lead_time = 0, 0.0
                 self.waiting.remove(order)

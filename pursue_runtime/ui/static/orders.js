@@ -4,7 +4,9 @@
 const SENT = 2000; // ms for which a button that was pressed does nothing: a second press would be a second order
 
 function setOrders() {
-  $("menu").hidden = scene.orders.length === 0;
+  const robots = scene.agents.filter(({ kind }) => kind === "robot");
+  $("service").hidden = robots.length === 0;
+  $("order-hint").hidden = scene.orders.length === 0;
   say($("within-unit"), scene.counts);
   $("order-buttons").replaceChildren(...scene.orders.map(({ word, label }) => {
     const button = make("button", "order", label);
@@ -16,6 +18,19 @@ function setOrders() {
     });
     return button;
   }));
+  $("service-buttons").replaceChildren(...robots.map(({ name }) => serviceButton(name)));
+}
+
+function serviceButton(robot) {
+  const button = make("button", "service");
+  button.type = "button";
+  button.dataset.robot = robot;
+  onPress(button, () => send(button, `${isOut(robot) ? "join" : "leave"} ${robot}`));
+  return button;
+}
+
+function isOut(robot) {
+  return view.out_of_service.includes(robot);
 }
 
 function send(button, word) {
@@ -29,16 +44,20 @@ function showOrders(here) {
   for (const button of $("order-buttons").children) {
     enable(button, here && view.status === "running" && button.dataset.sent !== "true" && $("within").checkValidity());
   }
-  for (const button of document.querySelectorAll("#answers button")) {
+  for (const button of $("service-buttons").children) {
+    say(button, `${isOut(button.dataset.robot) ? "Bring back" : "Take out"} ${shown(button.dataset.robot)}`);
+  }
+  for (const button of document.querySelectorAll("#answers button, #service-buttons button")) {
     enable(button, here && view.status === "running" && button.dataset.sent !== "true");
   }
+  $("menu").hidden = scene.orders.length + view.ordered.length === 0;
   const known = JSON.stringify(view.ordered);
   if ($("answers").dataset.known === known) return;
   $("answers").dataset.known = known;
   $("answers").replaceChildren(...view.ordered.map(({ at, order, accepted, text }) => {
     const line = make("li", accepted ? "good" : "bad");
     line.append(make("span", "at", units(at)), make("span", "", `${shown(order)}: ${text}`));
-    if (accepted && !order.startsWith("cancel ")) {
+    if (accepted && !/^(cancel|leave|join) /.test(order)) {
       const button = make("button", "small", "Cancel"), word = order.replace(/^urgent /, "").split(" ")[0];
       button.type = "button";
       onPress(button, () => send(button, `cancel ${word}`));
