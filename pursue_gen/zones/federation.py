@@ -47,10 +47,6 @@ class Federation:
                 return True
         return False
 
-    def includes(self, other: Federation) -> bool:
-        """True if every point of the other is in it."""
-        return all(self.includes_zone(zone) for zone in other.zones)
-
     def union(self, other: Federation) -> Federation:
         """The points in either, without zones that lie in one other zone."""
         if not other.zones:
@@ -74,33 +70,6 @@ class Federation:
             if not rest:
                 break
         return Federation(tuple(rest))
-
-    def up(self) -> Federation:
-        """The future: the valuations that some time leads to from it."""
-        return Federation(_maximal(zone.up() for zone in self.zones))
-
-    def down(self) -> Federation:
-        """The past: the valuations from which some time leads into it."""
-        return Federation(_maximal(zone.down() for zone in self.zones))
-
-    def down_within(self, delay: int) -> Federation:
-        """The past by a time in [0, delay]."""
-        return Federation(_maximal(zone.down_within(delay) for zone in self.zones))
-
-    def lasting(self, delay: int, universe: Dbm) -> Federation:
-        """The points of the universe from which every time in [0, delay] stays in the federation.
-
-        Time may leave the universe.
-        """
-        assert delay >= 0
-        inside = self.intersect_zone(universe)
-        if delay == 0 or not inside:
-            return inside
-        if len(self.zones) == 1:
-            zone = self.zones[0].lasting(delay)
-            return Federation() if zone is None else Federation((zone,)).intersect_zone(universe)
-        outside = Federation((universe.up_within(delay),)).minus(self)
-        return inside.minus(outside.down_within(delay))
 
     def reduced(self) -> Federation:
         """The same points in fewer zones: none inside another, and no two whose union is convex."""

@@ -28,6 +28,7 @@ from pursue_gen.synthesis.relaxed import RelaxedPlanner
 from pursue_gen.zones.dbm import Dbm
 from pursue_gen.zones.federation import Federation, predt
 from tests.oracle.zone_graph import Node, Transition, ZoneGraph
+from tests.oracle.zones import lasting, past
 
 Piece = Tuple[Dbm, Action]
 
@@ -136,7 +137,7 @@ class _Fixpoint(ABC):
             if move.target >= 0 and targets[move.target]:
                 before = graph.pre(number, move, targets[move.target])
                 if delay:
-                    before = before.minus(upre).reduced().lasting(delay, graph.nodes[number].reach)
+                    before = lasting(before.minus(upre).reduced(), delay, graph.nodes[number].reach)
                 if before:
                     result.append((move, before))
         return result
@@ -347,7 +348,7 @@ class _Safety(_Fixpoint):
         number = self.pop()
         while number is not None and not self._lost():
             danger, cpre = self._dangers(number)
-            lost = danger.down().minus(predt(_union(before for _, before in cpre), danger))
+            lost = past(danger).minus(predt(_union(before for _, before in cpre), danger))
             new = lost.intersect(self.rest[number]).reduced()
             if new:
                 self.grow(number, new)
@@ -373,7 +374,7 @@ class _Safety(_Fixpoint):
             if safe:
                 danger, cpre = self._dangers(number)
                 # At a bound that only the controller can leave, waiting on is not possible.
-                threatened = safe.intersect(danger.union(self._unforced[number]).down())
+                threatened = safe.intersect(past(danger.union(self._unforced[number])))
                 pieces: List[Piece] = [(zone, None) for zone in safe.minus(threatened).disjoint()]
                 blocks.append(_block(node.state, [*pieces, *_assign(threatened, cpre)]))
         return tuple(blocks)
