@@ -36,17 +36,6 @@ class Federation:
         """True if the valuation is in it; `point[k]` is the value of clock k + 1."""
         return any(zone.contains(point) for zone in self.zones)
 
-    def includes_zone(self, zone: Dbm) -> bool:
-        """True if every point of the zone is in it."""
-        if any(mine.includes(zone) for mine in self.zones):
-            return True
-        rest: List[Dbm] = [zone]
-        for mine in self.zones:
-            rest = [piece for part in rest for piece in part.minus(mine)]
-            if not rest:
-                return True
-        return False
-
     def union(self, other: Federation) -> Federation:
         """The points in either, without zones that lie in one other zone."""
         if not other.zones:

@@ -28,7 +28,7 @@ from pursue_gen.synthesis.relaxed import RelaxedPlanner
 from pursue_gen.zones.dbm import Dbm
 from pursue_gen.zones.federation import Federation, predt
 from tests.oracle.zone_graph import Node, Transition, ZoneGraph
-from tests.oracle.zones import lasting, past
+from tests.oracle.zones import includes_zone, lasting, past
 
 Piece = Tuple[Dbm, Action]
 
@@ -213,7 +213,7 @@ class _Reach(_Fixpoint):
 
     def _won(self) -> bool:
         """True if all of the start is won."""
-        return bool(self.found) and self.found[0].includes_zone(self.graph.start)
+        return bool(self.found) and includes_zone(self.found[0], self.graph.start)
 
     def _refresh(self, changed: Set[int]) -> None:
         """Take in new nodes, and those in which more is reached: what was won there stays won."""
@@ -356,7 +356,7 @@ class _Safety(_Fixpoint):
         return not self._lost()
 
     def _lost(self) -> bool:
-        return not self.rest or not self.rest[0].includes_zone(self.graph.start)
+        return not self.rest or not includes_zone(self.rest[0], self.graph.start)
 
     def _dangers(self, number: int) -> Tuple[Federation, List[Tuple[Transition, Federation]]]:
         """E, where something bad is at hand, and where each of the controller's moves is safe."""

@@ -70,6 +70,11 @@ def union(zones: Iterable[Dbm]) -> Federation:
     return Federation().union(Federation(tuple(zones)))
 
 
+def includes_zone(federation: Federation, zone: Dbm) -> bool:
+    """True if every point of the zone is in it."""
+    return any(mine.includes(zone) for mine in federation.zones) or not Federation((zone,)).minus(federation)
+
+
 def past(federation: Federation) -> Federation:
     """The valuations from which some time leads into it."""
     return union(zone.down() for zone in federation.zones)

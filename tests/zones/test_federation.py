@@ -8,7 +8,7 @@ from pursue_gen.zones.dbm import Dbm, raw
 from pursue_gen.zones.federation import Federation, predt
 from tests.oracle.zones import past
 from tests.synthesis.zones import DIM, Point, delays, federations, later, points, times, zones
-from tests.zones.twins import Twin, holds, includes, lasting, python, twins
+from tests.zones.twins import Twin, holds, includes, includes_zone, lasting, python, twins
 
 
 @twins
@@ -26,7 +26,7 @@ def test_union_intersect_minus(twin: Twin, a: Federation, b: Federation, point: 
 def test_includes(twin: Twin, a: Federation, b: Federation, zone: Dbm) -> None:
     mine, its, alone = twin.federation(a), twin.federation(b), twin.federation(Federation.of(zone))
     assert includes(mine, its) == (not its.minus(mine))
-    assert mine.includes_zone(twin.zone(zone)) == (not alone.minus(mine))
+    assert includes_zone(mine, twin.zone(zone)) == (not alone.minus(mine))
     assert includes(mine.union(its), mine)
 
 
@@ -95,7 +95,7 @@ def test_a_tie_is_lost(twin: Twin) -> None:
     at, after = twin.federation(Federation.of(at_two)), twin.federation(Federation.of(after_two))
     assert not twin.predt(at, at)
     assert not twin.predt(after, after), "no first instant: the race is lost as well"
-    assert twin.predt(at, after).includes_zone(twin.zone(at_two.down()))
+    assert includes_zone(twin.predt(at, after), twin.zone(at_two.down()))
 
 
 def test_the_empty_federation() -> None:

@@ -141,9 +141,16 @@ def lasting(federation: Any, delay: int, universe: Any) -> Any:
     return federation.lasting(delay, universe)
 
 
+def includes_zone(federation: Any, zone: Any) -> bool:
+    """True if every point of the zone is in it, by its implementation or the oracle."""
+    if isinstance(federation, Federation):
+        return oracle.includes_zone(federation, zone)
+    return bool(federation.includes_zone(zone))
+
+
 def includes(federation: Any, other: Any) -> bool:
     """True if every point of the other is in it."""
-    return all(map(federation.includes_zone, other.zones))
+    return all(includes_zone(federation, zone) for zone in other.zones)
 
 
 def holds(zones: Any, point: Sequence[Number]) -> bool:
