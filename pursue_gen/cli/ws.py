@@ -63,7 +63,8 @@ def ws(
     if floor is not None:
         read, plan, levels = placed_on(read, floor, spot_distance, told)
         spare = spare_spots(read, levels, spot_distance, sizes_of(read, told))
-        extras = replace(extras, floor=plan, spare=spare)
+        heights = {level.name: level.elevation for level in levels if level.elevation is not None}
+        extras = replace(extras, floor=plan, spare=spare, levels=heights)
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")
     made = api.write_workspace(solve_and_print(read, request, explain), folder, extras, force)

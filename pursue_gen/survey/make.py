@@ -25,10 +25,11 @@ from pursue_gen.survey.plan import Pair, Plan
 from pursue_gen.survey.routes import Route, Routes
 from pursue_gen.survey.spots import Spots, Standing, proposed_spots
 from pursue_gen.survey.times import Drive, window
-from pursue_gen.workspace.levels import STOREY, Level, check_levels, on_level
+from pursue_gen.workspace.levels import Level, check_levels, on_level
 from pursue_gen.workspace.map_check import check_spots
 from pursue_gen.workspace.map_spots import with_poses, with_spots
 from pursue_gen.workspace.robot_size import Sizes
+from pursue_runtime.controller.frames import STOREY
 
 MOST_PLACES = 200
 """More places than that take too long and too much memory."""

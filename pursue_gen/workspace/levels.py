@@ -21,10 +21,8 @@ from pursue_gen.drawing.ground import Ground, read_ground
 from pursue_gen.files import compose_yaml, read_text, span_of
 from pursue_gen.language.scenario import Pose, Scenario
 from pursue_runtime.bounded import BadText, node_value
+from pursue_runtime.controller.frames import STOREY
 
-STOREY = 0.5
-"""Metres in height by which places are on different floors, and from its elevation a place is on a level. Not
-measured."""
 _HINT = "name each level with its map: levels: {L1: {map: floor1.yaml, elevation: 0}, …}"
 _NAME = re.compile(r"\w+", re.ASCII)  # it stands in names of files and frames
 
