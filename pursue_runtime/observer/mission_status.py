@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, Mapping, Optional, Set
+from typing import AbstractSet, Any, Dict, List, Mapping, Optional, Set, Tuple
 
 from pursue_runtime.data import DataError
 from pursue_runtime.event_words import FINISH
@@ -22,6 +22,9 @@ from pursue_runtime.zones import due
 COVER_GRACE = 2.0
 """Seconds for which clocks may be outside what the strategy covers while no agent is late: words may be lost, and are
 published again."""
+
+IS_LATE, WAS_LOST = "is late by", "was lost before"
+"""How the reason begins why a robot counts as lost that is late, and one that did before the observer was restarted."""
 
 
 class MissionStatus(MissionState):
@@ -96,7 +99,7 @@ class MissionStatus(MissionState):
             self.ending.begin(self.position(now))
         self.seq, self._since = state.seq, {}
         self._event, self._agent, self._ended = state.event, state.agent, state.stamp if state.status in ENDED else None
-        self.late, self.lost, self.silent = set(state.late), dict.fromkeys(state.lost, "was lost before"), set()
+        self.late, self.lost, self.silent = set(state.late), dict.fromkeys(state.lost, WAS_LOST), set()
         self._early, self._warned = {}, False
         self.ways.turns.clear()
         self._relying = -1
@@ -193,7 +196,8 @@ class MissionStatus(MissionState):
             reasons.append(f"{trouble}; {self._planning.progress()}")
         else:
             trouble += f"; no other plan: {self._planning.no_plan_reason}"
-            awaited = " and ".join(map(marked, sorted(self.late - set(self.lost))))
+            late = {name for name, why in self.lost.items() if why.startswith((IS_LATE, WAS_LOST))} & self._in_order
+            awaited = " and ".join(map(marked, sorted(self.late - (set(self.lost) - late))))
             if not awaited:
                 self._conclude(life.STOP, trouble, now)
                 return
@@ -266,17 +270,40 @@ class MissionStatus(MissionState):
     def _awaited(self, position: Position) -> Dict[str, float]:
         """Return the agents that are late, and the time units until each counts as lost."""
         late = {name: delay + self._lost_after for name, delay in self._late_agents(position)}
-        return {name: left for name, left in late.items() if name not in self.ways.turns}
+        return {name: left for name, left in late.items() if left > 0 and name not in self.ways.turns}
+
+    def _losing(self, position: Position) -> List[Tuple[str, float]]:
+        """Return the late agents that will count as lost, and the time units until then (negative: overdue).
+
+        With orders of passage nobody gets in the way of who is late: the others pass before it or wait, so it counts as
+        lost only where all of them wait.
+        """
+        late = [(name, delay + self._lost_after) for name, delay in self._late_agents(position)]
+        if self._in_order.isdisjoint(name for name, _ in late) or self._all_wait(position):
+            return late
+        return [(name, delay) for name, delay in late if name not in self._in_order]
+
+    @property
+    def _in_order(self) -> AbstractSet[str]:
+        """Return who passes places in an order; others wait for them."""
+        return frozenset() if self._cover is None else self._cover.in_order
 
     def _stands_idle(self, now: float) -> bool:
-        """Return True while nobody does anything but agents that are late, and the plan in force waits for them."""
+        """Return True while nobody does anything but agents that are late, and the plan in force waits for them.
+
+        With orders of passage that is as it should be, as long as they are not lost.
+        """
         position = self.position(now)
-        late = {name for name, _ in self._late_agents(position)}
-        others = [each.name for each in self.model.of_kind(*ACTING) if each.name not in late.union(self.lost)]
-        if not late or self._cover is None or self._on_uncovered != "plan":
+        if self._cover is None or self._on_uncovered != "plan" or not self._late_agents(position):
             return False
+        return not self._in_order and self._all_wait(position)
+
+    def _all_wait(self, position: Position) -> bool:
+        """Return True if nobody is under way but agents that are late or lost, and the plan in force has no command."""
+        gone = self.late.union(self.lost)
+        others = [each.name for each in self.model.of_kind(*ACTING) if each.name not in gone]
         busy = any(is_under_way(position.locations[name]) for name in others)
-        return not busy and not self._has_commands(self._cover, position)
+        return not busy and (self._cover is None or not self._has_commands(self._cover, position))
 
     @staticmethod
     def _has_commands(cover: Cover, position: Position) -> bool:
