@@ -78,6 +78,11 @@ def end_of(word: str) -> str:
     return word[: -len(_PART)] + _DONE if word.endswith(_PART) else ""
 
 
+def event_of(word: str) -> str:
+    """Return the event of a word: for that of the end of an action the action."""
+    return word[: -len(_DONE)] if word.endswith(_DONE) else word
+
+
 def _is_of(source: str, word: str, end: str) -> bool:
     """Return True for the word of the event that goes on at this location with that end behind it."""
     return word.endswith(end) and is_action(source) and source.startswith(action(word[: -len(end)], ""))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from copy import copy
 from fractions import Fraction
-from typing import Any, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Tuple
+from typing import AbstractSet, Any, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Tuple
 
 from pursue_runtime.bounded import whole
 from pursue_runtime.data import reading
@@ -90,6 +91,14 @@ class Promised(NamedTuple):
     is_answered: bool
 
 
+class Written(NamedTuple):
+    """An order that a person has written: its event, what is to hold or to happen, within how many time units."""
+
+    event: str
+    says: str
+    within: float
+
+
 class Move(NamedTuple):
     """One automaton's part of what an event does."""
 
@@ -140,12 +149,56 @@ class Model:
             """When the mission ends; None: its scenario does not say so."""
             self.given_up = tuple(str(text) for text in objective.get("given_up") or ())
             """Optional objectives that the mission does not promise."""
+        self.written: Tuple[Written, ...] = ()
+        """The orders that people have written so far; their events are behind those of the scenario."""
         self._by_name = {automaton.name: automaton for automaton in self.automata}
 
     @property
     def orders(self) -> Tuple[str, ...]:
         """What people can order, in the order of the scenario."""
-        return tuple(edge.word for automaton in self.of_kind(ORDER_DESK) for edge in automaton.edges)
+        words = tuple(edge.word for automaton in self.of_kind(ORDER_DESK) for edge in automaton.edges)
+        return words[: len(words) - len(self.written)]
+
+    def extended(self, data: Mapping[str, Any]) -> Model:
+        """Return the model with what a plan adds for orders that people have written. Raises DataError."""
+        model = copy(self)
+        model._extend(data)
+        return model
+
+    def become(self, other: Model) -> None:
+        """Be as another model of the scenario, which has more or less of what people have written, for all who hold
+        this one."""
+        vars(self).update(vars(other))
+
+    def _extend(self, data: Mapping[str, Any]) -> None:
+        with reading("what a plan adds"):
+            new = {each.name: each for each in map(_automaton, data["automata"])}
+            heard = {tuple(map(str, each)) for each in data["heard"]}
+            automata = [new.pop(each.name) if each.name in new else _heard(each, heard) for each in self.automata]
+            clocks, variables = map(str, data["clocks"]), dict(data["variables"])
+            objective = data["objective"]
+            bad = places_of(objective["bad"])
+            says = {str(name): str(text) for name, text in dict(objective["says"]).items()}
+            promises = {str(name): _promised(each) for name, each in dict(objective["promises"]).items()}
+            written = tuple(
+                Written(str(each["event"]), str(each["says"]), float(each["within"])) for each in data["written"]
+            )
+            self.clocks = tuple(dict.fromkeys((*self.clocks, *clocks)))
+        self.automata = (*automata, *new.values())
+        self.variables = {**self.variables, **variables}
+        self.bad = tuple(dict.fromkeys((*self.bad, *bad)))
+        self.says, self.promises, self.written = {**self.says, **says}, {**self.promises, **promises}, written
+        self.labels = {**self.labels, **{each.event: f"{each.says} within {each.within:g}" for each in written}}
+        self._by_name = {automaton.name: automaton for automaton in self.automata}
+
+    def completed(self, position: Position) -> Position:
+        """Return the position with what this model has more, as at the start."""
+        first = self.initial()
+        return Position(
+            {**first.locations, **position.locations},
+            {**first.values, **position.values},
+            {**first.clocks, **position.clocks},
+        )
 
     def automaton(self, name: str) -> Automaton:
         """The automaton of that name. Raises KeyError."""
@@ -266,6 +319,18 @@ def _automaton(data: Mapping[str, Any]) -> Automaton:
     by_source = {location: tuple(edge for edge in edges if edge.source == location) for location in invariants}
     named = str(data["name"]), str(data["kind"]), str(data["initial"])
     return Automaton(*named, invariants, edges, by_source, frozenset(map(str, data.get("reacts_to", ()))))
+
+
+def _heard(automaton: Automaton, heard: AbstractSet[Tuple[str, ...]]) -> Automaton:
+    """The automaton, with steps of its own that others hear of now."""
+    edges = tuple(
+        edge._replace(sync="send") if (automaton.name, edge.source, edge.target, edge.word) in heard else edge
+        for edge in automaton.edges
+    )
+    if edges == automaton.edges:
+        return automaton
+    by_source = {place: tuple(edge for edge in edges if edge.source == place) for place in automaton.invariants}
+    return automaton._replace(edges=edges, by_source=by_source)
 
 
 def _edge(data: Mapping[str, Any]) -> Edge:

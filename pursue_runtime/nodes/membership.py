@@ -5,27 +5,33 @@ or from what this machine has received (~received); with ~again they stay for th
 from __future__ import annotations
 
 import os
-from typing import Dict, Optional
+from contextlib import suppress
+from copy import copy
+from typing import Any, Dict, Mapping, Optional
 
 import rospy
 from pursue_msgs.msg import SystemState as SystemStateMessage
+from std_msgs.msg import String
 
 from pursue_runtime.data import DataError, Package
-from pursue_runtime.event_words import STATE
+from pursue_runtime.event_words import PLAN, STATE
 from pursue_runtime.folders import ros_home
 from pursue_runtime.missions import Missions, Source, own_source
 from pursue_runtime.model import Model
-from pursue_runtime.nodes.node import Ending
+from pursue_runtime.nodes.node import Ending, subscribe
 from pursue_runtime.nodes.state_printer import StatePrinter
 from pursue_runtime.nodes.witness import Witness
 from pursue_runtime.parameters import flag
 from pursue_runtime.state import WAITING, SystemState
 from pursue_runtime.state_checks import model_problem
 from pursue_runtime.state_filter import OLD, OTHER, OURS, REFUSED, StateFilter
-from pursue_runtime.strategy import Strategy
+from pursue_runtime.strategy import Strategy, parse_plan
 
 PATIENCE = 1.0
 """Seconds of real time for which a node that starts waits for an observer whose states name the mission."""
+
+PLANS = 10
+"""So many plans are remembered: one may be in force whose successors were not taken. Not measured."""
 
 
 class Membership:
@@ -47,10 +53,34 @@ class Membership:
         self.source = self._choose()
         self.model = Model(self.source.read("model.yaml"))
         self._filter = StateFilter(self.source.mission, own.mission, self.again)
-        self._filter.check = lambda state: model_problem(self.model, state)
+        self._plain = copy(self.model)
+        self._added: Dict[int, Mapping[str, Any]] = {}  # by the number of a plan, what it adds to the model
+        self._filter.check = self._problem
+        subscribe(PLAN, String, self._on_plan, ending, queue_size=10, tcp_nodelay=True)
         self.count_malformed = self._filter.count_malformed
         self._over = False
         self._witness = Witness(lambda: None if self._over else self._filter.newest)
+
+    def _on_plan(self, message: String) -> None:
+        """Keep what a plan adds to the model: orders that people have written."""
+        with suppress(DataError):  # the nodes that need the plan say what is wrong with it
+            plan = parse_plan(message.data)
+            if plan.get("mission", "") in ("", self.source.mission):
+                newest = sorted(self._added)[1 - PLANS :]
+                self._added = {**{number: self._added[number] for number in newest}, plan["plan"]: plan.get("adds", {})}
+
+    def _problem(self, state: SystemState) -> str:
+        """Return why a state is none of this mission, whose model has what is written in the plan of the state."""
+        added = self._added.get(state.plan)
+        model = self._plain if state.plan == 0 else self.model
+        try:
+            model = self._plain.extended(added) if added else model
+        except DataError as wrong:
+            return str(wrong)
+        problem = model_problem(model, state)
+        if not problem and model.written != self.model.written:
+            self.model.become(model)
+        return problem
 
     @property
     def refused(self) -> str:

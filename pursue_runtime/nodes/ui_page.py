@@ -160,7 +160,8 @@ class UIPage:
         if request.do == "start" and ui.can_start():
             ui.start()
             return ""
-        if request.do == "order" and ui.is_running and ui.orders.order(request.word):
+        if request.do == "order" and ui.is_running:
+            ui.orders.order(request.word)
             return ""
         if not request.word or state is None or request.do == "order":
             return f"{request.word or request.do} is not possible now."

@@ -57,7 +57,7 @@ class Typed:
                 ui.start()
             elif ui.is_running and not text.strip():
                 self.show(again=True)
-            elif ui.is_running and ui.orders.order(text.strip()):
+            elif ui.is_running and ui.orders.typed(text.strip()):
                 pass  # its answer is shown when it comes
             else:
                 self.find()

@@ -84,6 +84,17 @@ class Automata:
         """Set every clock to zero at the time `now`."""
         self._zeros, self._position = dict.fromkeys(self.model.clocks, now), None
 
+    def extend(self, model: Model, now: float) -> None:
+        """Go on with a model that has more: what is new is as at the start, with clocks that begin now."""
+        locations = {name: machine.location for name, machine in self._machines.items()}
+        self.model, self._position = model, None
+        self._machines = {name: AutomatonMachine(machine) for name, machine in machines_of(model).items()}
+        for name, location in locations.items():
+            self._machines[name].set(location)
+        self._values = {**model.variables, **self._values}
+        self._zeros = {**dict.fromkeys(model.clocks, now), **self._zeros}
+        self._internal = {automaton.name: _Internal(automaton) for automaton in model.of_kind("safety")}
+
     def adopt(self, state: SystemState) -> None:
         """Set locations, variables and clocks as they are in a state of this model."""
         for name, location in state.locations.items():

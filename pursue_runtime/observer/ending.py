@@ -24,7 +24,7 @@ class Ending:
     """The end of one mission; nothing of it where there is a goal."""
 
     def __init__(self, model: Model) -> None:
-        self._model = model
+        self.model = model
         self._kept: Dict[str, Kept] = {}
         self._ahead: Dict[str, float] = {}  # time units by which clocks of orders that were wanted sooner are ahead
         self._is_whole = True  # all of the mission was seen
@@ -34,7 +34,7 @@ class Ending:
     @property
     def begins(self) -> Tuple[float, ...]:
         """So many time units after the start its end begins; none where no time has to come any more."""
-        ends = self._model.ends
+        ends = self.model.ends
         if ends is None or ends.after is None or self._awaited is not None or self._is_quiet:
             return ()
         return (ends.after,)
@@ -46,7 +46,7 @@ class Ending:
 
     def on_time(self, position: Position) -> None:
         """Begin the end: its time has come."""
-        if self._model.ends is not None and self._model.ends.answered:
+        if self.model.ends is not None and self.model.ends.answered:
             self._is_quiet = True
         else:
             self.begin(position)
@@ -58,7 +58,7 @@ class Ending:
     def on_cancel(self, moves: Tuple[Move, ...]) -> None:
         """Take that what was due is wanted no longer."""
         for name, edge in moves:
-            for bound in self._model.automaton(name).invariants[edge.source]:
+            for bound in self.model.automaton(name).invariants[edge.source]:
                 self._ahead.pop(bound.left, None)
             if self._awaited is not None:
                 self._awaited.discard(name)
@@ -66,9 +66,9 @@ class Ending:
     def on_moves(self, moves: Tuple[Move, ...], clocks: Mapping[str, float]) -> None:
         """Take what an event does, at the time of these clocks: some of it may be an answer."""
         for name, edge in moves:
-            bounds = self._model.automaton(name).invariants if name in self._model.promises else {}
+            bounds = self.model.automaton(name).invariants if name in self.model.promises else {}
             due = bounds.get(edge.source)
-            if due and not bounds[edge.target] and (name, edge.target) not in self._model.bad:
+            if due and not bounds[edge.target] and (name, edge.target) not in self.model.bad:
                 times, longest = self._kept.get(name, Kept())
                 clock = due[0].left
                 self._kept[name] = Kept(times + 1, max(longest, clocks[clock] - self._ahead.pop(clock, 0.0)))
@@ -85,7 +85,7 @@ class Ending:
             return not self._awaited
         if not self._is_quiet or any(self._due(position)):
             return False
-        ends = self._model.ends
+        ends = self.model.ends
         by_time = ends is not None and ends.after is not None
         return by_time or any(name in self._kept for name in self._answered())
 
@@ -98,16 +98,16 @@ class Ending:
     def says(self) -> str:
         """Return what its end waits for, as a sentence; "" where it has not begun."""
         if self._awaited is None:
-            after = self._model.ends is not None and self._model.ends.after is not None
+            after = self.model.ends is not None and self.model.ends.after is not None
             return "the mission ends as soon as all is answered" if self._is_quiet and after else ""
-        texts = "; ".join(self._model.promises[name].says for name in self._answered() if name in self._awaited)
+        texts = "; ".join(self.model.promises[name].says for name in self._answered() if name in self._awaited)
         what = f"what is due is answered: {quoted(texts)}" if texts else "all orders are acknowledged"
         return f"the mission ends as soon as {what}"
 
     def kept(self) -> str:
         """Return what was kept, as a part of a sentence; "" where that is not known."""
         found: List[str] = []
-        for name, promise in self._model.promises.items():
+        for name, promise in self.model.promises.items():
             times, longest = self._kept.get(name, Kept())
             text = promise.says
             if promise.kept and self._is_whole:
@@ -119,12 +119,12 @@ class Ending:
         return quoted("; ".join(found))
 
     def _answered(self) -> Iterator[str]:
-        return (name for name, promise in self._model.promises.items() if promise.is_answered)
+        return (name for name, promise in self.model.promises.items() if promise.is_answered)
 
     def _due(self, position: Position) -> Iterator[str]:
         """Return the objectives whose answer is due here."""
         for name in self._answered():
-            if self._model.automaton(name).invariants[position.locations[name]]:
+            if self.model.automaton(name).invariants[position.locations[name]]:
                 yield name
 
 

@@ -98,11 +98,14 @@ class Journal:
         The start and the end of the mission are on the disk when this returns, everything else soon after `sync_soon`.
         """
         before, status = self._mission.revision(), self._mission.status
+        self._mission.taken = None
         states = CALLS[name](self._mission, *args, now)
         if self._mission.revision() != before:
             self.last = now
             turn = self._mission.status != status and (status == WAITING or self._mission.status in ENDED)
-            self._write({"at": now, "call": name, "args": args, **_end_of(self._mission)}, sync=turn)
+            entry = {"at": now, "call": name, "args": args, **_end_of(self._mission)}
+            ordered = self._mission.taken
+            self._write(entry if ordered is None else {**entry, "ordered": ordered}, sync=turn)
         return states
 
     def adopt(self, state: SystemState, now: float) -> List[SystemState]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Callable, FrozenSet, List, Mapping, Optional, Tuple
+from typing import Any, Callable, FrozenSet, List, Mapping, Optional, Tuple
 
-from pursue_runtime.model import ORDER_DESK, Move, Position
+from pursue_runtime.data import DataError
+from pursue_runtime.model import ORDER_DESK, Model, Move, Position
 from pursue_runtime.observer.foresight import Foreseen, Foresight
 from pursue_runtime.observer.mission_status import MissionStatus
 from pursue_runtime.observer.ordering import (
@@ -22,6 +23,7 @@ from pursue_runtime.observer.ordering import (
     Refused,
     called,
     effect,
+    meant,
     read_order,
 )
 from pursue_runtime.observer.planning import MIN_LEAD_TIME, Ordered, PlanRequest, Proposal, covers
@@ -41,7 +43,7 @@ class MissionOrders(MissionStatus):
     def on_order(self, text: str, now: float) -> List[SystemState]:
         """Take what a person orders, such as `tea within 5 min`."""
         try:
-            order = read_order(text, now, self._unit)
+            order = read_order(text, now, self._unit, self.model)
             if self.status != RUNNING:
                 why = f": {self.reason}" if self.reason else ""
                 raise Refused(f"the mission is {self.status}{why}; order it again when it runs")
@@ -49,6 +51,7 @@ class MissionOrders(MissionStatus):
                 raise Refused(self.ending.says)
             if order.how == CANCEL and self._withdraw(order):
                 return self._status_changes(now)
+            order = meant(self.model, self.position(now), order)
             self._effect(self.position(now), order)
             self.ordering.add(order)
         except Refused as refusal:
@@ -66,7 +69,7 @@ class MissionOrders(MissionStatus):
 
     def _withdraw(self, cancel: PersonOrder) -> bool:
         """Take back an order that waits for its answer; return False where none does."""
-        order = self.ordering.withdraw(cancel.event)
+        order = self.ordering.withdraw(cancel)
         if order is None:
             return False
         self._say(self.ordering.say, order.text, "it was cancelled")
@@ -89,6 +92,7 @@ class MissionOrders(MissionStatus):
         while self.ordering.first is not None:
             order = self.ordering.first
             try:
+                order = self.ordering.waiting[0] = meant(self.model, self.position(now), order)
                 self._request_with(order, self._effect(self.position(now), order), now)
                 return True
             except Refused as refusal:
@@ -116,7 +120,9 @@ class MissionOrders(MissionStatus):
             self._planning.reset()
             return  # something ends before a plan can come: then the order is looked at again
         after, ahead, spread = foreseen
-        ordered = Ordered(order.word, order.came, done.clocks, WINDOW / self._unit, spread)
+        waited = (now - order.came) / self._unit + ahead
+        says = None if order.event else {"says": order.says, "within": order.within, "waited": waited}
+        ordered = Ordered(order.word, order.came, done.clocks, WINDOW / self._unit, spread, says)
         place = now + ahead * self._unit, order.text
         before = self._planning.request
         out = self.service.after(order)
@@ -159,6 +165,16 @@ class MissionOrders(MissionStatus):
     def _behind(self, order: PersonOrder, position: Position, at: float) -> Position:
         """Return the position behind the order at that time. Raises Refused."""
         return self._effect(position, order).after(position, (at - order.came) / self._unit)
+
+    def on_plan(self, number: int, answer: Mapping[str, Any], now: float) -> List[SystemState]:
+        """Take the planner's answer, as in MissionStatus; one for what was written has what it adds to the model."""
+        request = self._planning.request
+        if request is not None and request.number == number and request.order is not None and request.order.asked:
+            try:
+                self.model.extended(answer["adds"])
+            except (DataError, KeyError) as problem:
+                return self.on_no_plan(number, f"the plan cannot be read: {problem}", now)
+        return super().on_plan(number, answer, now)
 
     def on_no_plan(self, number: int, why: str, now: float) -> List[SystemState]:
         """Take that there is no plan for the request of this number: an order is refused, or as in MissionStatus."""
@@ -205,12 +221,31 @@ class MissionOrders(MissionStatus):
         if not proposal.request.is_of(position, (now - begin) / self._unit):
             self._planning.reset()  # it is proven for another state
             return self._status_changes(now)
+        model = self.model
+        if not order.event:
+            model, order = self._with_written(proposal, order)
+            here = model.completed(self.position(now))
+            done = effect(model, here, order._replace(within=None))
+            position = done.after(here, (now - order.came) / self._unit)
         late = now > begin + ordered.window * self._unit + 1e-9
         if late or not covers(proposal.cover, position, self._tolerance):
             self._planning.expire(proposal, now)
             self.ordering.lead_time = self._planning.lead_time
             return self._status_changes(now)
+        if model is not self.model:
+            self._extend(model, now)
         return self._accept(proposal, order, done, now)
+
+    def _with_written(self, proposal: Proposal, order: PersonOrder) -> Tuple[Model, PersonOrder]:
+        """Return the model with what was written, and the order with its event."""
+        model = self.model.extended(proposal.data["adds"])
+        return model, order._replace(event=model.written[-1].event)
+
+    def _extend(self, model: Model, now: float) -> None:
+        """Go on with a model that has what was written."""
+        self.model = self.ending.model = self.ways.model = model
+        self._automata.extend(model, now)
+        self._planning.written = model.written
 
     def _accept(self, proposal: Proposal, order: PersonOrder, done: Effect, now: float) -> List[SystemState]:
         """Take the order with its plan: both are in the next state."""
@@ -222,9 +257,11 @@ class MissionOrders(MissionStatus):
         by = 0.0 if done.deadline is None else order.came + done.deadline * self._unit
         self.ordering.answer(OrderAnswer(order.text, True, by))
         self._log("info", f"the order {order.text} is accepted, with plan {self.plan}")
+        self.taken = {"event": order.word, "plan": self.plan, "since": {}}
         if order.how == CANCEL:
             return self._forget(order, done, now)
         since = {clock: order.came - at * self._unit for clock, at in done.clocks.items()}
+        self.taken["since"] = since
         states = self._take(done.moves, now, since=since)
         self.ending.on_order(done.clocks)
         self._since = {}  # nothing that was decided with the plan before stands

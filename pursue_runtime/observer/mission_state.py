@@ -81,6 +81,9 @@ class MissionState:
         self._begun: Optional[float] = None
         self._event = self._agent = ""
         self._commanded = False
+        self.taken: Optional[Dict[str, Any]] = None
+        """The order that the last call of the journal has taken or cancelled: its event, the number of its plan, and
+        since when (seconds) the clocks run that it has started."""
         self._ended: Optional[float] = None
         self.goal_at: Optional[float] = None
         """When the goal was reached; the mission is won once all orders were acknowledged."""

@@ -7,9 +7,10 @@ state behind it. Times are seconds of ROS time, unless they are said to be time 
 from __future__ import annotations
 
 import re
-from typing import Dict, Iterator, List, NamedTuple, Optional, Tuple
+from typing import Collection, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from pursue_runtime.event_words import CANCELLED, JOINS, LEAVES, one_line
+from pursue_runtime.locations import event_of, is_movement
 from pursue_runtime.model import ORDER_DESK, Automaton, Edge, Model, Move, Position
 from pursue_runtime.sentences import marked
 
@@ -39,6 +40,9 @@ can come."""
 _UNITS = {"": 0.0, "s": 1.0, "min": 60.0, "h": 3600.0}
 """Units behind the time of an order, in seconds; without one it is in time units of the scenario."""
 
+LONGEST = 200
+"""Letters of an order at most."""
+
 CANCEL, URGENT = "cancel", "urgent"
 """The words before an order that withdraw it, or have it looked at before those without such a word."""
 
@@ -48,31 +52,40 @@ LEAVE, JOIN = "leave", "join"
 _SERVICE = re.compile(rf"\s*({LEAVE}|{JOIN})\s+([A-Za-z]\w*)\s*", re.ASCII)
 
 _TEXT = re.compile(
-    r"\s*(?:(cancel|urgent)\s+)?([A-Za-z]\w*)(?:\s+within\s+(\d{1,9}(?:\.\d{1,6})?)\s*(s|min|h)?)?\s*", re.ASCII
+    r"\s*(?:(cancel|urgent)\s+)?([A-Za-z(][\w ,()]*?)(?:\s+within\s+(\d{1,6}(?:\.\d{1,6})?)\s*(s|min|h)?)?\s*", re.ASCII
 )
 
 EXPECTED = (
     "the name of an order, perhaps with a time, as in: tea within 300 (time units), tea within 5 min, urgent tea; "
-    "or cancel tea; or of a robot: leave bot1, join bot1"
+    "what is to hold or to happen, with a time: bot1 at room4 within 10 min; or cancel tea; or of a robot: leave bot1, "
+    "join bot1"
 )
+
+MOST_WRITTEN = 50
+"""So many different orders people can write in a mission: each is an automaton with a clock. Not measured."""
 
 
 class PersonOrder(NamedTuple):
     """An order as it came: its event, within how many time units it is to be answered (None: as the scenario promises),
     when it came, the text that it is called by, and the word before it (CANCEL, URGENT, "": none). Behind LEAVE and
-    JOIN the event is the robot."""
+    JOIN the event is the robot.
+
+    `says`: what a person has written, which the scenario has no event for; it has one of its own, "" as long as no plan
+    is in force with it.
+    """
 
     event: str
     within: Optional[float]
     came: float
     text: str
     how: str = ""
+    says: str = ""
 
     @property
     def word(self) -> str:
-        """Return the event of the state in which it is taken."""
+        """Return the event of the state in which it is taken; of what has none so far its text."""
         words = {CANCEL: self.event + CANCELLED, LEAVE: LEAVES, JOIN: JOINS}
-        return words.get(self.how, self.event)
+        return words.get(self.how, self.event or self.text)
 
     @property
     def is_service(self) -> bool:
@@ -122,19 +135,60 @@ class Refused(Exception):
     """An order cannot be taken; its text, a sentence, says why."""
 
 
-def read_order(text: str, came: float, unit: float) -> PersonOrder:
-    """Read `event`, `urgent event within 5 min`, `cancel event`, `leave robot` or `join robot`; `unit`: seconds per
-    time unit. Raises Refused."""
-    service = _SERVICE.fullmatch(text) if len(text) <= 200 else None
+def read_order(text: str, came: float, unit: float, model: Model) -> PersonOrder:
+    """Read `event`, `urgent event within 5 min`, `bot1 at room4 within 5 min`, `cancel event`, `leave robot` or
+    `join robot`; `unit`: seconds per time unit. Raises Refused."""
+    service = _SERVICE.fullmatch(text) if len(text) <= LONGEST else None
     if service is not None:
         return PersonOrder(service[2], None, came, called(text.strip()), service[1])
-    match = _TEXT.fullmatch(text) if len(text) <= 200 else None
-    how, event, number, unit_name = match.groups() if match is not None else ("", "", None, None)
-    if match is None or (how == CANCEL and number is not None):
+    match = _TEXT.fullmatch(text) if len(text) <= LONGEST else None
+    how, says, number, unit_name = match.groups() if match is not None else ("", "", None, None)
+    if match is None or "within" in says.split() or (how == CANCEL and number is not None and says in model.orders):
         raise Refused(f"this is no order; expected {EXPECTED}")
     seconds = _UNITS[unit_name or ""]
     within = None if number is None else float(number) * seconds / unit if seconds else float(number)
-    return PersonOrder(event, within, came, called(text.strip()), how or "")
+    order = PersonOrder(says, within, came, called(text.strip()), how or "")
+    if says in model.orders or not _is_written(says, model):
+        return order
+    if within is None and how != CANCEL:
+        raise Refused(f"it says no time; expected one behind it, as in: {says} within 10 min")
+    return order._replace(event="", says=" ".join(says.split()), within=None if within is None else round(within, 3))
+
+
+def is_order(text: str, menu: Collection[str]) -> bool:
+    """Return True for what only an order can be: one of the menu, or what is written with a time, or cancelled; or a
+    robot that leaves or joins."""
+    if len(text) <= LONGEST and _SERVICE.fullmatch(text):
+        return True
+    match = _TEXT.fullmatch(text) if len(text) <= LONGEST else None
+    how, says, number, _ = match.groups() if match is not None else ("", "", None, None)
+    return says in menu or (match is not None and (number is not None or (bool(how) and " " in says)))
+
+
+def _is_written(says: str, model: Model) -> bool:
+    """Return True for what is no name alone, or is that of something that happens."""
+    return not says.isidentifier() or any(edge.word == says for each in model.automata for edge in each.edges)
+
+
+def meant(model: Model, position: Position, order: PersonOrder) -> PersonOrder:
+    """Return an order that was written with the event of the same one before: of one that allows as much time, or that
+    waits for its answer where it is to be cancelled. Raises Refused where there are too many."""
+    alike = [each for each in model.written if each.says == order.says]
+    if not order.says or order.event:
+        return order
+    if order.how == CANCEL:
+        waiting = [each.event for each in alike if _waits(model, position, each.event)]
+        return order._replace(event=waiting[-1] if waiting else "")
+    known = [each.event for each in alike if each.within >= (order.within or 0.0)]
+    if not known and len(model.written) == MOST_WRITTEN:
+        raise Refused(f"{MOST_WRITTEN} different orders were written in this mission; order one of them again")
+    return order._replace(event=known[0] if known else "")
+
+
+def _waits(model: Model, position: Position, event: str) -> bool:
+    """Return True where an objective of the order waits for its answer."""
+    asked = [automaton for automaton in model.of_kind("safety") if _listens(automaton.edges, event)]
+    return any(automaton.invariants[position.locations[automaton.name]] for automaton in asked)
 
 
 def called(text: str) -> str:
@@ -145,7 +199,11 @@ def called(text: str) -> str:
 def effect(model: Model, position: Position, order: PersonOrder) -> Effect:
     """Return what an order does in this position. Raises Refused."""
     orders = model.orders
-    if order.event not in orders:
+    if order.says and not order.event:
+        if order.how == CANCEL:
+            raise Refused(f"nobody waits for {order.says}")
+        return Effect((), {}, order.within)  # what it does is known with its plan
+    if order.event not in (*orders, *(each.event for each in model.written)):
         known = f"expected one of {', '.join(map(marked, orders))}" if orders else "this scenario has no orders"
         raise Refused(f"nobody can order {order.event}; {known}")
     if order.how == CANCEL:
@@ -164,15 +222,38 @@ def effect(model: Model, position: Position, order: PersonOrder) -> Effect:
         if bound.left == clock
     }
     if len(moves) == 1 and any(_listens(automaton.edges, order.event) for automaton in model.of_kind("safety")):
-        raise Refused(f"{marked(order.event)} was ordered already, and waits for its answer")
+        if _waits(model, position, order.event):
+            raise Refused(f"{marked(order.event)} was ordered already, and waits for its answer")
+        raise Refused("what is asked for is so already")
     if order.within is None:
         return Effect(moves, dict.fromkeys(limits, 0.0), min(limits.values(), default=None))
     if not limits:
         raise Refused(f"the scenario gives {marked(order.event)} no deadline: order it without within")
     if order.within > min(limits.values()):
         most = f"{min(limits.values()):g}"
-        raise Refused(f"the scenario promises {marked(order.event)} within {most} time units: order it within that")
+        why = f"the scenario promises {marked(order.event)} within {most} time units: order it within that"
+        raise Refused(why + _with_more_time(model, order))
     return Effect(moves, {clock: limit - order.within for clock, limit in limits.items()}, order.within)
+
+
+def _with_more_time(model: Model, order: PersonOrder) -> str:
+    """How what an order asks for can be had with more time than the scenario gives it; "" where it is not one event."""
+    asked = [each for each in model.of_kind("safety") if _listens(each.edges, order.event)]
+    words = {
+        edge.word
+        for each in asked
+        for edge in each.edges
+        if each.invariants[edge.source] and edge.sync == "receive" and edge.word != order.event
+    }
+    doing = {edge.word for each in model.automata for edge in each.edges if edge.word in words and _is_deed(edge)}
+    if len(words) != 1 or words != doing:
+        return ""
+    return f", or with more time what is to happen: do {event_of(words.pop())} within {order.within:g}"
+
+
+def _is_deed(edge: Edge) -> bool:
+    """Return True for what somebody does at a place, or ends there."""
+    return edge.sync == "send" and not is_movement(edge.source) and not is_movement(edge.target)
 
 
 def _withdrawn(model: Model, position: Position, event: str) -> List[Move]:
@@ -239,10 +320,11 @@ class Ordering:
         if first == 0:
             self.attempts, self.lead_time = 0, 0.0
 
-    def withdraw(self, event: str) -> Optional[PersonOrder]:
-        """Take back the newest order of an event that waits for its answer, and return it; None: none waits."""
+    def withdraw(self, cancel: PersonOrder) -> Optional[PersonOrder]:
+        """Take back the newest order of the same that waits for its answer, and return it; None: none waits."""
+        same = cancel.says or cancel.event
         for order in sorted(self.waiting, key=lambda each: -each.came):
-            if order.event == event and order.how in ("", URGENT):
+            if (order.says or order.event) == same and order.how in ("", URGENT):
                 if order is self.first:
                     self.attempts, self.lead_time = 0, 0.0
                 self.waiting.remove(order)

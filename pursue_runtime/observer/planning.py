@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import AbstractSet, Any, Dict, FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Set, Tuple
 
-from pursue_runtime.model import Position
+from pursue_runtime.model import Position, Written
 from pursue_runtime.observer.ways import Block, Ways, blocked_reason, check_avoids
 from pursue_runtime.sentences import as_sentence, marked
 from pursue_runtime.state import SystemState
@@ -33,13 +33,15 @@ own depends, and by how much each of them may be sooner or later than expected. 
 class Ordered(NamedTuple):
     """What a person has ordered, in the state of a request: the event, when it came (seconds), the clocks that it
     starts, with the values that they began with, for how many time units its plan may come into force once it has
-    begun, and by what clocks of the state may differ, which is foreseen."""
+    begun, and by what clocks of the state may differ, which is foreseen. `asked`: what was written, which is not in the
+    state, as a planner is asked for it; None: the order is one of the scenario."""
 
     event: str
     came: float
     clocks: Dict[str, float]
     window: float
     spread: Spread
+    asked: Optional[Mapping[str, Any]] = None
 
 
 class PlanRequest(NamedTuple):
@@ -49,8 +51,8 @@ class PlanRequest(NamedTuple):
     The plan must not rely on the agents in `excused`, nor send anybody along the ways in `blocked`, or the agent alone
     that stands behind a way. The robots in `turning` turn round when it begins, and may be back at any time. Those in
     `awaited` are late; the plan relies on them for so many time units more, counted from `stamp`. `order`: the state is
-    the one behind an order of a person, which is taken together with the plan. Nothing is sent to the
-    robots that are `out_of_service`.
+    the one behind an order of a person, which is taken together with the plan. `written`: the orders that people have
+    written, whose automata are in the state. Nothing is sent to the robots that are `out_of_service`.
     """
 
     number: int
@@ -65,15 +67,18 @@ class PlanRequest(NamedTuple):
     awaited: Optional[Mapping[str, float]] = None
     order: Optional[Ordered] = None
     out_of_service: Tuple[str, ...] = ()
+    written: Tuple[Written, ...] = ()
 
     def data(self) -> Dict[str, Any]:
         """Return what a planner is asked, without the game."""
-        own = ("number", "stamp", "order")
+        own = ("number", "stamp", "order", "written")
         asked = {key: value for key, value in self._asdict().items() if key not in own}
+        if self.written:
+            asked["written"] = [{"says": each.says, "within": each.within} for each in self.written]
         if self.order is None:
             return asked
         ordered = {"window": self.order.window, "sooner": self.order.clocks, "spread": self.order.spread}
-        return {**asked, "ahead": 0.0, **ordered}
+        return {**asked, "ahead": 0.0, **ordered, **({} if self.order.asked is None else {"asked": self.order.asked})}
 
     def begin(self, unit: float) -> float:
         """Return when the proof of its plan begins, in seconds; `unit`: those of a time unit."""
@@ -113,7 +118,7 @@ class Planning:
     `idle`: the robots to which it sends nothing; `not_assumed`: the variables of the assumptions on which it does not
     rely; `lead_time`: seconds from a request to the begin of its plan, more once a plan came too late, until one is in
     force; `no_plan_reason`: why there is no plan from here; `searched`: the seconds of real time that the planner has
-    needed so far, 0 while they are within ~planning_limit.
+    needed so far, 0 while they are within ~planning_limit; `written`: the orders that people have written.
     """
 
     def __init__(self, controllers: Iterable[str]) -> None:
@@ -131,6 +136,7 @@ class Planning:
         self._number = 0
         self._attempts = 0
         self._place: object = None
+        self.written: Tuple[Written, ...] = ()
 
     def revision(self) -> Tuple[object, ...]:
         """Return a value that changes with each step of planning."""
@@ -177,7 +183,7 @@ class Planning:
         self.searched = 0.0
         what = position.locations, position.values, position.clocks, stamp, ahead
         gone = tuple(sorted(excused))
-        asked = PlanRequest(self._number, *what, gone, *ways.revision(), awaited or None, order)
+        asked = PlanRequest(self._number, *what, gone, *ways.revision(), awaited or None, order, written=self.written)
         self.request = asked._replace(out_of_service=tuple(sorted(out)))
 
     def adopt(self, absent: AbstractSet[str]) -> None:
@@ -223,6 +229,10 @@ class Planning:
             data["order"] = self.request.order.event
         if self.request.out_of_service:
             data["out_of_service"] = list(self.request.out_of_service)
+        if self.request.written or "adds" in answer:
+            data["adds"] = answer["adds"]
+            if self.request.order is not None and self.request.order.asked is not None:
+                data["order"] = str(answer["adds"]["written"][-1]["event"])
         if self.request.awaited:
             data["awaited"] = sorted(self.request.awaited)
         self.proposal = Proposal(data, read_cover(answer["cover"]), self.request)

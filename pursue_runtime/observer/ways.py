@@ -24,7 +24,7 @@ class Ways:
     def __init__(self, model: Model) -> None:
         self.blocked: Set[Block] = set()
         self.turns: Dict[str, Move] = {}
-        self._model = model
+        self.model = model
         self._stuck: Set[Block] = set()  # who has been stuck where: the second time it does not get that way again
 
     def on_report(self, report: RobotReport, location: str, is_lost: bool) -> Tuple[str, str]:
@@ -34,7 +34,7 @@ class Ways:
         Return why it cannot be ("": it can), and why the agent is lost now ("": it is not).
         """
         name, why = report.agent, ""
-        way = way_of(self._model, location or name)
+        way = way_of(self.model, location or name)
         if way is None or (report.event == STUCK and not location):
             return "expected the name of a movement, such as going_a_to_b, or of an agent that moves", ""
         if report.event == FREE:
@@ -43,8 +43,8 @@ class Ways:
             return "", ""
         block = (*way, name) if location else way
         if location and not is_lost:
-            turn = way_back(self._model, name, location)
-            if turn and self.blocked.isdisjoint((way, block)) and self._model.automaton(name).kind == "robot":
+            turn = way_back(self.model, name, location)
+            if turn and self.blocked.isdisjoint((way, block)) and self.model.automaton(name).kind == "robot":
                 self.turns[name] = turn
             found = f"has found that {in_words(way)} is blocked" if report.event == BLOCKED else "cannot go on"
             why = f"gave up {as_sentence(report.text)}" if report.text else found

@@ -21,7 +21,7 @@ from pursue_runtime.ui.floor import Floor
 from pursue_runtime.ui.lanes import Lanes
 from pursue_runtime.ui.mission_view import possible_words, tasks
 from pursue_runtime.ui.outlook import Outlook
-from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_now
+from pursue_runtime.ui.promise import NOTHING, Guarantee, Promise, objectives_now, with_written
 from pursue_runtime.ui.statuses import Status, status_texts
 from pursue_runtime.ui.strategies import strategies_in
 from pursue_runtime.vocabulary import awaited, begin_of, deed, place, said_at_start, sentence, value_found, where
@@ -154,7 +154,9 @@ class Page:
             "at": _round(facts.at), "now": _round(facts.now), "live": state.status in LIVE, "unit": state.unit,
             "turn": self._turn(agents, state, sight.planned), "agents": agents, "open": opens,
             "tasks": self._tasks(state, agents),
-            "objectives": objectives_now(self._promise, self._statuses, self._model, state, facts.at),
+            "objectives": objectives_now(
+                with_written(self._promise, self._model, state), self._statuses, self._model, state, facts.at
+            ),
             "guarantee": self._guarantee.now(state), "next": sight.next, "planned": sight.planned,
             "clocks": {name: _round(value) for name, value in state.clocks.items()},
             "statuses": {**self._broken(state), **status_texts(self._others, self._model, state, facts.at)},

@@ -95,6 +95,17 @@ def objectives_now(
     return found
 
 
+def with_written(promise: Promise, model: Model, state: SystemState) -> Promise:
+    """The promise with what people have written and waits for its answer."""
+    found = []
+    for order in model.written:
+        for automaton in model.of_kind("safety"):
+            asks = any(edge.word == order.event and edge.sync == "receive" for edge in automaton.edges)
+            if asks and automaton.invariants.get(state.locations.get(automaton.name, "")):
+                found.append(Objective(model.shown(order.event), (automaton.name,)))
+    return promise._replace(objectives=(*promise.objectives, *found)) if found else promise
+
+
 def _become(objective: Objective, model: Model, state: SystemState) -> str:
     """What has become of an objective."""
     goals = dict(model.goal)

@@ -54,3 +54,24 @@ def test_orders_are_accepted_with_a_plan_or_refused_with_the_reason(ros: Ros, tm
         run.until(lambda: run.steps().count("serve1DONE") > 0)
         assert run.now()["places"]["obj"] == "idle" and "serve2" not in run.steps()
         assert run.now()["status"] == "running"
+
+
+def test_what_is_written_is_accepted_where_the_scenario_has_no_orders(ros: Ros, tmp_path: Path) -> None:
+    text = "\n".join(line for line in TEA.splitlines() if "tea" not in line)
+    text += '\npoi "garden"\nagent "guest" location garden\n'
+    read = parse(f"{text}\nobjective: bot never_with guest\n", "walk.pur", "walk")
+    won, options = solve_scenario(read, DEFAULT), Options(reaction=DEFAULT.reaction)
+    folder = write_workspace(read, won.network, won.objective, won.strategy, options, tmp_path / "ws")
+    with launched(ros, lay_over(ros, folder), tmp_path, ("bot",), planner=PLANNER, time_unit=0.4) as run:
+        run.until(lambda: run.now()["status"] == "running")
+        assert "column 8: there is no POI room9" in ask(run, CALL.format("bot at room9 within 60"))
+        accepted = ask(run, CALL.format("bot at room1 within 100"))
+        assert "accepted: True" in accepted and "s at the latest" in accepted
+        assert run.now()["places"]["obj2"] == "atRisk" and run.now()["plan"] != "0"
+        refused = ask(run, CALL.format("bot at room2 within 2"))
+        assert "accepted: False" in refused and "possible: " in refused and "possible: 0.0" not in refused
+        run.until(lambda: run.now()["places"]["bot"] == "room1")
+        assert run.now()["places"]["obj2"] == "idle"
+        ask(run, PUBLISH.format("do serve2 within 100"))
+        run.until(lambda: run.steps().count("serve2DONE") > 0)
+        assert run.now()["places"]["obj3"] == "idle" and run.now()["status"] == "running"

@@ -51,6 +51,7 @@ def replay(
     from pursue_gen.tools.replay.journal import Journal, reconstruct
     from pursue_gen.tools.replay.moves import Moves
     from pursue_gen.tools.replay.source import source_of
+    from pursue_gen.tools.replay.written import with_orders, with_what_was_written
     from pursue_gen.tools.report.animation import check_name
 
     if timeline is not None:
@@ -59,7 +60,11 @@ def replay(
     source = source_of(found, recording, scenario, workspace, request)
     with progress_line(as_json_ or quiet) as progress:
         game = game_of(source, request.options.limits, progress)
-    record = reconstruct(found, Moves(game.network), game.objective) if isinstance(found, Journal) else found
+    if isinstance(found, Journal):
+        game = with_orders(game, found.plans_of_orders)
+        record = reconstruct(found, Moves(game.network), game.objective)
+    else:
+        record, game = with_what_was_written(found, game)
     if timeline is not None:
         _draw(record, game, recording, timeline)
     findings = check(record, game, tolerance)

@@ -12,6 +12,7 @@ from typing import Any, Dict, Mapping, Optional, Sequence
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.document import statement_text
 from pursue_gen.language.scenario import Scenario, StatedObjective
+from pursue_gen.language.written_orders import NoOrder
 from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.partition import partition
 from pursue_gen.partition.split import UI
@@ -42,6 +43,8 @@ from pursue_gen.tools.replanning.request import Request, read_request
 from pursue_gen.tools.replanning.start import around, network_from, passed_bounds, start_clocks
 from pursue_gen.tools.replanning.tours import followers, tours_from_here
 from pursue_gen.tools.replanning.waiting import sooner
+from pursue_gen.tools.replanning.written import additions, as_written, with_asked
+from pursue_runtime.observer.ordering import Refused
 from pursue_runtime.sentences import marked, quoted
 
 _LITTLE = 100_000_000
@@ -84,9 +87,16 @@ def answer_to(request: Request, states: int = 0, begun: Optional[float] = None) 
     start = time.monotonic() if begun is None else begun
     limits = Limits(states=states) if states else Limits(request.seconds, careful_memory(), wall=True).since(start)
     limits = replace(limits, work=_FOR_AN_ORDER if request.window else _COUNTED if states else 0)
-    answer = _answer(request, limits, states)
-    if not answer["won"] and any(request.sooner.values()):
-        later = longer(request, lambda more: bool(_answer(more, limits.since(start), states)["won"]))
+    try:
+        there = with_asked(request)
+        answer = _answer(there, limits, states)
+        if answer["won"]:
+            return {**answer, "adds": additions(there)} if there.written else answer
+        whole = with_asked(request, longer=True)  # what may take longer, else the request itself
+    except (NoOrder, Refused) as problem:
+        return _lost(str(problem))
+    if any(whole.sooner.values()):
+        later = longer(whole, lambda more: bool(_answer(more, limits.since(start), states)["won"]))
         return {**answer, **({} if later is None else {"possible": later})}
     return answer
 
@@ -234,8 +244,8 @@ def _cannot_be_met(game: Network, request: Request, network: Network, limits: Li
     over = [each.name for each in game.automata if passed_bounds(each, request.locations[each.name], clocks)]
     for name in over:
         if name not in agents:
-            late = stated(request.scenario).get(name)
-            what = _objectives(request.scenario, [late] if late else None)
+            missed = stated(request.scenario).get(name)
+            what = as_written(_objectives(request.scenario, [missed] if missed else None), request)
             return f"{what} cannot be met any more: its time is over"
     absent = [name for name in agents if name in request.excused or (name in over and name not in request.awaited)]
     without = [f"without relying on {' and '.join(map(marked, absent))}"] if absent else []
@@ -246,10 +256,11 @@ def _cannot_be_met(game: Network, request: Request, network: Network, limits: Li
     ordered = [each for name, each in stated(request.scenario).items() if clock_of(name) in request.sooner]
     if request.window and request.out_of_service and not request.sooner:
         objective, reaction = scenario_objective(request.scenario), request.rules.reaction
-        missed = kept_no_more(network, objective, request.scenario, reaction, limits)
-        what = f"{_objectives(request.scenario, missed)} cannot be kept"
+        lost = kept_no_more(network, objective, request.scenario, reaction, limits)
+        what = f"{_objectives(request.scenario, lost)} cannot be kept"
     elif request.window:
-        what = f"{_objectives(request.scenario, ordered)} cannot be promised beside all that is promised already"
+        asked = as_written(_objectives(request.scenario, ordered), request)
+        what = f"{asked} cannot be promised beside all that is promised already"
     else:
         what = f"{_objectives(request.scenario)} cannot be guaranteed from here"
     return " ".join([what, " and ".join(without)]).strip()

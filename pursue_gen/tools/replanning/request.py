@@ -6,12 +6,13 @@ import math
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any, Dict, FrozenSet, Iterable, Iterator, List, Mapping, Tuple
+from typing import Any, Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import PursueError, Severity, error
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Scenario
+from pursue_gen.language.written_orders import NoOrder, WrittenOrder, with_written
 from pursue_gen.solving.rules import CONTROLLABLE, REPORTED, Rules
 from pursue_runtime.bounded import exact
 
@@ -32,7 +33,8 @@ class Request:
     than the scenario promises. `shares`: the automata of robots that keep those promises by the workspace's plan, for
     each of its shares. `spread`: the state is foreseen, and by so much more or less its clocks may be: for each
     the parts of that, and those that two have in common are the same for both. Nothing is sent to the robots that are
-    `out_of_service`.
+    `out_of_service`. `written`: the orders that people have written, which the scenario has; `asked`: one that it does
+    not have, which was written so many time units before the plan begins.
     """
 
     scenario: Scenario
@@ -54,6 +56,8 @@ class Request:
     sooner: Mapping[str, Fraction] = field(default_factory=dict)
     spread: Mapping[str, Mapping[str, Fraction]] = field(default_factory=dict)
     out_of_service: FrozenSet[str] = frozenset()
+    written: Tuple[WrittenOrder, ...] = ()
+    asked: Optional[Tuple[WrittenOrder, Fraction]] = None
 
 
 def read_request(data: object) -> Request:
@@ -74,8 +78,10 @@ def read_request(data: object) -> Request:
     clocks = _object(_of(request, "clocks", "the request"), "clocks")
     scenario = _scenario(name, text)
     scenario = scenario.giving_up(_numbers(game.get("given_up", ()), scenario))
+    written = tuple(_written(each) for each in _list(request.get("written", ()), "written"))
+    asked = request.get("asked")
     return Request(
-        scenario=scenario,
+        scenario=_with_written(scenario, written),
         rules=_rules(_object(_of(game, "rules", "game"), "rules")),
         controllers=_text(game, "controllers", "game"),
         reach_obj=_text(game, "reach_obj", "game"),
@@ -94,6 +100,8 @@ def read_request(data: object) -> Request:
         sooner=_times(request, "sooner"),
         spread={key: _times(each, key) for key, each in _tables(request, "spread")},
         out_of_service=_agents(request.get("out_of_service", ()), "out_of_service", scenario),
+        written=written,
+        asked=None if asked is None else (_written(asked), _time(_object(asked, "asked").get("waited"), "waited")),
     )
 
 
@@ -120,6 +128,24 @@ def _numbers(data: object, scenario: Scenario) -> FrozenSet[int]:
     if not isinstance(data, (list, tuple)) or any(number not in scenario.optional for number in data):
         raise wrong(f"given_up is {_shown(data)}", f"a list of numbers behind optional: {scenario.optional}")
     return frozenset(data)
+
+
+def _written(data: object) -> WrittenOrder:
+    order = _object(data, "an order that was written")
+    return _text(order, "says", "the order"), _time(_of(order, "within", "the order"), "within")
+
+
+def _with_written(scenario: Scenario, orders: Tuple[WrittenOrder, ...]) -> Scenario:
+    try:
+        return with_written(scenario, orders)
+    except NoOrder as problem:
+        raise wrong(f"written: {problem}", "orders that were accepted") from None
+
+
+def _list(data: object, name: str) -> Sequence[object]:
+    if not isinstance(data, (list, tuple)):
+        raise wrong(f"{name} is {_shown(data)}", "a list")
+    return data
 
 
 def _lines(data: object, name: str, expected: str) -> Tuple[str, ...]:

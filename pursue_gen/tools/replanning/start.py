@@ -52,17 +52,20 @@ def network_from(network: Network, request: Request, told_apart: bool = False) -
     reaction = request.rules.reaction
     grid = least_common_multiple((_FINEST, common_denominator([reaction, *there.times])))
     beyond = {name: value + 1 for name, value in clocks.items()} if told_apart else _beyond(there, ceil(reaction))
-    start = around(_spread(region(clocks, beyond, grid), request.spread), Fraction(0), request.window)
+    start = around(_spread(region(clocks, beyond, grid), request.spread, grid), Fraction(0), request.window)
     return replace(there, start=(*start, *_within_invariants(there, clocks)) if request.window else start)
 
 
-def _spread(start: Tuple[Constraint, ...], spread: Mapping[str, Mapping[str, Fraction]]) -> Tuple[Constraint, ...]:
-    """The clock values that differ from those of a region by what they may (see `Request`); none is below 0."""
+def _spread(
+    start: Tuple[Constraint, ...], spread: Mapping[str, Mapping[str, Fraction]], grid: int
+) -> Tuple[Constraint, ...]:
+    """The clock values that differ from those of a region by what they may (see `Request`), rounded up to the grid: a
+    game whose times have many digits is too large for a solver; no value is below 0."""
     found = []
     for each in start:
         one, other = (spread.get(clock or "", {}) for clock in (each.left, each.right))
         alone = {**{key: one[key] for key in one.keys() - other}, **{key: other[key] for key in other.keys() - one}}
-        wider = replace(each, bound=each.bound + sum(alone.values()))
+        wider = replace(each, bound=each.bound + Fraction(ceil(sum(alone.values()) * grid), grid))
         below = alone and each.left is None and wider.bound >= 0
         found.append(Constraint(None, each.right, Fraction(0), False) if below else wider)
     return tuple(found)

@@ -25,6 +25,7 @@ from pursue_gen.tools.replay.robots import Done, check_robots
 from pursue_gen.tools.replay.service import changed_service, commands_out_of_service
 from pursue_gen.tools.replay.steps import ReplayedStep, aged, change, delays, where
 from pursue_gen.tools.replay.word_matches import match_words, unmatched_words
+from pursue_gen.tools.replay.written import with_what_was_written
 from pursue_runtime.event_words import CANCELLED
 from pursue_runtime.sentences import in_words
 from pursue_runtime.state import ENDED, HOLDING, LOST, RUNNING, WAITING, WON, SystemState
@@ -70,6 +71,7 @@ def check(
 ) -> Findings:
     """Checks the whole record. In time units: `tolerance`: how far events may miss the model's windows; `lateness`: how
     long messages may be on their way beyond the reaction; `offset`: by how much clocks of controllers may be wrong."""
+    record, game = with_what_was_written(record, game)
     moves = game.moves
     orders, unread = _orders_in(record, game)
     record, findings = (record, []) if record.is_exact else completed(record, moves, orders, game.objective.goal)

@@ -6,14 +6,15 @@ A journal holds no states: `worked_out` walks the scenario's automata by its wor
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Tuple, Union
 
+from pursue_gen.language.network_names import DESK_OPEN, ORDER_DESK
 from pursue_gen.tga.network import Objective
 from pursue_gen.tools.replay.assumptions import breach, overstayed, without
 from pursue_gen.tools.replay.moves import EXACT, DiscreteState, Move, Moves, after
 from pursue_gen.tools.replay.record import MissionRecord, RecordedWord, read_word
 from pursue_runtime.bounded import json_object
-from pursue_runtime.event_words import FAILED, FINISH, ORDERED, PLANNED, START, STOP
+from pursue_runtime.event_words import CANCELLED, FAILED, FINISH, ORDERED, PLANNED, START, STOP
 from pursue_runtime.observer.records import parse_record
 from pursue_runtime.state import LOST, RUNNING, STOPPED, WAITING, WON, SystemState
 
@@ -29,15 +30,25 @@ MOST = 1000
 """By so many numbers one call may move a mission on; more is damage."""
 
 
+class Ordered(NamedTuple):
+    """An order: the event of its state, the number of its plan, and since when (seconds) clocks run that it starts."""
+
+    event: str
+    plan: int
+    since: Mapping[str, float]
+
+
 @dataclass(frozen=True)
 class Entry:
-    """A call of the observer at a moment (seconds), and number and status ("": not known) of the state after it."""
+    """A call of the observer at a moment (seconds), and number and status ("": not known) of the state after it.
+    `ordered`: the order that was taken or cancelled then, as the journal has it; None: none was."""
 
     at: float
     call: str
     args: Tuple[Any, ...]
     seq: int
     status: str = ""
+    ordered: Optional[Ordered] = None
 
 
 @dataclass(frozen=True)
@@ -47,6 +58,15 @@ class Journal:
     head: Mapping[str, Any]
     entries: Tuple[Entry, ...]
     problems: Tuple[str, ...] = ()
+
+    @property
+    def plans_of_orders(self) -> Iterator[Mapping[str, Any]]:
+        """The plans with which orders were taken, the newest first."""
+        planned = (entry.args for entry in self.entries if entry.call == "planned" and len(entry.args) == 2)
+        plans = {str(number): answer for number, answer in planned}
+        for entry in reversed(self.entries):
+            if entry.ordered is not None and isinstance(plans.get(str(entry.ordered.plan)), dict):
+                yield plans[str(entry.ordered.plan)]
 
     @property
     def unit(self) -> float:
@@ -100,7 +120,15 @@ def _entry(line: str) -> Optional[Entry]:
         return None
     if not isinstance(args, list) or not isinstance(seq, int) or seq < 0:
         return None
-    return Entry(float(at), str(call), tuple(args), seq, str(data.get("status", "")))
+    return Entry(float(at), str(call), tuple(args), seq, str(data.get("status", "")), _ordered(data.get("ordered")))
+
+
+def _ordered(data: Any) -> Optional[Ordered]:
+    try:
+        since = {str(clock): float(moment) for clock, moment in data["since"].items()}
+        return Ordered(str(data["event"]), int(data["plan"]), since)
+    except (LookupError, TypeError, ValueError, AttributeError, OverflowError):
+        return None
 
 
 def reconstruct(journal: Journal, moves: Moves, objective: Objective) -> MissionRecord:
@@ -174,7 +202,9 @@ class _Walk:
     def _steps(self, entry: Entry, word: Optional[RecordedWord]) -> None:
         while self._seq < entry.seq:
             self._seq += 1
-            if self._status == WAITING:
+            if entry.ordered is not None and entry.ordered.plan != self._plan:
+                self._order(entry.ordered, entry.at)
+            elif self._status == WAITING:
                 self._status, self._zeros = RUNNING, dict.fromkeys(self._moves.network.clocks, entry.at)
                 word = None if word and word.event == START else word
                 self._event = self._agent = ""
@@ -224,6 +254,24 @@ class _Walk:
         """The end of what several did together, where the last who had not reported it is lost."""
         moves = (move for word in self._noted for move in self._moves.of(self._place, word.event, word.agent))
         return next(moves, None)
+
+    def _order(self, order: Ordered, at: float) -> None:
+        """An order is taken, or cancelled, together with its plan."""
+        self._plan = order.plan
+        self.plans[order.plan] = {**self.plans.get(order.plan, {}), "order": order.event}
+        event = order.event[: -len(CANCELLED)] if order.event.endswith(CANCELLED) else ""
+        if event:
+            self._place = self._moves.withdrawn(event, self._place)
+            self._agent, self._event = ORDER_DESK, order.event
+            return
+        place = DiscreteState(self._place.locations, {**self._place.values, DESK_OPEN: 1})
+        move = next(self._moves.of(place, order.event, ORDER_DESK), None)
+        if move is None:
+            self.problems.append(f"{order.event} was ordered, which cannot be ordered here")
+            return
+        self._place = place
+        self._take(move, at)
+        self._zeros.update(order.since)
 
     def _put_in_force(self, number: int, at: float) -> None:
         """The plan is in force, and the robots that it sends back turn round."""

@@ -116,12 +116,21 @@ class Moves:
         """True where the objectives that an order begins change as if it had been answered, and nothing else does."""
         move: List[Part] = []
         for name, there in later.locations.items():
-            own = [edge for (of, _), edges in self._edges.items() if of == name for edge in edges if edge.sync]
-            asks = any(edge.sync and edge.sync.channel == event and not edge.sync.sends for edge in own)
-            answers = [edge for edge in self._enabled(name, place) if edge.sync and not edge.sync.sends]
-            if asks and there != place.locations[name]:
-                move += [(name, edge) for edge in answers if edge.target == there][:1]
+            if there != place.locations[name]:
+                move += [(name, edge) for edge in self._answers(event, name, place) if edge.target == there][:1]
         return bool(move) and after(tuple(move), place)[0] == later
+
+    def withdrawn(self, event: str, place: DiscreteState) -> DiscreteState:
+        """Where that leads: each of them as if the one that waits longest had its answer."""
+        move = ((name, next(iter(self._answers(event, name, place)), None)) for name in self._names)
+        return after(tuple((name, edge) for name, edge in move if edge is not None), place)[0]
+
+    def _answers(self, event: str, name: str, place: DiscreteState) -> List[Edge]:
+        """What an objective that this order begins can hear there, but for another such order."""
+        own = [edge for (of, _), edges in self._edges.items() if of == name for edge in edges if edge.sync]
+        asks = any(edge.sync and _receives(edge, event) for edge in own)
+        heard = [edge for edge in self._enabled(name, place) if edge.sync and not edge.sync.sends]
+        return [edge for edge in heard if not _receives(edge, event)] if asks else []
 
     def way_back(self, place: DiscreteState, robot: str) -> Optional[Part]:
         """How a robot that moves there would set out on the same way in the other direction; None if it cannot."""

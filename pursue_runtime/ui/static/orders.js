@@ -6,16 +6,13 @@ const SENT = 2000; // ms for which a button that was pressed does nothing: a sec
 function setOrders() {
   const robots = scene.agents.filter(({ kind }) => kind === "robot");
   $("service").hidden = robots.length === 0;
-  $("order-hint").hidden = scene.orders.length === 0;
   say($("within-unit"), scene.counts);
+  $("written").placeholder = example();
   $("order-buttons").replaceChildren(...scene.orders.map(({ word, label }) => {
     const button = make("button", "order", label);
     button.type = "button";
     button.dataset.word = word;
-    onPress(button, () => {
-      const within = $("within").value.trim();
-      send(button, within === "" ? word : `${word} within ${within}`);
-    });
+    onPress(button, () => send(button, inTime(word)));
     return button;
   }));
   $("service-buttons").replaceChildren(...robots.map(({ name }) => serviceButton(name)));
@@ -33,6 +30,18 @@ function isOut(robot) {
   return view.out_of_service.includes(robot);
 }
 
+function example() { // what one may write, with names of this scenario
+  const robot = scene.agents.find((agent) => agent.kind === "robot"), places = Object.keys(scene.places);
+  return robot && places.length ? `${robot.name} at ${places[places.length - 1]}` : "";
+}
+
+function inTime(word) { // with the time that stands in the field
+  const within = $("within").value.trim();
+  return within === "" || / within /.test(word) ? word : `${word} within ${within}`;
+}
+
+onPress($("write"), () => { if ($("written").value.trim()) send($("write"), inTime($("written").value.trim())); });
+
 function send(button, word) {
   ask({ do: "order", word, seq: view.seq });
   button.dataset.sent = "true";
@@ -41,7 +50,7 @@ function send(button, word) {
 }
 
 function showOrders(here) {
-  for (const button of $("order-buttons").children) {
+  for (const button of [$("write"), ...$("order-buttons").children]) {
     enable(button, here && view.status === "running" && button.dataset.sent !== "true" && $("within").checkValidity());
   }
   for (const button of $("service-buttons").children) {
@@ -50,7 +59,6 @@ function showOrders(here) {
   for (const button of document.querySelectorAll("#answers button, #service-buttons button")) {
     enable(button, here && view.status === "running" && button.dataset.sent !== "true");
   }
-  $("menu").hidden = scene.orders.length + view.ordered.length === 0;
   const known = JSON.stringify(view.ordered);
   if ($("answers").dataset.known === known) return;
   $("answers").dataset.known = known;
@@ -58,7 +66,7 @@ function showOrders(here) {
     const line = make("li", accepted ? "good" : "bad");
     line.append(make("span", "at", units(at)), make("span", "", `${shown(order)}: ${text}`));
     if (accepted && !/^(cancel|leave|join) /.test(order)) {
-      const button = make("button", "small", "Cancel"), word = order.replace(/^urgent /, "").split(" ")[0];
+      const button = make("button", "small", "Cancel"), word = order.replace(/^urgent /, "").replace(/ within .*$/, "");
       button.type = "button";
       onPress(button, () => send(button, `cancel ${word}`));
       line.append(button);

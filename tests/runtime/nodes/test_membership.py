@@ -38,8 +38,11 @@ class Node:
         monkeypatch.setattr(module, "StatePrinter", lambda _: SimpleNamespace(on_state=note("printed")))
         monkeypatch.setattr(module.rospy, "get_param", lambda *_: {})
         monkeypatch.setattr(module.rospy, "logerr", lambda *_: None)
+        callbacks: List[Any] = []
+        monkeypatch.setattr(module, "subscribe", lambda topic, kind, callback, *_, **__: callbacks.append(callback))
         ending: Any = SimpleNamespace(renew=note("renewed"))
         self.membership = Membership(Package("UI", "example", str(folder / "script")), ending, str(folder))
+        self.said = lambda text: callbacks[0](SimpleNamespace(data=text))
 
     def state(self, **changes: Any) -> SystemState:
         """A state of this mission."""
@@ -71,3 +74,32 @@ def test_people_have_a_part_of_the_strategy_where_there_is_one(tmp_path: Path, m
     assert Node(tmp_path, monkeypatch).membership.people() is None
     people = Node(tmp_path, monkeypatch, people=PEOPLE).membership.people()
     assert people is not None and list(people.agents) == ["nurse"]
+
+
+def test_a_state_of_a_plan_that_adds_what_was_written_counts_and_one_without_counts_after_the_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    node = Node(tmp_path, monkeypatch)
+    plain = node.state()
+    watch = {
+        "name": "obj9", "kind": "safety", "initial": "idle", "locations": {"idle": [], "atRisk": ["Cobj9 <= 5"]},
+        "edges": [{"from": "idle", "to": "atRisk", "word": "order1", "sync": "receive", "controllable": True}],
+    }  # fmt: skip
+    adds = {
+        "automata": [watch], "heard": [], "clocks": ["Cobj9"], "variables": {"order_desk_open": 0},
+        "objective": {"goal": None, "bad": None, "says": {}, "promises": {}},
+        "written": [{"event": "order1", "says": "bot at a", "within": 5.0}],
+    }  # fmt: skip
+    written = plain._replace(
+        seq=2, stamp=101.0, plan=3, locations={**plain.locations, "obj9": "atRisk"},
+        values={**plain.values, "order_desk_open": 0}, clocks={**plain.clocks, "Cobj9": 1.0},
+    )  # fmt: skip
+    assert node.membership.takes(plain) and not node.membership.takes(written)
+    node.said(json.dumps({"format": 1, "plan": 3, "mission": plain.mission, "adds": adds}))
+    node.said("no plan")
+    assert node.membership.takes(written) and node.membership.model.shown("order1") == "bot at a within 5"
+    assert not node.membership.takes(written._replace(seq=3, locations=plain.locations))
+    node.membership.takes(plain._replace(seq=0, stamp=300.0, status="waiting"))  # of the next mission
+    assert not node.membership.model.has("obj9")
+    node.said(json.dumps({"format": 1, "plan": 4, "mission": plain.mission, "adds": {**adds, "automata": 7}}))
+    assert not node.membership.takes(written._replace(plan=4)) and "lacks or misspells" in node.membership.refused

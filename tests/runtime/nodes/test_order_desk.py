@@ -67,16 +67,24 @@ def test_the_ui_publishes_orders_of_its_scenario_alone_and_gets_the_answers(grap
     answers: List[Any] = []
     model = Model(model_data(mover("bot", "robot", 9), desk("tea")))
     orders = UIOrders(model, None, lambda *answer: answers.append(answer))  # type: ignore[arg-type]
-    assert orders.order("tea within 3") and not any(map(orders.order, ("coffee", "", "teapot")))
-    assert orders.order("cancel tea") and orders.order("urgent tea within 3") and not orders.order("cancel")
+    assert orders.typed("tea within 3") and not any(map(orders.typed, ("coffee", "", "teapot")))
+    assert orders.typed("cancel tea") and orders.typed("urgent tea within 3") and not orders.typed("cancel")
     assert graph["published"] == ["tea within 3", "cancel tea", "urgent tea within 3"]
-    assert not any(map(orders.order, ("cancel coffee", "urgent", "cancel cancel tea")))
+    assert not any(map(orders.typed, ("cancel coffee", "urgent", "bot at a", "tea" * 99)))
+    assert orders.typed("bot at a within 3 min") and orders.typed("cancel bot at a")
+    orders.order("x" * 999)  # of a page: who takes it says what is wrong with it
+    assert graph["published"][3:] == ["bot at a within 3 min", "cancel bot at a", "x" * 400]
     graph["pursue/answers"](SimpleNamespace(order="tea", accepted=True, text="accepted"))
     assert answers == [("tea", True, "accepted")]
 
 
 def test_without_orders_robots_leave_and_join_all_the_same(graph: Dict[str, Any]) -> None:
     orders = UIOrders(Model(model_data(mover("bot", "robot", 9))), None, lambda *_: None)  # type: ignore[arg-type]
-    assert not any(map(orders.order, ("tea", "leave", "leave bob", "join bot at hall")))
-    assert orders.order("leave bot") and orders.order("join  bot")
+    assert not any(map(orders.typed, ("tea", "leave", "join bot at hall")))
+    assert orders.typed("leave bot") and orders.typed("join  bot")
     assert graph["published"] == ["leave bot", "join  bot"]
+
+
+def test_where_the_scenario_has_no_orders_some_can_be_written(graph: Dict[str, Any]) -> None:
+    orders = UIOrders(Model(model_data(mover("bot", "robot", 9))), None, lambda *_: None)  # type: ignore[arg-type]
+    assert not orders.typed("tea") and orders.typed("bot at a within 3")

@@ -37,7 +37,7 @@ class Screen:
         self.terminal = SimpleNamespace(line=self.shown.append)
         self.starts = 0
         self.ordered: List[str] = []
-        self.orders = SimpleNamespace(order=self.take)
+        self.orders = SimpleNamespace(typed=self.take)
         self.typed = Typed(self, ["nurse"])  # type: ignore[arg-type]
 
     def take(self, text: str) -> bool:

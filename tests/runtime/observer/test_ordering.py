@@ -49,6 +49,9 @@ def plain(data: Any) -> Any:
     return [plain(value) for value in data] if isinstance(data, (list, tuple)) else data
 
 
+MODEL = Model(plain(model_data(WON.network, WON.objective, STORY, DEFAULT.reaction)))
+
+
 class Counter:
     """A mission under way, and people who order."""
 
@@ -226,12 +229,16 @@ def test_orders_are_looked_at_one_after_the_other(counter: Counter) -> None:
     ("text", "why"),
     [
         ("coffee", "nobody can order coffee; expected one of {tea1}, {tea2}"),
-        ("serve1", "nobody can order serve1"),
+        ("serve1", "it says no time; expected one behind it, as in: serve1 within 10 min"),
         ("tea1 within", "this is no order; expected the name of an order"),
         ("tea1 within 5 days", "this is no order"),
         ("", "this is no order"),
         ("tea1 " * 100, "this is no order"),
-        ("tea1 within 61", "the scenario promises {tea1} within 60 time units"),
+        (
+            "tea1 within 61",
+            "the scenario promises {tea1} within 60 time units: order it within that, or with more time what is to "
+            "happen: do serve1 within 61",
+        ),
     ],
 )
 def test_what_cannot_be_ordered_is_said_at_once(counter: Counter, text: str, why: str) -> None:
@@ -288,13 +295,13 @@ def test_an_answer_is_a_sentence() -> None:
 
 @pytest.mark.parametrize(("text", "within"), [("tea", None), ("tea within 90", 90), (" tea  within 3 min ", 90)])
 def test_times_have_units(text: str, within: Any) -> None:
-    assert read_order(text, 1.0, unit=2.0).within == within
+    assert read_order(text, 1.0, 2.0, MODEL).within == within
 
 
 def test_no_text_is_taken_for_an_order() -> None:
     for text in ("tea within -3", "tea within 1e3", "tea; rm", "tea\n\nwithin", "Tea within 3 minutes", "7"):
         with pytest.raises(Refused):
-            read_order(text, 1.0, unit=1.0)
+            read_order(text, 1.0, 1.0, MODEL)
 
 
 # Cancelled, and urgent ------------------------------------------------------------------------------------------------
@@ -389,6 +396,6 @@ def test_of_several_that_wait_the_oldest_is_cancelled() -> None:
     model = Model(plain(model_data(won.network, won.objective, story, DEFAULT.reaction)))
     here = model.initial()
     for _ in range(2):
-        here = effect(model, here, read_order("tea1", 0.0, 1.0)).after(here.aged(1.0), 0.0)
-    left = effect(model, here, read_order("cancel tea1", 0.0, 1.0)).after(here, 0.0)
+        here = effect(model, here, read_order("tea1", 0.0, 1.0, model)).after(here.aged(1.0), 0.0)
+    left = effect(model, here, read_order("cancel tea1", 0.0, 1.0, model)).after(here, 0.0)
     assert [left.locations[name] for name in ("obj", "obj2", "obj3")] == ["idle", "atRisk", "idle"]

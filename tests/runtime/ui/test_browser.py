@@ -626,7 +626,6 @@ def test_an_order_is_sent_once_with_the_time_that_is_wanted_and_its_answer_is_sh
 
 def test_a_robot_is_taken_out_of_service_and_brought_back(page: Browser, show: Callable[..., Node]) -> None:
     node = show(*everybody())
-    assert page.value("document.getElementById('menu').hidden")
     node.show(1, 0.0, event="_start_")
     page.click("#service summary")
     says(page, "#service-buttons [data-robot=bot]", "Take out bot")
@@ -647,9 +646,23 @@ def test_a_robot_is_taken_out_of_service_and_brought_back(page: Browser, show: C
     assert node.wanted == [("order", "leave bot", 1), ("order", "join bot", 2)] and page.complaints == []
 
 
-def test_there_is_no_panel_of_orders_where_nothing_can_be_ordered(page: Browser, show: Callable[..., Node]) -> None:
-    show(*everybody())
-    assert page.value("document.getElementById('menu').hidden")
+def test_what_is_written_is_ordered_too(page: Browser, show: Callable[..., Node]) -> None:
+    node = show(*everybody())
+    node.show(1, 0.0, event="_start_")
+    page.wait("document.getElementById('write').getAttribute('aria-disabled') === 'false'")
+    page.click("#write")  # nothing is written yet
+    page.value("document.getElementById('written').value = ' bot at b '")
+    page.value("document.getElementById('within').value = '90'")
+    page.click("#write")
+    page.click("#write")
+    says(page, "#remark", "as you like")
+    assert node.wanted == [("order", "bot at b within 90", 1)]
+    node.board.on_answer(3.0, "urgent bot at b within 90", True, "accepted: answered in 40 s at the latest")
+    page.wait("document.querySelectorAll('#answers li').length === 1")
+    node.show(2, 5.0, event="_start_")
+    page.click("#answers .good button")
+    page.wait("document.querySelectorAll('#answers button[aria-disabled=true]').length === 1")
+    assert node.wanted[1:] == [("order", "cancel bot at b", 2)]
 
 
 @pytest.mark.parametrize("status", ["won", "lost", "stopped"])

@@ -9,7 +9,7 @@ import pytest
 from pursue_runtime.data import DataError
 from pursue_runtime.model import Model
 from pursue_runtime.ui.page import Facts, FloorPlan, Page
-from pursue_runtime.ui.promise import Guarantee, Objective, Promise, objectives_now, read_promise
+from pursue_runtime.ui.promise import Guarantee, Objective, Promise, objectives_now, read_promise, with_written
 from pursue_runtime.ui.statuses import Status
 from tests.runtime.models import model_data, mover, state
 
@@ -59,6 +59,23 @@ def test_the_time_at_worst_is_that_of_the_workspaces_own_strategy() -> None:
     assert told == ["bot is at a. At worst after 41.3.", "bot is at a."]
     timed = read_promise({"counts": "seconds", "objectives": [{"says": "bot is at a.", "of": ["obj"], "worst": 41.3}]})
     assert timed.objectives[0].now(here, timed.counts) == "bot is at a. At worst after 41.3 seconds."
+
+
+def test_what_was_written_is_said_while_it_waits_for_its_answer() -> None:
+    watch = {
+        "name": "obj9", "kind": "safety", "initial": "idle", "locations": {"idle": [], "atRisk": ["Cobj9 <= 5"]},
+        "edges": [{"from": "idle", "to": "atRisk", "word": "order1", "sync": "receive", "controllable": True}],
+    }  # fmt: skip
+    model = MODEL.extended({
+        "automata": [watch], "heard": [], "clocks": ["Cobj9"], "variables": {}, "written": [
+            {"event": "order1", "says": "bot at a", "within": 5.0}
+        ], "objective": {"goal": None, "bad": None, "says": {}, "promises": {}},
+    })  # fmt: skip
+    here = state(model, 1, 100.0, {})
+    assert with_written(PROMISE, model, here) is PROMISE
+    due = here._replace(locations={**here.locations, "obj9": "atRisk"}, clocks={**here.clocks, "Cobj9": 2.0})
+    *_, said = objectives_now(with_written(PROMISE, model, due), [], model, due, 10.0)
+    assert (said["says"], said["due"], said["limit"]) == ("bot at a within 5", 13.0, 5.0)
 
 
 def test_objectives_are_not_said_twice() -> None:

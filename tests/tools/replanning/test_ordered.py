@@ -27,7 +27,7 @@ def asked(age: float, *orders: str) -> Dict[str, Any]:
     """A request for the last of these orders, so long after the start; the others were accepted at once."""
     position, clocks = MODEL.initial().aged(age), {}
     for text in orders:
-        done = effect(MODEL, position, read_order(text, 0.0, 1.0))
+        done = effect(MODEL, position, read_order(text, 0.0, 1.0, MODEL))
         position, clocks = done.after(position, 0.0), done.clocks
     return {
         "format": 1, "game": GAME, **position._asdict(), "ahead": 1.0, "excused": [], "window": 2.0, "sooner": clocks,
@@ -94,6 +94,11 @@ def test_what_is_not_foreseen_so_exactly_is_planned_for_too() -> None:
     soon["locations"]["bot"], soon["values"]["Pbot"], soon["clocks"]["Cbot"] = "going_kitchen_to_room1", -12, 3.0
     assert replan(soon, states=5000)["won"]
     assert not replan({**soon, "spread": {"Cbot": {"0": 3.0, "1": 2.0}}}, states=5000)["won"]
+
+
+def test_a_state_that_is_foreseen_to_the_microsecond_is_no_larger_game() -> None:
+    spread = {"Cbot": {"0": 0.123457}, "Cobj2": {"1": 1.234567}}
+    assert replan({**asked(5.0, "tea1"), "spread": spread}, states=5000)["won"]
 
 
 def test_an_order_in_a_window_that_ends_with_an_arrival_is_looked_at_before_that() -> None:
