@@ -143,7 +143,10 @@ def read_order(text: str, came: float, unit: float, model: Model) -> PersonOrder
         return PersonOrder(service[2], None, came, called(text.strip()), service[1])
     match = _TEXT.fullmatch(text) if len(text) <= LONGEST else None
     how, says, number, unit_name = match.groups() if match is not None else ("", "", None, None)
-    if match is None or "within" in says.split() or (how == CANCEL and number is not None and says in model.orders):
+    words = says.split()
+    is_service = words[:1] in ([LEAVE], [JOIN]) and words[1:2] in [[each.name] for each in model.of_kind("robot")]
+    is_wrong = is_service or "within" in words or (how == CANCEL and number is not None and says in model.orders)
+    if match is None or is_wrong:
         raise Refused(f"this is no order; expected {EXPECTED}")
     seconds = _UNITS[unit_name or ""]
     within = None if number is None else float(number) * seconds / unit if seconds else float(number)
