@@ -89,9 +89,9 @@ def test_what_is_no_table_of_poses_is_refused(data: Dict[str, Any], what: str) -
 
 def test_all_formats_of_the_file_are_read_and_a_newer_one_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "poses.yaml"
-    for number in (1, 2, 3, 4, 5):
+    for number in (1, 2, 3, 4, 5, 6):
         file.write_text(f"format: {number}\nposes: {{a: {A}}}\n")
         assert read_poses(read_data(str(file))).places == {"a": A}
     file.write_text("format: 7\nposes: {}\n")
-    with pytest.raises(DataError, match=r"poses\.yaml has format 6, and pursue_runtime [\d.]+ reads format 6"):
+    with pytest.raises(DataError, match=r"poses\.yaml has format 7, and pursue_runtime [\d.]+ reads format 6"):
         read_data(str(file))
