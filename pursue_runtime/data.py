@@ -13,7 +13,7 @@ from pursue_runtime.named_files import read_start
 FORMAT = 1
 """The format of data files that this run time reads."""
 
-NEWEST = {"cover.yaml": 4, "model.yaml": 7, "people.yaml": 2, "poses.yaml": 5, "strategy.yaml": 2}
+NEWEST = {"cover.yaml": 4, "model.yaml": 7, "people.yaml": 2, "poses.yaml": 6, "strategy.yaml": 2}
 """The newest format of those files of which it reads several, from FORMAT on."""
 
 

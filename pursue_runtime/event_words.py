@@ -15,6 +15,8 @@ ORDERS, ANSWERS = "pursue/orders", "pursue/answers"
 """What people order while a mission is under way, a topic and a service, and the answers."""
 CANCELLED = "_cancelled_"
 """Behind the event of an order: the event of the state in which it is cancelled."""
+LEAVES, JOINS = "_leaves_", "_joins_"
+"""The events of the states in which a robot is taken out of service, and brought back."""
 
 START, PING, STOP, FINISH = "_start_", "_ping_", "_stop_", "Finish!"
 PLANNED = "_plan_"

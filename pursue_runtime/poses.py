@@ -4,7 +4,8 @@
 robot and place, those that differ: two robots at one place stand side by side. `spare` (format 3) has, by robot and
 place, where this robot alone may stand instead, if its navigation cannot bring it to its pose. `doors` (format 4) has,
 by robot and location, the doors of a way, and where the robot waits for them; on a way by lift (format 5) a list: the
-lift where it gets in, and then, in the cabin, where it gets out.
+lift where it gets in, and then, in the cabin, where it gets out. `levels` (format 6) has the elevation of each level,
+where each has a map of its own.
 """
 
 from __future__ import annotations
@@ -36,12 +37,14 @@ Doorways = Dict[str, Tuple[Doorway, ...]]
 
 
 class Poses(NamedTuple):
-    """The poses of the `places`, and by robot the ones of its `own`, its `spare` ones, and its ways through doors."""
+    """The poses of the `places`, and by robot the ones of its `own`, its `spare` ones, and its ways through doors; the
+    `levels` of the building with their elevations (metres), where each has a map of its own."""
 
     places: Table
     own: Dict[str, Table]
     spare: Dict[str, Table]
     doors: Dict[str, Doorways]
+    levels: Dict[str, float]
 
     def of(self, robots: Iterable[str]) -> Dict[str, Table]:
         """Return for each of the robots where it is sent: a pose for each place."""
@@ -54,7 +57,15 @@ def read_poses(data: Mapping[str, Any]) -> Poses:
     if not isinstance(places, dict):
         raise DataError("poses.yaml: expected poses: and a line for each place")
     where = _table(places, "")
-    return Poses(where, _of_robots(data, "robots", where), _of_robots(data, "spare", where), _doorways(data))
+    own, spare = (_of_robots(data, key, where) for key in ("robots", "spare"))
+    return Poses(where, own, spare, _doorways(data), _levels(data.get("levels", {})))
+
+
+def _levels(given: Any) -> Dict[str, float]:
+    known = isinstance(given, dict) and all(isinstance(z, (int, float)) and math.isfinite(z) for z in given.values())
+    if not known:
+        raise DataError("poses.yaml: expected levels: and the elevation of each, in metres")
+    return {str(name): float(z) for name, z in given.items()}
 
 
 def _doorways(data: Mapping[str, Any]) -> Dict[str, Doorways]:

@@ -16,7 +16,7 @@ WAITING, RUNNING, HOLDING, WON, LOST, STOPPED = "waiting", "running", "holding",
 LIVE, ENDED = (RUNNING, HOLDING), (WON, LOST, STOPPED)
 STATUSES = (WAITING, *LIVE, *ENDED)
 
-LISTS = ("late", "lost", "held", "displaced", "returning", "finished", "orders")
+LISTS = ("late", "lost", "held", "displaced", "returning", "finished", "orders", "out_of_service")
 """The fields of a state that are lists: of agents, and of orders."""
 
 LATE = 60.0
@@ -38,6 +38,7 @@ class SystemState(NamedTuple):
     `displaced` names the robots that are not known to be where the state has them, `returning` those of them that are
     to go back there. `finished` names those that have reported the end of what they do with others who have not.
     `commanded` is True if the event was a command, not a report. `orders` are what the robots are to do (orders.py).
+    `out_of_service` names the robots to which nothing is sent until they are back.
     """
 
     seq: int
@@ -60,6 +61,7 @@ class SystemState(NamedTuple):
     commanded: bool = False
     finished: Tuple[str, ...] = ()
     orders: Tuple[str, ...] = ()
+    out_of_service: Tuple[str, ...] = ()
 
     def clocks_at(self, stamp: float) -> Dict[str, float]:
         """The clocks at a later moment, if nothing has happened since (never earlier than this state)."""

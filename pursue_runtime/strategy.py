@@ -149,7 +149,9 @@ class Cover(StateTable[Covered]):
     def __init__(self, data: Mapping[str, Any]) -> None:
         super().__init__(((entry["state"], _covered(entry)) for entry in data["cover"]), _left_out_clocks(data))
         self._stages = [[(str(name), str(place)) for name, place in stage] for stage in data.get("stages", ())]
-        self._always = [*(str(share[0][0]) for share in data.get("shares", ())), *map(str, data.get("agents", ()))]
+        self.in_order = frozenset(map(str, data.get("agents", ())))
+        """Who passes places in an order that holds however late each of them is; nobody without such orders."""
+        self._always = [*(str(share[0][0]) for share in data.get("shares", ())), *self.in_order]
 
     def zones(self, state: SystemState) -> List[List[Zone]]:
         """The zones of each entry that applies in this state; () where a part of the stage, or a share, has no entry

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, Optional, Tuple
 
-from pursue_runtime.event_words import CANCELLED, START
+from pursue_runtime.event_words import CANCELLED, JOINS, LEAVES, START
 from pursue_runtime.locations import FINDING_OUT, SOMEWHERE, action_of, is_action, is_end, is_movement, is_under_way
 from pursue_runtime.model import ORDER_DESK, Automaton, Edge, Model
 from pursue_runtime.sentences import Names
@@ -76,6 +76,8 @@ def sentence(model: Model, state: SystemState, last: Optional[SystemState]) -> s
     if automaton is None:
         return "the mission starts" if state.event == START else state.event
     here = state.locations.get(state.agent, "")
+    if state.event in (LEAVES, JOINS):
+        return f"{model.shown(state.agent)} is {'out of service' if state.event == LEAVES else 'in service again'}"
     if automaton.kind == ORDER_DESK and state.event not in model.orders and state.event.endswith(CANCELLED):
         return f"{model.shown(state.event[: -len(CANCELLED)])} is cancelled"
     if automaton.kind == ORDER_DESK:

@@ -62,14 +62,14 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection(session: pytest.Session) -> None:
-    """With pytest-xdist, each worker compiles other test files."""
+    """With pytest-xdist, each worker compiles other test files, and some collect those on ROS alone."""
     worker = getattr(session.config, "workerinput", None)
     if worker is not None:
-        from tests.schedule import files_in, from_its_share_on
+        from tests.schedule import collected_by, files_in
 
         files = files_in(session.config.args)
         if files:
-            session.config.args = from_its_share_on(files, int(worker["workerid"][2:]), worker["workercount"])
+            session.config.args = collected_by(int(worker["workerid"][2:]), worker["workercount"], files)
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Iterable, List, Sequence
+from typing import Any, Iterable, List, Optional, Sequence
 
 import pytest
 from xdist.scheduler import LoadScopeScheduling
@@ -49,9 +49,9 @@ LONGEST = (
 """Files that take more than some seconds, the longest first: those on ROS by the clock, then others by processor time,
 measured on 30 November 2026. All others are short, in any order."""
 
-ROS_WORKERS = ("gw0", "gw1", "gw2", "gw3")
-"""Workers that prefer tests on ROS: a mission takes less than half a processor, so four of them and one worker for all
-else keep two processors busy."""
+ROS_WORKERS = ("gw0", "gw1", "gw2")
+"""Workers for tests on ROS. Where there are others, too, they collect no other tests, which takes nine seconds each. A
+mission takes a third of a processor; who runs all other tests first, and then helps, keeps two of them busy."""
 
 
 def rank(file: str) -> int:
@@ -60,9 +60,14 @@ def rank(file: str) -> int:
     return LONGEST.index(name) if name in LONGEST else len(LONGEST)
 
 
-def best(files: Iterable[str], worker: str) -> str:
-    """The longest of these files that is of the kind that the worker prefers; of any kind where there is none."""
-    return min(files, key=lambda file: (("tests/ros/" in file) != (worker in ROS_WORKERS), rank(file)))
+def is_on_ros(file: str) -> bool:
+    """True if the tests of the file are on ROS."""
+    return "tests/ros/" in file
+
+
+def best(files: Iterable[str], worker: str) -> Optional[str]:
+    """The longest of these files that is of the kind that the worker prefers, else of any kind; None of none."""
+    return min(files, key=lambda file: (is_on_ros(file) != (worker in ROS_WORKERS), rank(file)), default=None)
 
 
 def files_in(folders: Sequence[str]) -> List[str]:
@@ -72,17 +77,21 @@ def files_in(folders: Sequence[str]) -> List[str]:
     return [str(file) for folder in folders for file in sorted(Path(folder).rglob("test_*.py"))]
 
 
-def from_its_share_on(files: Sequence[str], worker: int, workers: int) -> List[str]:
-    """All files, from the worker's share on: it compiles its share, and finds the others' compiled when it comes there.
+def collected_by(worker: int, workers: int, files: Sequence[str]) -> List[str]:
+    """What the worker collects: files on ROS, where it is for these and there are others, for which a worker is left.
+    Else all, from its share on: it compiles its share, and finds the others' compiled when it comes there.
 
     pytest's assertions take longer to compile than everything else in the collection of tests.
     """
+    on_ros = [file for file in files if is_on_ros(file)]
+    if f"gw{worker}" in ROS_WORKERS and workers > len(ROS_WORKERS) and 0 < len(on_ros) < len(files):
+        return on_ros
     first = len(files) * worker // workers
     return [*files[first:], *files[:first]]
 
 
 class LongestFirst(LoadScopeScheduling):
-    """Gives a worker that has nothing left the best of the files that are left."""
+    """Gives a worker that has nothing left the best of the files that are left; where none fits, it is done."""
 
     def __init__(self, config: pytest.Config, log: Any) -> None:
         super().__init__(config, log)
@@ -91,6 +100,20 @@ class LongestFirst(LoadScopeScheduling):
     def _split_scope(self, nodeid: str) -> str:
         return nodeid.partition("::")[0]
 
+    def _check_nodes_have_same_collection(self) -> bool:
+        """True if each has collected what the first has, or a part. Who has most comes first: by that the work is
+        shared out, and the last ones go where there is less than one file for each."""
+        ordered = sorted(self.registered_collections.items(), key=lambda each: -len(each[1]))
+        self.registered_collections = dict(ordered)
+        self.assigned_work = {node: self.assigned_work[node] for node, _ in ordered}
+        whole = set(ordered[0][1])
+        return all(whole.issuperset(tests) for _, tests in ordered) or bool(super()._check_nodes_have_same_collection())
+
     def _assign_work_unit(self, node: Any) -> None:
-        self.workqueue.move_to_end(best(self.workqueue, node.gateway.id), last=False)
+        there = {self._split_scope(test) for test in self.registered_collections[node]}
+        file = best((file for file in self.workqueue if file in there), node.gateway.id)
+        if file is None:
+            node.shutdown()
+            return
+        self.workqueue.move_to_end(file, last=False)
         super()._assign_work_unit(node)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def check(
     files: List[Path] = typer.Argument(..., metavar="FILE...", help="Scenarios."),
     floor: Optional[Path] = typer.Option(
-        None, "--map", metavar="YAML", help="Look where places and robots stand on this map of map_server, too."
+        None, "--map", metavar="YAML", help="Look where places and robots stand on this map, too, or those of levels."
     ),
     spot_distance: float = SPOT_DISTANCE,
     robot: List[str] = ROBOT,
@@ -90,20 +90,20 @@ def _on_map(
 ) -> Tuple[List[Diagnostic], Dict[Path, Fit]]:
     """The findings on the map, for scenarios that lack nothing but ways, and how well spots fit there. Raises
     PursueError for a map that cannot be used."""
-    from pursue_gen.drawing.ground import read_ground
     from pursue_gen.language.parser import read_text
+    from pursue_gen.workspace.levels import read_levels
     from pursue_gen.workspace.map_check import read_placed
     from pursue_gen.workspace.map_spots import fit_on
     from pursue_gen.workspace.robot_size import sizes_of
 
-    ground = read_ground(floor)
+    levels = read_levels(floor)
     found: List[Diagnostic] = []
     fits: Dict[Path, Fit] = {}
     for file in files:
         with contextlib.suppress(PursueError):  # its errors are reported
             scenario = read_placed(read_text(str(file)), str(file))
             sizes = sizes_of(scenario, told)
-            more, ways = on_map(scenario, ground, spot_distance, sizes)
+            more, known = on_map(scenario, levels, spot_distance, sizes)
             found += more
-            fits[file] = fit_on(ground, sizes, ways)
+            fits[file] = fit_on(known, sizes)
     return found, fits

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Iterable, List, Optional, Tuple
+from typing import TYPE_CHECKING, Iterable, List, Optional, Sequence, Tuple
 
 import typer
 
@@ -18,6 +18,7 @@ from pursue_gen.outcomes import Invalid, Unavailable
 if TYPE_CHECKING:
     from pursue_gen.language.scenario import Scenario
     from pursue_gen.survey.make import Options, Survey
+    from pursue_gen.workspace.levels import Level
     from pursue_gen.workspace.robot_size import Told
 
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 class _Given:
     """What is surveyed, with what was told of its robots; `copy`: the name of the copy, "" for none."""
 
-    floor: Path
+    levels: Sequence[Level]
     scenario: Path
     sizes: Told
     radius: Optional[float]
@@ -35,7 +36,7 @@ class _Given:
 
 @guarded
 def survey(
-    floor: Path = typer.Argument(..., metavar="MAP.yaml", help="A map of map_server: its yaml file."),
+    floor: Path = typer.Argument(..., metavar="MAP.yaml", help="A map of map_server, or the file of levels."),
     scenario: Path = SCENARIO,
     robot: List[str] = ROBOT,
     radius: Optional[float] = typer.Option(
@@ -74,22 +75,27 @@ def survey(
     ways that lead through a third place; proposes the ways that are missing, and a spot for each robot at each place.
     """
     target = output or scenario.with_name(f"{scenario.stem}_surveyed.pur")
-    for file in [*([] if dry_run else [target]), *([picture] if picture else [])]:
-        check_new(file, force)
+    if not dry_run:
+        check_new(target, force)
     _check_numbers(0.0, radius=radius, clearance=clearance, start=start, reserve=reserve, tolerance=tolerance)
     _check_numbers(0.001, time_unit=time_unit, turning=turning, acceleration=acceleration, unit=unit)
     _check_packages()
     from pursue_gen.survey.make import Options
     from pursue_gen.survey.times import Drive
+    from pursue_gen.workspace.levels import read_levels
     from pursue_gen.workspace.robot_size import read_sizes
+
+    levels = read_levels(floor, whole=True)
+    pictures = {} if picture is None else {_picture_of(level, picture): level for level in levels}
+    for file in pictures:
+        check_new(file, force)
 
     drive = Drive({}, time_unit or 0.0, turning, acceleration, start, reserve / 100, tolerance)
     options = Options(clearance=clearance, unit=unit, ways=ways, keep=tuple(map(_pair, keep)), drive=drive)
-    given = _Given(floor, scenario, read_sizes(robot), radius, speed, "" if dry_run else str(target))
+    given = _Given(levels, scenario, read_sizes(robot), radius, speed, "" if dry_run else str(target))
     read, copy, found, size = _surveyed(given, options)
     files = {} if dry_run else {target: copy}
-    if picture is not None:
-        files[picture] = _picture(read, found, floor, size)
+    files.update({file: _picture(read, found, level, size) for file, level in pictures.items()})
     write_bytes(files)
     _print(found, as_json_, files)
     _go_on(found, as_json_, None if dry_run else target)
@@ -102,7 +108,9 @@ def _go_on(found: Survey, as_json_: bool, copy: Optional[Path]) -> None:
         info("The copy has errors. Mend the scenario, first what the map says above, and survey it again:")
         info("with --ways, if ways are missing that the table has.")
         raise ended(Invalid(found.errors))
-    if any(way.kept and way.metres is None for way in found.ways):
+    from pursue_gen.survey.make import BY_LIFT
+
+    if any(way.kept not in ("", BY_LIFT) and way.metres is None for way in found.ways):
         info("Ways that could not be measured are as you wrote them: mend what the map says above, and survey again.")
     elif copy is not None:
         suggest(f"pursue-gen solve {shell_quoted(copy)}")
@@ -122,7 +130,6 @@ def _check_packages() -> None:
 
 def _surveyed(given: _Given, options: Options) -> Tuple[Scenario, bytes, Survey, float]:
     """The scenario, its copy, the survey, and the radius of the largest robot."""
-    from pursue_gen.drawing.ground import read_ground
     from pursue_gen.language.parser import read_text
     from pursue_gen.survey.copying import with_sizes
     from pursue_gen.survey.make import surveyed
@@ -138,17 +145,26 @@ def _surveyed(given: _Given, options: Options) -> Tuple[Scenario, bytes, Survey,
     unit = _time_unit(options.drive.time_unit, scenario)
     drive = replace(options.drive, speeds=speeds_of(given.speed, robots), time_unit=unit)
     sizes = sizes_of(scenario).with_radius(given.radius)
-    ground = read_ground(given.floor, whole=True)
-    found = surveyed(scenario, ground, given.floor.name, replace(options, robots=sizes, drive=drive), given.copy)
+    found = surveyed(scenario, given.levels, replace(options, robots=sizes, drive=drive), given.copy)
     copy = found.text.replace("\n", "\r\n") if "\r\n" in text else found.text
     return scenario, copy.encode("utf-8"), found, sizes.largest.radius
 
 
-def _picture(scenario: Scenario, found: Survey, floor: Path, radius: float) -> bytes:
+def _picture_of(level: Level, picture: Path) -> Path:
+    """The file for the picture of a level."""
+    return picture.with_name(f"{picture.stem}_{level.name}{picture.suffix}") if level.name else picture
+
+
+def _picture(scenario: Scenario, found: Survey, level: Level, radius: float) -> bytes:
     from pursue_gen.drawing.floor_picture import read_floor
     from pursue_gen.survey.picture import drawn
+    from pursue_gen.workspace.levels import on_level
 
-    return drawn(scenario, found, read_floor(floor), radius).encode("utf-8")
+    part = on_level(scenario, level)
+    here = {poi.name for poi in part.pois if poi.pose is not None}
+    ways = tuple(way for way in found.ways if {way.a, way.b} <= here)
+    spots = {place: some for place, some in found.spots.items() if place in here}
+    return drawn(part, replace(found, ways=ways, spots=spots), read_floor(level.file), radius).encode("utf-8")
 
 
 def _print(found: Survey, as_json_: bool, files: Iterable[Path]) -> None:

@@ -38,7 +38,7 @@ def ws(
     docker: bool = typer.Option(False, "--docker", help="With Dockerfiles and a compose file: a container per node."),
     systemd: bool = typer.Option(False, "--systemd", help="With units of systemd, one per node."),
     floor: Optional[Path] = typer.Option(
-        None, "--map", metavar="YAML", help="A floor plan of map_server, to lie under the map of the UI's page."
+        None, "--map", metavar="YAML", help="A map of map_server, to lie under that of the UI's page; or levels."
     ),
     spot_distance: float = SPOT_DISTANCE,
     robot: List[str] = ROBOT,
@@ -53,7 +53,7 @@ def ws(
     from pursue_gen.cli.solution import solve_and_print
     from pursue_gen.workspace.make import Extras
     from pursue_gen.workspace.map_spots import spare_spots
-    from pursue_gen.workspace.robot_size import read_sizes
+    from pursue_gen.workspace.robot_size import read_sizes, sizes_of
 
     told = read_sizes(robot)
     extras = Extras(machines, docker, systemd, spot_distance)
@@ -61,9 +61,10 @@ def ws(
     read = scenario_from(scenario, request)
     request = request.since(start)
     if floor is not None:
-        read, plan, ground, sizes = placed_on(read, floor, spot_distance, told)
-        spare = spare_spots(read, ground, spot_distance, sizes, plan.paths) if plan.paths else {}
-        extras = replace(extras, floor=plan, spare=spare)
+        read, plan, levels = placed_on(read, floor, spot_distance, told)
+        spare = spare_spots(read, levels, spot_distance, sizes_of(read, told))
+        heights = {level.name: level.elevation for level in levels if level.elevation is not None}
+        extras = replace(extras, floor=plan, spare=spare, levels=heights)
     if request.decides_ends:
         info("ends: controllable, since a general controller decides them itself (else: --ends reported)")
     made = api.write_workspace(solve_and_print(read, request, explain), folder, extras, force)

@@ -18,12 +18,13 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.times import like, written_time
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.solving.cut_off import lost_to_a_stay
-from pursue_gen.solving.decided import strategy_of
+from pursue_gen.solving.decided import guessed, strategy_of
 from pursue_gen.solving.rules import Rules, played
 from pursue_gen.solving.without_pauses import verdict_of
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga import scenario_objective, translate
+from pursue_gen.tga.network import Network, Objective
 from pursue_gen.thresholds import narrowed
 
 _SHARE = 0.5
@@ -32,6 +33,10 @@ _SHARE = 0.5
 _SHARED = 0.02
 """The part of what is left that a strategy in shares may take. Measured on a depot with three carts, and labs 9, 73 and
 181."""
+
+_FOR_GUESSES = 0.1
+"""The part of the budget for strategies in shares or by a policy, where the exact game is too large. Measured on a
+barn with a battery."""
 
 _PROBES = (11, 19, 31, 63, 127, 255)
 """Where a search for a number that wins looks before the end of a long list: large ones take longer. Not measured."""
@@ -90,6 +95,7 @@ def findings(scenario: Scenario, rules: Rules, budget: Budget) -> Findings:
     won: Dict[int, _Win] = {}
     lost: Dict[int, str] = {}
     undecided: Dict[int, str] = {}
+    for_guesses = budget.work * _FOR_GUESSES
     ideal = next((k for k, repair in enumerate(tried) if repair.what == "game"), None)
     # What says most comes first. Long lists come last: they make numbers larger, and larger games.
     for k in sorted(range(len(tried)), key=lambda k: (_turn(tried[k]), len(tried[k].values) > _PROBES[0], k)):
@@ -112,6 +118,12 @@ def findings(scenario: Scenario, rules: Rules, budget: Budget) -> Findings:
             lost[k] = repair.say(repair.values[-1])
         else:
             won[k] = win
+    guesses = budget.with_work(for_guesses)
+    for k in sorted(undecided):
+        guess = _guess(tried[k], scenario, rules, guesses)
+        if guess is not None:
+            won[k] = guess
+            del undecided[k]
     if any(tried[k].what in _IN_IDEAL for k in won):
         won = {k: win for k, win in won.items() if tried[k].what != "game"}
     helps = (k for k in won if tried[k].helps and not won[k].strategy.in_parts)
@@ -175,6 +187,26 @@ def _least(repair: Repair, scenario: Scenario, rules: Rules, budget: Budget) -> 
     return _Win(low, high, known[high])
 
 
+def _guess(repair: Repair, scenario: Scenario, rules: Rules, budget: Budget) -> Optional[_Win]:
+    """A small change that wins by a strategy in shares or by a policy, where the exact game is too large; None: there
+    is no such strategy for the largest."""
+    known: Dict[int, Strategy] = {}
+
+    def wins(k: int) -> bool:
+        with suppress(PursueError):
+            changed = repair.make(repair.values[k])
+            game = _game(*((changed, rules) if isinstance(changed, Scenario) else (scenario, changed)))
+            strategy = guessed(budget, *game, _SHARED, _SHARED)
+            known.update({} if strategy is None else {k: strategy})
+        return k in known
+
+    last = len(repair.values) - 1
+    if not wins(last):
+        return None
+    high = narrowed(-1, last, wins)[1]
+    return _Win(-1, high, known[high])
+
+
 def _change(repair: Repair, win: _Win) -> Change:
     value, next_lost = repair.values[win.high], repair.values[win.low] if win.low >= 0 else repair.before
     texts, least = (str(repair.before), str(value), repair.say(value)), win.high - win.low == 1
@@ -194,11 +226,15 @@ def _price(change: Change) -> Tuple[int, Fraction]:
     return (0, large / small) if small else (1, large)
 
 
-def _strategy(scenario: Scenario, rules: Rules, budget: Budget, guessed: bool) -> Optional[Strategy]:
-    """A strategy that wins the changed game, None where it is lost. Raises LimitHit. `guessed`: also one in shares, or
+def _strategy(scenario: Scenario, rules: Rules, budget: Budget, by_guess: bool) -> Optional[Strategy]:
+    """A strategy that wins the changed game, None where it is lost. Raises LimitHit. `by_guess`: also one in shares, or
     by a policy."""
-    network, objective = played(translate(scenario), rules), scenario_objective(scenario)
+    network, objective, reaction = _game(scenario, rules)
     if lost_to_a_stay(network, objective) is not None:
         return None
-    verdict = (budget, network, objective, rules.reaction, _SHARE)
-    return strategy_of(*verdict, _SHARED) if guessed else verdict_of(*verdict).strategy
+    verdict = (budget, network, objective, reaction, _SHARE)
+    return strategy_of(*verdict, _SHARED) if by_guess else verdict_of(*verdict).strategy
+
+
+def _game(scenario: Scenario, rules: Rules) -> Tuple[Network, Objective, Fraction]:
+    return played(translate(scenario), rules), scenario_objective(scenario), rules.reaction

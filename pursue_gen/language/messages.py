@@ -24,6 +24,8 @@ QUOTES = "\u201c\u201d\u201e\u201f\u00ab\u00bb\u2018\u2019\u201a'`\u00b4"
 """Quotation marks that word processors and other languages put in place of straight ones."""
 _SHORT_NUMBER = 20
 """Digits: numbers that a message repeats have fewer."""
+_SHORT_LINE = 100
+"""Letters: what a message repeats of a line is not longer."""
 _STARTERS = tuple(KEYWORDS[kind] for kind in STATEMENTS)
 _SHORT = frozenset(("any", "at", "no", "not", "robot"))
 """Words of conditions that too many other words resemble."""
@@ -78,6 +80,13 @@ def unknown_statement(chunk: Sequence[Token], span: Span) -> Diagnostic:
         close = _near(str(token), _STARTERS)
         hint = f"did you mean {close}?" if close else "a statement begins with " + _list(list(_STARTERS))
     return error("PML011", f"expected a statement, found {_shown(token)}", span, hint)
+
+
+def bare_objective(line: Sequence[Token], prefix: str, span: Span) -> Diagnostic:
+    """A line that is an objective but for the word in front of it."""
+    text = re.sub(r" ([,):])", r"\1", " ".join(line)).replace("( ", "(")
+    written = f"write {prefix}: {text}" if len(text) <= _SHORT_LINE else f"write {prefix}: in front of it"
+    return error("PML011", f"expected a statement, found {_shown(line[0])}", span, f"this is an objective; {written}")
 
 
 def explain(chunk: Sequence[Token], index: int, expected: FrozenSet[str], span: Span) -> Diagnostic:

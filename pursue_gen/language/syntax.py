@@ -7,6 +7,7 @@ import re
 import sys
 from dataclasses import dataclass, field
 from functools import lru_cache
+from itertools import groupby
 from pathlib import Path
 from typing import Any, Dict, FrozenSet, Iterable, List, Mapping, Optional, Sequence, Set, Tuple
 
@@ -18,6 +19,7 @@ from pursue_gen.language.groups import check_groups, written_out
 from pursue_gen.language.kinds import BY_RULE, DECLARED, KEYWORDS, MAY_BE_NAMES, STATEMENTS, TAIL
 from pursue_gen.language.members import no_list
 from pursue_gen.language.messages import (
+    bare_objective,
     explain,
     kind_of,
     looks_like_statement,
@@ -46,6 +48,7 @@ MOST_FINDINGS = 1000
 
 _BLANKS = COMMENTS - {"UNCLOSED_COMMENT"}
 """The comments that stand between words as blanks do."""
+_PREFIXES = ("OBJECTIVE", "REACH_OBJECTIVE")
 _SECOND = {token: [word.upper() for word in kind.second] for token, kind in STATEMENTS.items() if kind.second}
 """Statements whose first word may be a name, and the words behind the agent that they are about."""
 _OPENS = frozenset(("CONTROLLABLE", "MOBILE", *MAY_BE_NAMES)) - {"LABEL"}
@@ -228,20 +231,30 @@ class _Reader:
 
     def take(self, chunk: Sequence[Token], member: str = "") -> None:
         """Parses one statement; notes its tree, or what is wrong with it. `member`: as in `Span`."""
-        first, finding = chunk[0], None
-        if first.type not in (*STATEMENTS, TAIL):
-            finding = unknown_statement(chunk, span_of(first, self.file))
-        elif first.type == TAIL and not self._after_objective:
-            message = "a query of the original's tools (control: …) stands only behind an objective"
-            finding = error("PML017", message, span_of(first, self.file), "delete it")
-        else:
-            finding = self._parse(chunk)
+        finding = self._finding(chunk)
+        parts = _bare_objectives(chunk) if finding is not None else []
+        if any(prefix for _, prefix in parts):
+            for part, prefix in parts:
+                if prefix:
+                    self.findings.append(bare_objective(part, prefix, span_of(part[0], self.file)).at_member(member))
+                else:
+                    self.take(part, member)
+            return
         if finding is not None:
             self.findings.append(finding if finding.span is None else finding.at_member(member))
             self.lost |= _declared(chunk)
         elif member:
             self.trees[-1].meta.member = member
         self._after_objective = kind_of(chunk) in ("OBJECTIVE", "REACH_OBJECTIVE")
+
+    def _finding(self, chunk: Sequence[Token]) -> Optional[Diagnostic]:
+        first = chunk[0]
+        if first.type not in (*STATEMENTS, TAIL):
+            return unknown_statement(chunk, span_of(first, self.file))
+        if first.type == TAIL and not self._after_objective:
+            message = "a query of the original's tools (control: …) stands only behind an objective"
+            return error("PML017", message, span_of(first, self.file), "delete it")
+        return self._parse(chunk)
 
     def _parse(self, chunk: Sequence[Token]) -> Optional[Diagnostic]:
         parser: Any = grammar().parse_interactive(start="statement")
@@ -285,6 +298,27 @@ def _parser_after(tokens: Iterable[Token]) -> Any:
     for token in tokens:
         parser.feed_token(token)
     return parser
+
+
+def _bare_objectives(chunk: Sequence[Token]) -> List[Tuple[List[Token], str]]:
+    """The statement cut at each line that would be an objective with `objective` or `reach_objective`, and that word;
+    "" with the rest."""
+    found: List[Tuple[List[Token], str]] = []
+    for _, tokens in groupby(chunk, lambda token: token.line):
+        line = list(tokens)
+        prefix = "" if line[0].type in _PREFIXES else next((word for word in _PREFIXES if _is_read(word, line)), "")
+        if not found or prefix or found[-1][1]:
+            found.append(([], KEYWORDS.get(prefix, "")))
+        found[-1][0].extend(line)
+    return found
+
+
+def _is_read(prefix: str, tokens: Iterable[Token]) -> bool:
+    """True if the words are a statement with this word and a colon before them."""
+    try:
+        return "$END" in _parser_after([Token(prefix, KEYWORDS[prefix]), Token("COLON", ":"), *tokens]).accepts()
+    except UnexpectedToken:
+        return False
 
 
 def _declared(chunk: Sequence[Token]) -> Set[str]:

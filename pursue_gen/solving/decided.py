@@ -5,6 +5,7 @@ The exact game alone does not decide what is large; a strategy in shares or by a
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Optional
 
@@ -30,15 +31,24 @@ def strategy_of(
     """A strategy that wins, None where the game is lost. Raises LimitHit where that `share` of what is left of the
     budget does not decide the exact game, and there is no strategy in shares (with the part `shared` of what is left)
     or by a policy, which are tried before."""
-    if not objective.reaches and len(promises(objective)) > 1:
-        several, how = can_be_shared(network, objective), (network, objective, reaction)
-        limits = budget.part(shared if several else _GUESSED)
-        found = won_beside_tours(*how, SolveOptions(limits))
-        if found is None and several:
-            found = won_in_shares(*how, SolveOptions(limits), EFFORTS[:2])
-        elif found is None:
-            found = won_by_policy(*how, limits.work, SolveOptions(limits))
-        budget.spend(limits.work if found is None else min(limits.work, found.stats.work))
-        if found is not None:
-            return found.strategy
-    return verdict_of(budget, network, objective, reaction, share).strategy
+    guess = guessed(budget, network, objective, reaction, shared)
+    return guess or verdict_of(budget, network, objective, reaction, share).strategy
+
+
+def guessed(
+    budget: Budget, network: Network, objective: Objective, reaction: Fraction, shared: float, alone: float = _GUESSED
+) -> Optional[Strategy]:
+    """A strategy in shares (with the part `shared` of what is left of the budget) or by a policy (with the part
+    `alone`); None where there is none, or nothing can be guessed."""
+    if objective.reaches or len(promises(objective)) <= 1:
+        return None
+    several, how = can_be_shared(network, objective), (network, objective, reaction)
+    # of seconds all that is left: a part of a person's limit would be too short even for what takes no work
+    limits = replace(budget.part(shared if several else alone), seconds=budget.part().seconds)
+    found = won_beside_tours(*how, SolveOptions(limits))
+    if found is None and several:
+        found = won_in_shares(*how, SolveOptions(limits), EFFORTS[:2])
+    elif found is None:
+        found = won_by_policy(*how, limits.work, SolveOptions(limits))
+    budget.spend(limits.work if found is None else min(limits.work, found.stats.work))
+    return None if found is None else found.strategy

@@ -56,11 +56,11 @@ def written(
     distances: Mapping[Connection, Tuple[Number, str]],
     windows: Mapping[Movement, Tuple[int, int, str]],
     spots: Mapping[str, Sequence[Tuple[str, Optional[Pose]]]],
-    map_name: str,
+    maps: Mapping[str, str],
 ) -> str:
     """The text with distances of ways, windows of movements and spots, each with a remark (`survey: …`).
 
-    Windows of movements that have a `travel` replace it. `map_name`: the map's file, for the remarks of spots.
+    Windows of movements that have a `travel` replace it. `maps`: place → its map's file, for the remarks of spots.
     """
     rewriting = Rewriting(scenario)
     edits: List[Edit] = []
@@ -71,7 +71,7 @@ def written(
         found = [(robot, pose) for robot, pose in spots.get(poi.name, ()) if pose is not None]
         if found:
             names = " and ".join(robot for robot, _ in found)
-            edits += rewriting.spots(poi, found, f"{SURVEY}: {names} beside it on {map_name}")
+            edits += rewriting.spots(poi, found, f"{SURVEY}: {names} beside it on {maps[poi.name]}")
     return edited(scenario.text, edits)
 
 

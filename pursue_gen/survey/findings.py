@@ -13,10 +13,19 @@ from pursue_gen.language.scenario import Connection, Pose, Scenario
 from pursue_gen.survey.grid import Grid
 from pursue_gen.survey.plan import Plan
 from pursue_gen.survey.spots import exits_of, shut_in
-from pursue_gen.workspace.map_spots import Ways
+from pursue_gen.workspace.levels import Level, Ways
 
 _SOME = 8  # places that a message lists
 _REACH = 5.0  # metres around a place in which a point that can be reached is looked for
+
+
+def empty(scenario: Scenario, level: Level) -> Iterator[Diagnostic]:
+    """A map on which nothing is in the way."""
+    free = level.ground.free_pixels()
+    if free is not None and 0 not in free:
+        message = f"{level.map_name} has no obstacle: each path on it is a straight line"
+        hint = "where robots have to follow lanes or roads, leave the distances as they are written: --keep"
+        yield warning("MAP011", message, scenario.pois[0].span, hint)
 
 
 def apart(scenario: Scenario, plan: Plan, clearance: Clearance, needed: float) -> Iterator[Diagnostic]:

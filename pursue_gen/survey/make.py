@@ -9,7 +9,6 @@ from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence,
 
 from pursue_gen.diagnostics import Diagnostic, Severity, counted, error, in_order, usage_error
 from pursue_gen.drawing.clearance import Clearance
-from pursue_gen.drawing.ground import Ground
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.numbers import Number
@@ -26,16 +25,16 @@ from pursue_gen.survey.plan import Pair, Plan
 from pursue_gen.survey.routes import Route, Routes
 from pursue_gen.survey.spots import Spots, Standing, proposed_spots
 from pursue_gen.survey.times import Drive, window
+from pursue_gen.workspace.levels import Level, check_levels, on_level
 from pursue_gen.workspace.map_check import check_spots
-from pursue_gen.workspace.map_spots import Ways, with_poses, with_spots
+from pursue_gen.workspace.map_spots import with_poses, with_spots
 from pursue_gen.workspace.robot_size import Sizes
+from pursue_runtime.controller.frames import STOREY
 
 MOST_PLACES = 200
 """More places than that take too long and too much memory."""
 
-_STOREY = 0.5
-"""Metres in height by which places on different floors differ: this map is of one floor."""
-
+BY_LIFT = "it goes by lift"  # why the distance of a way is never measured
 _LONGER = 1.3
 """So much longer than by way of the places a path in the graph is between spots beside them, at most, more or less."""
 
@@ -94,75 +93,101 @@ class Survey:
     spots: Mapping[str, Mapping[str, Pose]]
 
 
-def surveyed(scenario: Scenario, ground: Ground, map_name: str, options: Options, copy: str = "") -> Survey:
-    """The survey of a scenario (`read_placed`) on the map with this name; `copy`: the file to which it is written.
+def surveyed(scenario: Scenario, levels: Sequence[Level], options: Options, copy: str = "") -> Survey:
+    """The survey of a scenario (`read_placed`) on the maps of its levels; `copy`: the file to which it is written.
 
     A scenario without ways gets those that are missing in any case. Raises PursueError where nothing can be measured.
     """
     _check_robots(scenario, options)
-    size = options.robots.largest
-    grid = grid_of(ground, size.radius)
-    plan = _plan(scenario, grid, options)
-    missing = plan.own_ways([(way.a, way.b) for way in scenario.connections])
-    new = missing if options.ways or not scenario.connections else []
-    with_new = _with_ways(scenario, new, plan, map_name, options)
-    kinds = {one: Standing(grid_of(ground, one.needed), grid_of(ground, one.wanted)) for one in options.robots.kinds}
-    lines, body = _lines(with_new, plan), 2 * size.radius
-    spots = proposed_spots(
-        with_new, grid, plan.places, options.room, lines, body, lambda robot: kinds[options.robots.of([robot])]
-    )
+    _check_places(scenario)
+    tuple(check_levels(scenario, levels))  # before what takes long
+    floors = [_floor(scenario, level, options) for level in levels]
+    known = [(way.a, way.b) for way in scenario.connections]
+    missing = {pair: floor for floor in floors for pair in floor.plan.own_ways(known)}
+    new = missing if options.ways or not scenario.connections else {}
+    with_new = _with_ways(scenario, new, options)
+    floors = [floor.with_ways(with_new) for floor in floors]
+    spots: Spots = {}
+    for floor in floors:
+        spots.update(_spots(on_level(with_new, floor.level), floor, options))
     poses = {place: {robot: pose for robot, pose in found if pose is not None} for place, found in spots.items()}
     placed = with_poses(replace(scenario, connections=with_new.connections), poses)
-    work = _Work(with_new, placed, plan, options, map_name)
-    ways = {way: work.way(way, given=(way.a, way.b) not in new) for way in with_new.connections}
-    text, errors = _copy(work, ways, spots, copy or f"the copy of {scenario.file}")
+    works = [_Work(with_new, placed, floor, options) for floor in floors]
+    ways = {way: _work(way, works).way(way, given=(way.a, way.b) not in new) for way in with_new.connections}
+    text, errors = _copy(works, ways, spots, copy or f"the copy of {scenario.file}")
     findings = [
-        *_found_on_map(placed, scenario, ground, _OnMap(grid, plan, lines), options, 0),
+        *_found_on_map(placed, scenario, floors, options, 0),
         *found_wrong.without_room(scenario, spots),
         *found_wrong.other_unit(scenario, _compared(scenario, ways), _timed(with_new, ways), options.unit),
     ]
-    proposals = [work.proposed(*pair) for pair in missing if pair not in new]
+    proposals = [floor.proposed(*pair, scenario, options) for pair, floor in missing.items() if pair not in new]
     return Survey(text, in_order(findings), errors, (*ways.values(), *proposals), poses)
 
 
 def found_on_map(
-    scenario: Scenario, ground: Ground, distance: float, sizes: Sizes
-) -> Tuple[Tuple[Diagnostic, ...], Ways]:
-    """What is wrong on a map with a scenario's places, spots and ways, in order, and the paths of the ways; as far as
-    it can be measured.
+    scenario: Scenario, levels: Sequence[Level], distance: float, sizes: Sizes
+) -> Tuple[Tuple[Diagnostic, ...], Tuple[Level, ...]]:
+    """What is wrong on the maps with a scenario's places, spots and ways, in order, as far as it can be measured, and
+    the levels with the paths of the ways.
 
-    `distance`: metres between the robots at one place that have no pose of their own. The pixels of `ground` are known.
+    `distance`: metres between the robots at one place that have no pose of their own. All pixels of the maps are known.
     """
     options = Options(sizes)
-    grid = grid_of(ground, sizes.largest.radius)
     try:
-        plan = _plan(scenario, grid, options)
+        _check_places(scenario)
+        floors = [_floor(scenario, level, options).with_ways(scenario) for level in levels]
     except Invalid:  # too few places, or too many
-        return check_spots(scenario, ground, distance, sizes), {}
-    here = _OnMap(grid, plan, _lines(scenario, plan))
-    placed = with_spots(scenario, ground, distance, sizes, here.lines)
-    return in_order(_found_on_map(placed, scenario, ground, here, options, distance)), here.lines
+        return check_spots(scenario, levels, distance, sizes), tuple(levels)
+    known = tuple(floor.level for floor in floors)
+    placed = with_spots(scenario, known, distance, sizes)
+    return in_order(_found_on_map(placed, scenario, floors, options, distance)), known
 
 
 @dataclass(frozen=True)
-class _OnMap:
-    """A scenario on the map: the grid, its places, and the paths of its ways."""
+class _Floor:
+    """A level, its grid, and the places on it."""
 
+    level: Level
     grid: Grid
     plan: Plan
-    lines: Ways
+
+    def with_ways(self, scenario: Scenario) -> _Floor:
+        """The same, whose level has the paths of the scenario's ways."""
+        pairs = [(way.a, way.b) for way in scenario.connections if {way.a, way.b} <= set(self.plan.places)]
+        routes = {pair: self.plan.route(*pair) for pair in pairs}
+        lines = {pair: route.bends for pair, route in routes.items() if route is not None}
+        return replace(self, level=replace(self.level, ways=lines))
+
+    def proposed(self, a: str, b: str, scenario: Scenario, options: Options) -> SurveyedWay:
+        """A way that is missing."""
+        route = self.plan.route(a, b)
+        assert route is not None
+        distance = rounded(route.length, options.unit, _mobiles(scenario))
+        return SurveyedWay(a, b, None, route.length, distance, "", tuple(self.plan.crossed(a, b)), (), route.bends)
+
+
+def _spots(part: Scenario, floor: _Floor, options: Options) -> Spots:
+    """The spots that are proposed on a level; `part` has no other places' poses."""
+    ground, size = floor.level.ground, options.robots.largest
+    kinds = {one: Standing(grid_of(ground, one.needed), grid_of(ground, one.wanted)) for one in options.robots.kinds}
+    given = part, floor.grid, floor.plan.places, options.room, floor.level.ways, 2 * size.radius
+    return proposed_spots(*given, lambda robot: kinds[options.robots.of([robot])])
 
 
 def _found_on_map(
-    placed: Scenario, scenario: Scenario, ground: Ground, here: _OnMap, options: Options, distance: float
+    placed: Scenario, scenario: Scenario, floors: Sequence[_Floor], options: Options, distance: float
 ) -> Iterator[Diagnostic]:
     """What is wrong with places, spots and ways; `placed` has a pose for each robot that shares a place."""
-    size, plan = options.robots.largest, here.plan
-    yield from found_wrong.apart(scenario, plan, Clearance(ground), size.needed)
-    yield from found_wrong.crossing(scenario, plan)
-    yield from found_wrong.shut_in_places(placed, here.grid, here.lines, size.radius, options.room)
+    size = options.robots.largest
+    for floor in floors:
+        level, part = floor.level, on_level(placed, floor.level)
+        yield from found_wrong.empty(scenario, level)
+        yield from found_wrong.apart(scenario, floor.plan, Clearance(level.ground), size.needed)
+        yield from found_wrong.crossing(scenario, floor.plan)
+        yield from found_wrong.shut_in_places(part, floor.grid, level.ways, size.radius, options.room)
     spots = scenario if distance else placed  # those that are not written are called so
-    yield from check_spots(spots, ground, distance, options.robots, plan.is_joined, here.lines)
+    joined = {floor.level.name: floor.plan.is_joined for floor in floors}
+    yield from check_spots(spots, [floor.level for floor in floors], distance, options.robots, joined)
 
 
 def _check_robots(scenario: Scenario, options: Options) -> None:
@@ -182,35 +207,40 @@ def _check_robots(scenario: Scenario, options: Options) -> None:
             raise usage_error(f"--keep {','.join(pair)}: the scenario has no such way", hint)
 
 
-def _plan(scenario: Scenario, grid: Grid, options: Options) -> Plan:
-    """The places on the grid. Raises PursueError where nothing can be measured."""
-    posed = [poi for poi in scenario.pois if poi.pose is not None]
-    span = scenario.pois[0].span
-    if len(posed) < 2:
-        message = f"{counted(len(posed), 'place')} of {len(scenario.pois)} with a pose: nothing can be measured"
+def _check_places(scenario: Scenario) -> None:
+    """Raises PursueError where fewer than two places have a pose."""
+    posed = sum(poi.pose is not None for poi in scenario.pois)
+    if posed < 2:
+        message = f"{counted(posed, 'place')} of {len(scenario.pois)} with a pose: nothing can be measured"
         hint = 'write a pose behind each place: poi "desk" //[x, y, z, qx, qy, qz, qw], metres on the map'
-        raise Invalid([error("MAP001", message, span, hint)])
-    if len(posed) > MOST_PLACES:
-        message = f"{len(posed)} places; at most {MOST_PLACES} can be surveyed at once"
-        raise Invalid([error("MAP001", message, span, "survey the floors of the building one by one")])
+        raise Invalid([error("MAP001", message, scenario.pois[0].span, hint)])
+
+
+def _floor(scenario: Scenario, level: Level, options: Options) -> _Floor:
+    """The places of a level on its grid. Raises PursueError where nothing can be measured."""
+    grid, span = grid_of(level.ground, options.robots.largest.radius), scenario.pois[0].span
+    points = {poi.name: (poi.pose.x, poi.pose.y) for poi in scenario.pois if poi.pose and level.has(poi.pose)}
+    if len(points) > MOST_PLACES:
+        message = f"{len(points)} places; at most {MOST_PLACES} can be surveyed on one map"
+        raise Invalid([error("MAP001", message, span, "give each floor a map of its own, or survey parts of this one")])
     if not grid.free.any():
-        message = f"the map has no free ground for a robot with a radius of {options.robots.largest.radius:g} m"
+        message = f"{level.map_name} has no free ground for a robot with a radius of "
+        message += f"{options.robots.largest.radius:g} m"
         hint = "look at negate, free_thresh, resolution and the picture's opacity, or try a smaller --radius"
         raise Invalid([error("MAP001", message, span, hint)])
-    points = {poi.name: (poi.pose.x, poi.pose.y) for poi in posed if poi.pose is not None}
-    return Plan(graph_of(grid), {name: at for name, at in points.items() if grid.is_free(grid.cell(*at))}, options.room)
+    places = {name: at for name, at in points.items() if grid.is_free(grid.cell(*at))}
+    return _Floor(level, grid, Plan(graph_of(grid), places, options.room))
 
 
-def _with_ways(scenario: Scenario, new: Sequence[Pair], plan: Plan, map_name: str, options: Options) -> Scenario:
+def _with_ways(scenario: Scenario, new: Mapping[Pair, _Floor], options: Options) -> Scenario:
     """The scenario with further ways, in its text as well."""
     if not new:
         return scenario
     lines = []
-    for a, b in new:
-        route = plan.route(a, b)
-        assert route is not None
-        distance = rounded(route.length, options.unit, _mobiles(scenario))
-        lines.append((a, b, distance, _measured(route.length, map_name, options.unit)))
+    for (a, b), floor in new.items():
+        way = floor.proposed(a, b, scenario, options)
+        assert way.metres is not None and way.written is not None
+        lines.append((a, b, way.written, _measured(way.metres, floor.level, options.unit)))
     reading = read(with_ways(scenario, lines), scenario.file, scenario.name)
     return without_errors(reading.scenario, reading.diagnostics)
 
@@ -220,27 +250,25 @@ def _mobiles(scenario: Scenario) -> List[Number]:
     return [agent.mobile for agent in scenario.agents if agent.mobile is not None and agent.speed is None]
 
 
-def _measured(metres: float, map_name: str, unit: float) -> str:
+def _measured(metres: float, level: Level, unit: float) -> str:
     """The remark on a distance."""
     scale = "" if unit == 1 else f", {unit:g} m per unit"
-    return f"{SURVEY}: {metres:.2f} m on {map_name}{scale}"
-
-
-def _lines(scenario: Scenario, plan: Plan) -> Ways:
-    """The paths of the scenario's ways."""
-    pairs = [(way.a, way.b) for way in scenario.connections if {way.a, way.b} <= set(plan.places)]
-    return {pair: route.bends for pair in pairs for route in [plan.route(*pair)] if route is not None}
+    return f"{SURVEY}: {metres:.2f} m on {level.map_name}{scale}"
 
 
 @dataclass(frozen=True)
 class _Work:
-    """A scenario with all its ways, the same one with all its spots, and its places on the map."""
+    """A scenario with all its ways, the same one with all its spots, and a level with its places on the map."""
 
     scenario: Scenario
     placed: Scenario
-    plan: Plan
+    floor: _Floor
     options: Options
-    map_name: str
+
+    @property
+    def plan(self) -> Plan:
+        """The places of the level."""
+        return self.floor.plan
 
     def way(self, way: Connection, given: bool) -> SurveyedWay:
         """What was found out about a way; `given`: its distance is the author's."""
@@ -256,14 +284,6 @@ class _Work:
         number = way.distance if given else None
         return SurveyedWay(way.a, way.b, number, metres, distance, kept, crossed, windows, line)
 
-    def proposed(self, a: str, b: str) -> SurveyedWay:
-        """A way that is missing."""
-        route = self.plan.route(a, b)
-        assert route is not None
-        distance = rounded(route.length, self.options.unit, _mobiles(self.scenario))
-        crossed = tuple(self.plan.crossed(a, b))
-        return SurveyedWay(a, b, None, route.length, distance, "", crossed, (), route.bends)
-
     def route(self, way: Connection) -> Optional[Route]:
         """The path of a way; None where there is none, or one of its places is not on the map."""
         return self.plan.route(way.a, way.b) if {way.a, way.b} <= set(self.plan.places) else None
@@ -272,12 +292,12 @@ class _Work:
         """Why the distance of a way stays as it is; "": it does not."""
         poses = {poi.name: poi.pose for poi in self.scenario.pois}
         if way.by is not None:
-            return "it goes by lift"
+            return BY_LIFT
         for name in (way.a, way.b):
             if poses[name] is None:
                 return f"{name} has no pose"
         a, b = poses[way.a], poses[way.b]
-        if a is not None and b is not None and abs(a.z - b.z) > _STOREY:
+        if a is not None and b is not None and abs(a.z - b.z) > STOREY:
             return "its places are on different floors"
         for name in (way.a, way.b):
             if name not in self.plan.places:
@@ -339,6 +359,12 @@ class _Work:
         return self.plan.routes(pairs, _LONGER * longest)
 
 
+def _work(way: Connection, works: Sequence[_Work]) -> _Work:
+    """That of the level on which a way begins."""
+    pose = next(poi.pose for poi in works[0].scenario.pois if poi.name == way.a)
+    return next((work for work in works if work.floor.level.has(pose)), works[0])
+
+
 def _compared(scenario: Scenario, ways: Mapping[Connection, SurveyedWay]) -> Dict[Connection, float]:
     """The lengths in metres of the scenario's ways whose distances change."""
     known = {(way.a, way.b): one for way, one in ways.items() if one.written != way.distance}
@@ -353,21 +379,23 @@ def _timed(scenario: Scenario, ways: Mapping[Connection, SurveyedWay]) -> Set[Mo
 
 
 def _copy(
-    work: _Work, ways: Mapping[Connection, SurveyedWay], spots: Spots, file: str
+    works: Sequence[_Work], ways: Mapping[Connection, SurveyedWay], spots: Spots, file: str
 ) -> Tuple[str, Tuple[Diagnostic, ...]]:
     """The text of the copy, and its errors: what cannot be reached on the map, for example."""
-    unit, name = work.options.unit, work.map_name
+    options, scenario = works[0].options, works[0].scenario
+    levels = {way: _work(way, works).floor.level for way in ways}
     distances = {
-        way: (one.written, _measured(one.metres, name, unit))
+        way: (one.written, _measured(one.metres, levels[way], options.unit))
         for way, one in ways.items()
         if one.metres is not None and one.written is not None and one.written != way.distance
     }
-    speeds = work.options.drive.speeds
+    speeds = options.drive.speeds
     windows = {
-        (robot, a, b): (low, high, f"{SURVEY}: at {speeds[robot]:g} m/s on {name}")
-        for one in ways.values()
+        (robot, a, b): (low, high, f"{SURVEY}: at {speeds[robot]:g} m/s on {levels[way].map_name}")
+        for way, one in ways.items()
         for robot, a, b, low, high in one.windows
     }
-    text = written(work.scenario, distances, windows, spots, name)
-    found = check_reading(read(text, file, work.scenario.name))
+    maps = {place: work.floor.level.map_name for work in works for place in work.plan.places}
+    text = written(scenario, distances, windows, spots, maps)
+    found = check_reading(read(text, file, scenario.name))
     return text, tuple(finding for finding in found if finding.severity is Severity.ERROR)

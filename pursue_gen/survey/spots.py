@@ -15,7 +15,8 @@ from pursue_gen.drawing.layout import yaw_of
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Poi, Pose, Scenario
 from pursue_gen.survey.grid import Array, Grid, Point
-from pursue_gen.workspace.map_spots import NEAR, Ways
+from pursue_gen.workspace.levels import Ways
+from pursue_gen.workspace.map_spots import NEAR
 
 _REACH = 4
 """How far from a place its spots are looked for: so many times the room of a robot, and 3 m at least."""

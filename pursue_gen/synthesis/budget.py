@@ -111,6 +111,12 @@ class Budget:
         some._start = self._limits.now()
         return some
 
+    def with_work(self, work: float) -> Budget:
+        """A budget of so much work, kept for later from what there was at first, and of the seconds that are left."""
+        some = self.split(1)
+        some.work = work
+        return some
+
     def spend(self, work: float) -> None:
         """Counts work that something else did, 0 or more."""
         assert work >= 0

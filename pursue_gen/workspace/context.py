@@ -53,7 +53,8 @@ class Options:
     `time_unit`: the default length of a time unit in seconds; None: as the scenario says, 1 where it does not.
     `machines`: which machine runs which node; `docker` and `systemd`: with files for containers, and for services.
     `spot_distance`: metres between the robots at one place where the scenario does not say where they stand; `spare`:
-    robot → place → pose that it alone may take if need be. The rest goes into the manifests.
+    robot → place → pose that it alone may take if need be; `levels`: those that have maps of their own, with their
+    elevations (metres). The rest goes into the manifests.
     """
 
     controllers: str = "distributed"
@@ -73,6 +74,7 @@ class Options:
     systemd: bool = False
     spot_distance: float = SPOT_DISTANCE
     spare: Mapping[str, Table] = field(default_factory=dict)
+    levels: Mapping[str, float] = field(default_factory=dict)
     maintainer: str = "maintainer"
     maintainer_email: str = "maintainer@example.org"
     license: str = "BSD-3-Clause"

@@ -89,7 +89,8 @@ def generate(
     }
     files: Dict[str, bytes] = {}
     sent = {sub.controller: [agent for agent in sub.agents if agent in where.spots] for sub in subs}
-    poses_of = {controller: poses_text(scenario, where, robots, options.spare) for controller, robots in sent.items()}
+    more = options.spare, options.levels
+    poses_of = {controller: poses_text(scenario, where, robots, *more) for controller, robots in sent.items()}
     packages = _with_mission(_packages(scenario, subs, data, poses_of, options), scenario)
     _check_packages(packages)
     _check_sizes(packages)

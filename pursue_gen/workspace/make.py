@@ -27,7 +27,7 @@ class Extras:
     """What a workspace may have besides: a machines.yaml, and files for containers and for services.
 
     `spot_distance`: metres between the robots at one place; `spare`: as `map_spots.spare_spots` finds them. `floor`: a
-    floor plan for the UI's page.
+    floor plan for the UI's page; `levels`: those that have maps of their own, with their elevations (metres).
     """
 
     machines: Optional[Path] = None
@@ -36,6 +36,7 @@ class Extras:
     spot_distance: float = SPOT_DISTANCE
     floor: Optional[Floor] = None
     spare: Mapping[str, Table] = field(default_factory=dict)
+    levels: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,7 @@ def options_for(request: SolveRequest, won: Solution, margin: str = "", extras: 
         systemd=extras.systemd,
         spot_distance=extras.spot_distance,
         spare=extras.spare,
+        levels=extras.levels,
     )
 
 

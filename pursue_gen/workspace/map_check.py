@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 from typing import Callable, Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, warning
@@ -13,7 +14,8 @@ from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Pose, Scenario
-from pursue_gen.workspace.map_spots import NEAR, NO_WAYS, Ways, fit_on, is_seen, room_on
+from pursue_gen.workspace.levels import Level, Ways, check_levels
+from pursue_gen.workspace.map_spots import NEAR, fit_on, is_seen, room_on
 from pursue_gen.workspace.robot_size import ALIKE, RobotSize, Sizes
 from pursue_gen.workspace.spots import Fit, placing
 
@@ -46,11 +48,10 @@ def but_for_ways(findings: Sequence[Diagnostic]) -> Tuple[Diagnostic, ...]:
 
 def check_spots(
     scenario: Scenario,
-    ground: Ground,
+    levels: Sequence[Level],
     distance: float,
     sizes: Sizes = ALIKE,
-    may_be: Callable[[Point], bool] = lambda point: True,
-    ways: Ways = NO_WAYS,
+    may_be: Mapping[str, Callable[[Point], bool]] = MappingProxyType({}),
 ) -> Tuple[Diagnostic, ...]:
     """A warning for each place or spot that is not on free ground, has too little room for a robot, or is too near
     another one, with the nearest point at which there is room; places without a pose are left out.
@@ -58,18 +59,21 @@ def check_spots(
     Each is measured against the largest of the robots that are sent there.
 
     `distance`: metres between the robots at one place; those without a pose of their own stand where there is room.
-    `may_be`: whether a point (metres) may be proposed. `ways`: their paths, where they are known; spots on the way of
-    others are warned about then.
+    `may_be`: level → whether a point of it (metres) may be proposed. Spots on the way of others are warned about where
+    the paths of ways are known. Raises PursueError for places that are on no level.
     """
-    points = tuple(_points(scenario, distance, fit_on(ground, sizes, ways)))
-    look = _Look(ground, Clearance(ground), sizes, points, may_be, ways)
+    found = list(check_levels(scenario, levels))
+    everywhere = tuple(_points(scenario, distance, fit_on(levels, sizes)))
     present = robots_at(scenario)
-    found = []
-    for number, point in enumerate(points):
-        finding = look.on_ground(point) or look.room(point)
-        found += [finding] if finding else []
-        found += look.neighbour(point, points[:number])
-        found += look.on_a_way(point, present)
+    for level in levels:
+        points = tuple(point for point in everywhere if level.has(point.pose))
+        anywhere = may_be.get(level.name, lambda point: True)
+        look = _Look(level.ground, Clearance(level.ground), sizes, points, anywhere, level.ways)
+        for number, point in enumerate(points):
+            finding = look.on_ground(point) or look.room(point)
+            found += [finding] if finding else []
+            found += look.neighbour(point, points[:number])
+            found += look.on_a_way(point, present)
     return tuple(found)
 
 

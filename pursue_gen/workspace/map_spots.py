@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from types import MappingProxyType
-from typing import Dict, Mapping, Optional, Sequence, Tuple
+from typing import Dict, Mapping, Optional, Sequence
 
 from pursue_gen.drawing.clearance import Clearance, Point, to_line
 from pursue_gen.drawing.ground import FREE, Ground
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Pose, Ref, Scenario, Spot
+from pursue_gen.workspace.levels import Level
 from pursue_gen.workspace.robot_size import RobotSize, Sizes
 from pursue_gen.workspace.spots import Fit, placing
 
@@ -23,17 +23,12 @@ _SAME = 0.001
 """Metres by which two points are one."""
 
 
-Ways = Mapping[Tuple[str, str], Sequence[Point]]
-"""The two places of a way → the bends of its path, from the first to the second (metres)."""
-NO_WAYS: Ways = MappingProxyType({})
-
-
-def with_spots(scenario: Scenario, ground: Ground, distance: float, sizes: Sizes, ways: Ways = NO_WAYS) -> Scenario:
+def with_spots(scenario: Scenario, levels: Sequence[Level], distance: float, sizes: Sizes) -> Scenario:
     """The scenario with a pose for each robot that is sent beside the pose of a place: where there is room for it.
 
-    Its text stays as it is. `distance`: as for `spots.placing`; `ways`: as far as they are known.
+    Its text stays as it is. `distance`: as for `spots.placing`.
     """
-    where, present = placing(scenario, distance, fit_on(ground, sizes, ways)), robots_at(scenario)
+    where, present = placing(scenario, distance, fit_on(levels, sizes)), robots_at(scenario)
     beside: Dict[str, Dict[str, Pose]] = {}
     for poi in scenario.pois:
         own = {spot.robot.name for spot in poi.spots}
@@ -53,21 +48,34 @@ def with_poses(scenario: Scenario, beside: Mapping[str, Mapping[str, Pose]]) -> 
 
 
 def spare_spots(
-    scenario: Scenario, ground: Ground, distance: float, sizes: Sizes, ways: Ways
+    scenario: Scenario, levels: Sequence[Level], distance: float, sizes: Sizes
 ) -> Dict[str, Dict[str, Pose]]:
     """robot → place → another pose that this robot alone may take there, if its navigation cannot bring it to its spot.
 
     It is near the spot, with the room to stop and turn, seen from it, apart from the poses and spots of all other
-    robots, and off the ways; robots have none where there is no such point. `scenario` is that of `with_spots`.
+    robots, and off the ways; robots have none where there is no such point, or ways are not known. `scenario` is that
+    of `with_spots`.
     """
-    where, present = placing(scenario, distance), robots_at(scenario)
-    posed = [poi for poi in scenario.pois if poi.pose is not None]
-    taken = [(robot, where.spots[robot][poi.name]) for poi in posed for robot in present[poi.name]]
+    where = placing(scenario, distance)
+    found: Dict[str, Dict[str, Pose]] = {}
+    for level in levels:
+        for robot, poses in _spare_on(level, scenario, where.spots, sizes).items() if level.ways else ():
+            found.setdefault(robot, {}).update(poses)
+    return found
+
+
+def _spare_on(
+    level: Level, scenario: Scenario, spots: Mapping[str, Mapping[str, Pose]], sizes: Sizes
+) -> Dict[str, Dict[str, Pose]]:
+    """Those on one level, beside the robots' `spots`."""
+    present, ground = robots_at(scenario), level.ground
+    posed = [poi for poi in scenario.pois if level.has(poi.pose)]
+    taken = [(robot, spots[robot][poi.name]) for poi in posed for robot in present[poi.name]]
     clearance = Clearance(ground)
 
     def spare(robot: str, spot: Pose) -> Optional[Pose]:
         size, here = sizes.of([robot]), (spot.x, spot.y)
-        rooms = [(line, room_on(line, here, sizes.largest)) for line in ways.values()]
+        rooms = [(line, room_on(line, here, sizes.largest)) for line in level.ways.values()]
         others = [(pose, size.needed + sizes.of([other]).needed) for other, pose in taken if other != robot]
 
         def is_free(at: Point) -> bool:
@@ -82,27 +90,29 @@ def spare_spots(
     found: Dict[str, Dict[str, Pose]] = {}
     for poi in posed:
         for robot in present[poi.name]:
-            pose = spare(robot, where.spots[robot][poi.name])
+            pose = spare(robot, spots[robot][poi.name])
             if pose is not None:
                 found.setdefault(robot, {})[poi.name] = pose
                 taken.append((robot, pose))
     return found
 
 
-def fit_on(ground: Ground, sizes: Sizes, ways: Ways = NO_WAYS) -> Fit:
-    """How well robots stand at spots on a map.
+def fit_on(levels: Sequence[Level], sizes: Sizes) -> Fit:
+    """How well robots stand at spots on the maps of some levels.
 
     They need the room to stop and turn, and a straight line on free ground from the place. Better they are not on the
     way of others, and best outside what is inflated, too.
     """
-    clearance, more = Clearance(ground), ground.settings.resolution
+    known = [(level, Clearance(level.ground)) for level in levels]
 
     def fit(pose: Pose, robots: Sequence[str], spot: Pose) -> int:
         place, here, robot = (pose.x, pose.y), (spot.x, spot.y), sizes.of(robots)
-        metres = clearance.metres(*here, robot.wanted + more)
+        level, clearance = next((one for one in known if one[0].has(pose)), known[0])
+        ground = level.ground
+        metres = clearance.metres(*here, robot.wanted + ground.settings.resolution)
         if metres <= robot.needed or not is_seen(ground, place, here):
             return 0
-        is_aside = all(to_line(line, here)[0] >= room_on(line, place, sizes.largest) for line in ways.values())
+        is_aside = all(to_line(line, here)[0] >= room_on(line, place, sizes.largest) for line in level.ways.values())
         is_liked = metres > robot.wanted and math.dist(place, here) <= NEAR
         return 1 + 2 * is_aside + is_liked
 

@@ -24,13 +24,18 @@ NOTHING: Mapping[str, Table] = MappingProxyType({})
 
 
 def poses_text(
-    scenario: Scenario, placing: Placing, robots: Sequence[str] = (), spare: Mapping[str, Table] = NOTHING
+    scenario: Scenario,
+    placing: Placing,
+    robots: Sequence[str] = (),
+    spare: Mapping[str, Table] = NOTHING,
+    levels: Mapping[str, float] = MappingProxyType({}),
 ) -> bytes:
     """The text of poses.yaml for a package that sends these robots to their spots; without robots it has the places.
 
     One robot has a table of its own. Of several, those that differ from the places' poses are named (format 2). Those
     that each robot alone may take if need be are named in any case (`spare`: robot → place → pose, format 3), and so
-    are the doors of ways, and where a robot waits for them (format 4), in the cabin of a lift, too (format 5).
+    are the doors of ways, and where a robot waits for them (format 4), in the cabin of a lift, too (format 5); and
+    the elevations of `levels` that have maps of their own (format 6).
     """
     places, spots = placing.places, placing.spots
     head = [_title(scenario, robots)]
@@ -52,7 +57,7 @@ def poses_text(
     spare = {robot: spare[robot] for robot in robots if robot in spare}
     doors = _doorways(scenario, places, own, robots)
     by_lift = any(isinstance(way, list) for ways in doors.values() for way in ways.values())
-    form = 5 if by_lift else 4 if doors else 3 if spare else 2 if own else 1
+    form = 6 if levels else 5 if by_lift else 4 if doors else 3 if spare else 2 if own else 1
     data: Dict[str, Any] = {"format": form, "computed": placing.computed, "poses": _lines(places, alone)}
     if own:
         data["robots"] = {robot: _lines(table, _computed(scenario, robot)) for robot, table in own.items()}
@@ -60,6 +65,8 @@ def poses_text(
         data["spare"] = {robot: _lines(table, ()) for robot, table in spare.items()}
     if doors:
         data["doors"] = doors
+    if levels:
+        data["levels"] = inline(dict(levels))
     return yaml_text(data, head).encode()
 
 

@@ -13,6 +13,7 @@ from pursue_gen.diagnostics import Diagnostic, counted, warning
 from pursue_gen.drawing.layout import poses, yaw_of
 from pursue_gen.language.behaviour import robots_at
 from pursue_gen.language.scenario import Poi, Pose, Scenario
+from pursue_runtime.controller.frames import STOREY
 
 SPOT_DISTANCE = 0.8
 """Metres between the robots at one place, by default: room for two robots of the size of a Turtlebot."""
@@ -141,23 +142,24 @@ def _without_own(poi: Poi, robots: Sequence[str]) -> List[str]:
 
 
 class _Taken:
-    """Points from which others have to be `distance` metres away."""
+    """Points from which others on the same floor have to be `distance` metres away."""
 
     def __init__(self, distance: float, poses: Iterable[Pose]) -> None:
         self._distance = distance
-        self._cells: DefaultDict[Tuple[int, int], List[Point]] = defaultdict(list)
+        self._cells: DefaultDict[Tuple[int, int], List[Pose]] = defaultdict(list)
         for pose in poses:
             self.add(pose)
 
     def add(self, pose: Pose) -> None:
         """Take the point of a pose."""
-        self._cells[self._cell(pose)].append((pose.x, pose.y))
+        self._cells[self._cell(pose)].append(pose)
 
     def near(self, pose: Pose) -> bool:
         """Return True if a point is too near to the pose."""
         i, j = self._cell(pose)
-        around = (point for x in (i - 1, i, i + 1) for y in (j - 1, j, j + 1) for point in self._cells.get((x, y), ()))
-        return any(math.dist(point, (pose.x, pose.y)) < self._distance - _ROUNDING for point in around)
+        around = (other for x in (i - 1, i, i + 1) for y in (j - 1, j, j + 1) for other in self._cells.get((x, y), ()))
+        here = ((other.x, other.y) for other in around if abs(other.z - pose.z) <= STOREY)
+        return any(math.dist(point, (pose.x, pose.y)) < self._distance - _ROUNDING for point in here)
 
     def _cell(self, pose: Pose) -> Tuple[int, int]:
         return math.floor(pose.x / self._distance), math.floor(pose.y / self._distance)

@@ -69,36 +69,6 @@ def _transposition(dim: int) -> Callable[[Tuple[int, ...]], Tuple[int, ...]]:
     return operator.itemgetter(*(j * dim + i for i in range(dim) for j in range(dim)))
 
 
-@lru_cache(maxsize=4096)
-def _extrapolation(max_constants: Tuple[int, ...]) -> Tuple[Tuple[int, ...], Tuple[int, ...]]:
-    """For each bound of a matrix: above what it becomes infinite, and what it is at least."""
-    dim = len(max_constants)
-    pairs = [(i, j) for i in range(dim) for j in range(dim)]
-    highs = (INF if i == j else raw(max_constants[i], strict=False) for i, j in pairs)
-    lows = (-INF if i == j else raw(-max_constants[j], strict=True) for i, j in pairs)
-    return tuple(highs), tuple(lows)
-
-
-def _close(m: List[int], dim: int) -> bool:
-    """Make the matrix canonical in place (Floyd and Warshall); false if it holds no point."""
-    for k in range(dim):
-        row_k = m[k * dim : k * dim + dim]
-        for i in range(dim):
-            m_ik = m[i * dim + k]
-            if m_ik >= INF or i == k:
-                continue
-            at = i * dim
-            for m_kj in row_k:
-                if m_kj < INF:
-                    through = m_ik + m_kj - ((m_ik | m_kj) & 1)
-                    if through < m[at]:
-                        m[at] = through
-                at += 1
-        if min(m[:: dim + 1]) < LE_ZERO:
-            return False
-    return True
-
-
 def _tighten(m: List[int], dim: int, i: int, j: int, bound: int) -> None:
     """Take a bound into a canonical matrix, in place. Requires: it is tighter than the old one, and leaves a point."""
     # The new bound is used on ways to i and on from j only.
@@ -205,11 +175,6 @@ class Dbm:
                 _tighten(m, dim, i, j, bound)
         return Dbm(dim, tuple(m))
 
-    def hull(self, other: Dbm) -> Dbm:
-        """The smallest zone that includes both."""
-        assert self.dim == other.dim
-        return Dbm(self.dim, tuple(map(max, self.m, other.m)))
-
     def joined(self, other: Dbm) -> Optional[Dbm]:
         """The points in either, if they make one zone; else None.
 
@@ -308,16 +273,6 @@ class Dbm:
             m[i] = min(LE_ZERO, self.m[i] + 2 * delay, *(m[j * dim + i] for j in range(1, dim)))
         return Dbm(dim, tuple(m))
 
-    def lasting(self, delay: int) -> Optional[Dbm]:
-        """The points from which every time in [0, delay] stays in the zone; None if there are none."""
-        assert delay >= 0
-        zone: Optional[Dbm] = self
-        for i in range(1, self.dim):
-            bound = self.m[i * self.dim]
-            if zone is not None and bound < INF:
-                zone = zone.constrained(i, 0, bound - 2 * delay)
-        return zone
-
     def reset(self, indices: Iterable[int]) -> Dbm:
         """The zone after these clocks are set to 0."""
         dim, m = self.dim, list(self.m)
@@ -328,31 +283,3 @@ class Dbm:
                 m[j * dim + i] = m[j * dim]
             m[i * dim + i] = LE_ZERO
         return Dbm(dim, tuple(m))
-
-    def before_reset(self, indices: Iterable[int]) -> Optional[Dbm]:
-        """The valuations that setting these clocks to 0 takes into the zone; None if there are none."""
-        dim, clocks = self.dim, tuple(indices)
-        assert 0 not in clocks
-        zone = self.constrained_all((i, 0, LE_ZERO) for i in clocks)
-        if zone is None:
-            return None
-        m = list(zone.m)
-        for i in clocks:
-            for j in range(dim):
-                m[i * dim + j] = INF
-                m[j * dim + i] = m[j * dim]
-            m[i] = m[i * dim + i] = LE_ZERO
-        return Dbm(dim, tuple(m))
-
-    def extrapolated(self, max_constants: Sequence[int]) -> Dbm:
-        """A zone that includes this one and differs only beyond the constants (ExtraM, Behrmann et al. 2006).
-
-        `max_constants[i]` is the largest scaled constant that clock i is compared with; entry 0 is 0.
-        """
-        assert len(max_constants) == self.dim and max_constants[0] == 0
-        highs, lows = _extrapolation(tuple(max_constants))
-        m = [INF if bound > high else bound if bound >= low else low for bound, high, low in zip(self.m, highs, lows)]
-        if tuple(m) == self.m:
-            return self
-        _close(m, self.dim)
-        return Dbm(self.dim, tuple(m))

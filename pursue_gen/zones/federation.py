@@ -36,21 +36,6 @@ class Federation:
         """True if the valuation is in it; `point[k]` is the value of clock k + 1."""
         return any(zone.contains(point) for zone in self.zones)
 
-    def includes_zone(self, zone: Dbm) -> bool:
-        """True if every point of the zone is in it."""
-        if any(mine.includes(zone) for mine in self.zones):
-            return True
-        rest: List[Dbm] = [zone]
-        for mine in self.zones:
-            rest = [piece for part in rest for piece in part.minus(mine)]
-            if not rest:
-                return True
-        return False
-
-    def includes(self, other: Federation) -> bool:
-        """True if every point of the other is in it."""
-        return all(self.includes_zone(zone) for zone in other.zones)
-
     def union(self, other: Federation) -> Federation:
         """The points in either, without zones that lie in one other zone."""
         if not other.zones:
@@ -74,33 +59,6 @@ class Federation:
             if not rest:
                 break
         return Federation(tuple(rest))
-
-    def up(self) -> Federation:
-        """The future: the valuations that some time leads to from it."""
-        return Federation(_maximal(zone.up() for zone in self.zones))
-
-    def down(self) -> Federation:
-        """The past: the valuations from which some time leads into it."""
-        return Federation(_maximal(zone.down() for zone in self.zones))
-
-    def down_within(self, delay: int) -> Federation:
-        """The past by a time in [0, delay]."""
-        return Federation(_maximal(zone.down_within(delay) for zone in self.zones))
-
-    def lasting(self, delay: int, universe: Dbm) -> Federation:
-        """The points of the universe from which every time in [0, delay] stays in the federation.
-
-        Time may leave the universe.
-        """
-        assert delay >= 0
-        inside = self.intersect_zone(universe)
-        if delay == 0 or not inside:
-            return inside
-        if len(self.zones) == 1:
-            zone = self.zones[0].lasting(delay)
-            return Federation() if zone is None else Federation((zone,)).intersect_zone(universe)
-        outside = Federation((universe.up_within(delay),)).minus(self)
-        return inside.minus(outside.down_within(delay))
 
     def reduced(self) -> Federation:
         """The same points in fewer zones: none inside another, and no two whose union is convex."""

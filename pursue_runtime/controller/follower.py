@@ -37,7 +37,7 @@ class MissionPart(NamedTuple):
 def read_part(source: Source) -> MissionPart:
     """Read a part from one source. Raises DataError."""
     if source.empty:
-        return MissionPart(source.mission, None, Poses({}, {}, {}, {}))
+        return MissionPart(source.mission, None, Poses({}, {}, {}, {}, {}))
     try:
         poses = read_poses(source.read(POSES))
     except DataError as problem:

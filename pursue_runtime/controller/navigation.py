@@ -318,7 +318,10 @@ class Navigation:
 
     def _may_pass(self, halt: Halt) -> bool:
         """Return True if its doors are open; out of a lift, when its position is one on the map of that floor."""
-        knows = halt.out is None or self._at.position is None or self._at.is_near(halt.out)
+        at, way = self._at.position, self._view.way
+        knows = halt.out is None or at is None or self._at.is_near(halt.out)
+        if halt.aboard and at is not None and way is not None:
+            knows = knows and not at.is_below_or_above(way.place)
         return knows and self.opened.all_for(self.name, halt.doors, self._as_of)
 
     def _on_success(self, trip: Trip) -> None:

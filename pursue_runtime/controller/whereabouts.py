@@ -8,16 +8,23 @@ from __future__ import annotations
 import math
 from typing import NamedTuple, Optional, Sequence, Tuple
 
+from pursue_runtime.controller.frames import STOREY
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.sentences import marked
 
 
 class Position(NamedTuple):
-    """A position on the map, with the robot's heading."""
+    """A position on the map, with the robot's heading. `height`: that of the level whose map it is (metres); None where
+    one map is for all levels, which does not say on which the robot is."""
 
     x: float
     y: float
     yaw: float
+    height: Optional[float] = None
+
+    def is_below_or_above(self, place: Place) -> bool:
+        """Return True if the place is on another level."""
+        return self.height is not None and len(place.pose) > 2 and abs(self.height - place.pose[2]) > STOREY
 
 
 class Place(NamedTuple):
@@ -88,6 +95,8 @@ class Whereabouts:
         at = self.position
         if at is None or math.hypot(at.x - place.x, at.y - place.y) > self._settings.end_tolerance:
             return False
+        if at.is_below_or_above(place):
+            return False
         return place.yaw is None or turned(at.yaw, place.yaw) <= self._settings.end_yaw_tolerance
 
     def is_known_at(self, place: Place, now: float) -> bool:
@@ -101,6 +110,8 @@ class Whereabouts:
         at, poi = self.position, marked(place.poi)
         if at is None:
             return f"is not known to be at {poi}: no position, and no arrival there"
+        if at.is_below_or_above(place):
+            return f"is on another level than {poi}"
         distance = math.hypot(at.x - place.x, at.y - place.y)
         if distance > self._settings.end_tolerance:
             return f"is {distance:.1f} m from {poi}"
@@ -117,5 +128,6 @@ class Whereabouts:
 
 
 def _within(before: Position, after: Position, distance: float, angle: float) -> bool:
-    """Return True if the positions differ by no more than that."""
-    return math.hypot(after.x - before.x, after.y - before.y) <= distance and turned(after.yaw, before.yaw) <= angle
+    """Return True if the positions differ by no more than that, and are on one level."""
+    near = math.hypot(after.x - before.x, after.y - before.y) <= distance
+    return near and before.height == after.height and turned(after.yaw, before.yaw) <= angle

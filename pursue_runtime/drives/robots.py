@@ -6,6 +6,7 @@ import math
 import os
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
+from pursue_runtime.controller.frames import NO_LEVELS, Levels
 from pursue_runtime.controller.whereabouts import Place
 from pursue_runtime.data import DataError, read_data
 from pursue_runtime.doors.lifts import read_lifts
@@ -32,7 +33,8 @@ Folder = Callable[[str], Optional[str]]
 class Driven(NamedTuple):
     """A robot, where it begins, where it is sent for each place, and what it drives and does. `acts`: all its actions,
     also those with partners, with what was measured of them; the rules in it are shared by all robots. `seconds`: how
-    long all of that takes by the windows of the model, at least and at most, if a time unit is a second."""
+    long all of that takes by the windows of the model, at least and at most, if a time unit is a second. `levels`:
+    those that have maps of their own."""
 
     name: str
     start: str
@@ -40,6 +42,7 @@ class Driven(NamedTuple):
     plan: Plan
     acts: Acts
     seconds: Tuple[float, float]
+    levels: Levels = NO_LEVELS
 
     def to(self, place: str, why: str = "where it begins") -> Driven:
         """The same robot, which only goes to a place."""
@@ -78,7 +81,7 @@ def driven_robots(read: Read, given: Mapping[str, Any], folder: Folder) -> List[
     times, limit = whole(given, "times", 5, least=1), number(given, "limit", 300.0, above=True)
     pause, start = number(given, "pause", 1.0), text(given, "start")
     actions, rules = whole(given, "actions", 0), Rules(model)
-    places, (own, commanded) = read_poses(read(POSES)).places, _of_controllers(read, folder)
+    places, (own, commanded, levels) = read_poses(read(POSES)).places, _of_controllers(read, folder)
     lifts = read_lifts(read("ui.yaml")).values()
     found: List[Driven] = []
     for name in wanted:
@@ -95,7 +98,7 @@ def driven_robots(read: Read, given: Mapping[str, Any], folder: Folder) -> List[
         alone = tuple(act for act in acts if not act.partner)
         plan, done = Plan(ways, times, limit, pause, alone, actions, first), Acts(name, acts, actions, rules)
         seconds = _seconds(model, robots[name], plan._replace(acts=acts))
-        found.append(Driven(name, begins, poses, plan, done, seconds))
+        found.append(Driven(name, begins, poses, plan, done, seconds, levels))
     if not found:
         raise DataError(f"no way for {', '.join(wanted) or 'anybody'}: no robot of this scenario is mobile")
     return found
@@ -141,9 +144,10 @@ def _seconds(model: Model, robot: Automaton, plan: Plan) -> Tuple[float, float]:
     return sum(low for low, _ in known) + pauses, sum(high for _, high in known) + pauses
 
 
-def _of_controllers(read: Read, folder: Folder) -> Tuple[Dict[str, Table], Set[Tuple[str, str]]]:
-    """The poses of each robot in the package of its controller, as far as those are on this machine; and the movements
-    that their strategies command, each behind its robot."""
+def _of_controllers(read: Read, folder: Folder) -> Tuple[Dict[str, Table], Set[Tuple[str, str]], Levels]:
+    """The poses of each robot in the package of its controller, as far as those are on this machine; the movements that
+    their strategies command, each behind its robot; and the levels that have maps of their own."""
+    levels: Dict[str, float] = {}
     found: Dict[str, Table] = {}
     commanded: Set[Tuple[str, str]] = set()
     for package in map(str, read("ui.yaml").get("nodes", ())):
@@ -155,5 +159,7 @@ def _of_controllers(read: Read, folder: Folder) -> Tuple[Dict[str, Table], Set[T
         robots = strategy.get("commands_agents", ())
         commanded |= Strategy(strategy).targets
         if os.path.isfile(os.path.join(config, POSES)):
-            found.update(read_poses(read_data(os.path.join(config, POSES))).of(map(str, robots)))
-    return found, commanded
+            poses = read_poses(read_data(os.path.join(config, POSES)))
+            found.update(poses.of(map(str, robots)))
+            levels.update(poses.levels)
+    return found, commanded, levels

@@ -72,7 +72,8 @@ class Controller:
         self.alarm.set()
         reaction = part.strategy.reaction if part and part.strategy is not None else 0.0
         poses, spare = (part.poses.of(part.robots), part.poses.spare) if part else ({}, {})
-        self.exegg.take_up(poses, reaction, spare, part.poses.doors if part else {})
+        doors, levels = (part.poses.doors, part.poses.levels) if part else ({}, {})
+        self.exegg.take_up(poses, reaction, spare, doors, levels)
 
     def update_state(self, state: SystemState, publisher: str) -> None:
         """Handle a state: order the robots what was taken, and plan the next command."""

@@ -26,6 +26,7 @@ import rospy
 from std_msgs.msg import String
 
 from pursue_runtime.arguments import BAG, CONFIG
+from pursue_runtime.controller.frames import MapFrames
 from pursue_runtime.controller.goal import Answer
 from pursue_runtime.controller.settings import Settings, read_settings
 from pursue_runtime.controller.whereabouts import Place, Position, place_of
@@ -151,6 +152,7 @@ class DriveLegs:
             session = Session(robot.name, places, robot.start, *what)
             take = self._on_result, self._on_statuses, self._on_position, lambda: None
             link = RobotLink(robot.name, settings, self.ending, self._log, *take)
+            link.frames = MapFrames(settings.map_frame, robot.levels)
             self._robot = robot, settings, session, link
             if robot.plan.partner:
                 its = read_settings(robot.plan.partner, self._given)

@@ -12,6 +12,7 @@ from typing import Callable, Dict, List, Mapping, Optional, Sequence
 import rospy
 from std_msgs.msg import String
 
+from pursue_runtime.controller.frames import NO_LEVELS, Levels, MapFrames
 from pursue_runtime.controller.goal import Answer, Halt, Movement
 from pursue_runtime.controller.navigation import Navigation
 from pursue_runtime.controller.settings import Settings, read_settings
@@ -68,9 +69,10 @@ class Exeggutor:
         reaction: float,
         spare: Mapping[str, Table],
         doors: Mapping[str, Doorways] = MappingProxyType({}),
+        levels: Levels = NO_LEVELS,
     ) -> None:
         """Take these robots, each with its poses of the places, `spare` ones, and its ways through `doors`; orders
-        given before are over.
+        given before are over. `levels`: those with maps of their own.
         `reaction`: the time units that the strategy allows a command. Raises DataError, with no robots, where the
         settings of one are wrong."""
         with self._lock:
@@ -87,6 +89,7 @@ class Exeggutor:
                 self._aboard = rospy.Publisher(ABOARD, String, queue_size=10, tcp_nodelay=True)
             given = rospy.get_param("~", {})
             settings = {robot: read_settings(robot, given) for robot in poses}
+            frames = {robot: MapFrames(each.map_frame, levels) for robot, each in settings.items()}
             self._ways = {
                 robot: _ways(places, spare.get(robot, {}), doors.get(robot, {}), settings[robot])
                 for robot, places in self._places.items()
@@ -98,6 +101,7 @@ class Exeggutor:
                     callbacks = self._result, self._statuses, self._place, self._connected
                     inputs = (partial(take, robot) for take in callbacks)
                     self._links[robot] = RobotLink(robot, settings[robot], self._ending, self._log, *inputs)
+                self._links[robot].frames = frames[robot]
                 self._robots[robot] = Navigation(robot, settings[robot], self._log)
                 position = positions.get(robot)
                 if position is not None:  # amcl does not publish it again while the robot stands

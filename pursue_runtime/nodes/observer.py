@@ -65,7 +65,7 @@ class Observer:
     """The mission on ROS: one lock, so that events are taken one by one, in the order of their arrival."""
 
     desk: Optional[OrderDesk] = None
-    """Where people order; None where the scenario has no orders, and before the first state was published."""
+    """Where people order; None before the first state was published."""
 
     def __init__(self, package: Package, told: Mapping[str, str]) -> None:
         self.package = package
@@ -335,6 +335,7 @@ class Observer:
             blocked = " ".join("-".join(way[:2]) + ":".join(("", *way[2:])) for way in sorted(mission.ways.blocked))
             values.update({"late": late, "lost": lost, "silent": away, "blocked": blocked})
             robots = {"held": mission.robots.held, "displaced": mission.robots.displaced}
+            robots["out_of_service"] = dict.fromkeys(mission.service.out, "")
             robots["finished"] = dict.fromkeys(mission.shared_ends.finished, "")
             values.update({key: " ".join(sorted(names)) for key, names in robots.items()})
             values.update({"journal": self.journal.is_open, **mission.counts})

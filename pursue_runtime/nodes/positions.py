@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import contextlib
 import math
+import re
 import time
 from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 
+from pursue_runtime.controller.frames import LEVEL
 from pursue_runtime.controller.settings import Settings, read_settings
 from pursue_runtime.controller.whereabouts import Position
 from pursue_runtime.data import DataError
@@ -36,7 +38,8 @@ NEWEST: Mapping[str, Any] = {"queue_size": 1, "tcp_nodelay": True}
 MOST = 100
 """So many points of a path are shown, about."""
 
-Positions = Mapping[str, Position]
+Positions = Mapping[str, Tuple[float, float, float]]
+"""robot → x and y (metres on the map) and its heading (radians)."""
 Paths = Mapping[str, Sequence[Tuple[float, float]]]
 """robot → the points of the path that its move_base has planned last (metres on the map)."""
 
@@ -104,7 +107,7 @@ class _Watch:
 
     def _path(self, message: Any, robot: str) -> None:
         frame = message.header.frame_id or (message.poses[0].header.frame_id if message.poses else "")
-        if frame.lstrip("/") == self._settings[robot].map_frame.lstrip("/"):
+        if is_map(frame, self._settings[robot].map_frame):
             self._paths[robot] = thinned([(each.pose.position.x, each.pose.position.y) for each in message.poses])
 
     def _listen_to_tf(self) -> None:
@@ -117,17 +120,17 @@ class _Watch:
         self._listener = tf.TransformListener(self._frames)
 
     def _pose(self, message: PoseWithCovarianceStamped, robot: str) -> None:
-        if message.header.frame_id.lstrip("/") == self._settings[robot].map_frame.lstrip("/"):
+        if is_map(message.header.frame_id, self._settings[robot].map_frame):
             self._poses[robot] = position_of(message.pose.pose.position, message.pose.pose.orientation)
 
-    def _positions(self) -> Dict[str, Position]:
+    def _positions(self) -> Dict[str, Tuple[float, float, float]]:
         """Those that are known, to a centimetre: tf's first."""
         found = {}
         for robot, settings in self._settings.items():
             position = self._transform(robot, settings) if "tf" in settings.sources else None
             position = position or self._poses.get(robot)
-            if position is not None and all(map(math.isfinite, position)):
-                found[robot] = Position(*(round(number, 2) for number in position))
+            if position is not None and all(map(math.isfinite, position[:3])):
+                found[robot] = (round(position.x, 2), round(position.y, 2), round(position.yaw, 2))
         return found
 
     def _transform(self, robot: str, settings: Settings) -> Optional[Position]:
@@ -143,6 +146,12 @@ class _Watch:
         if stamp == last and stamp > 0.0 and now > since + STALE:
             return None
         return position_of(found.transform.translation, found.transform.rotation)
+
+
+def is_map(frame: str, map_frame: str) -> bool:
+    """Return True if the frame is that of the map, or of the map of some level."""
+    wanted = re.escape(map_frame.lstrip("/")).replace(re.escape(LEVEL), r"\w+")
+    return re.fullmatch(wanted, frame.lstrip("/")) is not None
 
 
 def thinned(points: Sequence[Tuple[float, float]]) -> List[Tuple[float, float]]:

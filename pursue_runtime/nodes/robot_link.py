@@ -12,6 +12,7 @@ from geometry_msgs.msg import Pose, PoseStamped, PoseWithCovarianceStamped
 from std_msgs.msg import String
 
 from pursue_runtime.controller.answers import outcome_name
+from pursue_runtime.controller.frames import LEVEL, NO_LEVELS, STOREY, MapFrames
 from pursue_runtime.controller.goal import ABORTED, Answer, Goal
 from pursue_runtime.controller.settings import Settings
 from pursue_runtime.controller.whereabouts import Position, yaw_of
@@ -104,6 +105,7 @@ class RobotLink(rospy.SubscribeListener):
         self.watched = not settings.sources
         self._robot, self._settings, self._ending, self._log = robot, settings, ending, log
         self._on_result, self._on_statuses, self._place, self._on_connected = result, statuses, place, connected
+        self.frames = MapFrames(settings.map_frame.replace(LEVEL, ""), NO_LEVELS)
         self._done: Optional[Order] = None  # the last order that was published without its number
         self._logged: Optional[Order] = None  # the last order that the log has
         self._lock = threading.Lock()
@@ -146,7 +148,7 @@ class RobotLink(rospy.SubscribeListener):
     def go(self, goal: Goal, pose: Sequence[float]) -> None:
         """Sends the goal: a pose [x, y, z, qx, qy, qz, qw] on the map."""
         stamped = PoseStamped(pose=Pose())
-        stamped.header.frame_id = self._settings.map_frame
+        stamped.header.frame_id = self.frames.of(pose[2])
         stamped.header.stamp = rospy.Time.now()
         position, orientation = stamped.pose.position, stamped.pose.orientation
         position.x, position.y, position.z = pose[:3]
@@ -273,24 +275,34 @@ class RobotLink(rospy.SubscribeListener):
         return self._frames is not None
 
     def _pose(self, message: PoseWithCovarianceStamped) -> None:
-        frame, wanted = message.header.frame_id, self._settings.map_frame
-        if frame.lstrip("/") != wanted.lstrip("/"):
-            what = f"{self._settings.topic('amcl_pose')} is in frame {frame!r}; expected {wanted!r} (~map_frame)"
+        frame, known = message.header.frame_id, self.frames.elevations
+        if frame.lstrip("/") not in known:
+            wanted = " or ".join(map(repr, known))
+            what = f"{self._settings.topic('amcl_pose')} is in frame {frame!r}; expected {wanted} (~map_frame)"
             rospy.logwarn_throttle(10.0, what)
         elif not self._seen_by_tf:
             pose = message.pose.pose
-            self._place(position_of(pose.position, pose.orientation))
+            at = position_of(pose.position, pose.orientation)
+            self._place(at._replace(height=self.frames.elevation(frame)))
 
     def look(self) -> Optional[Position]:
         """Return where tf has the robot now; None where it does not know: `has_lost_position` if it did before."""
         if self._frames is None:
             return None
-        frames = self._settings.map_frame, self._settings.base_frame
-        try:
-            found = self._frames.lookup_transform(*frames, rospy.Time(0))
-        except self._tf.TransformException as problem:
+        found, why = None, ""
+        for frame, height in self.frames.elevations.items():
+            frames = frame, self._settings.base_frame
+            try:
+                found = self._frames.lookup_transform(*frames, rospy.Time(0))
+            except self._tf.TransformException as problem:
+                why = str(problem)
+                continue
+            if height is None or abs(found.transform.translation.z) <= STOREY:
+                break
+            found, why = None, "it is on no level"  # the frames of levels are joined, and it is far above this one
+        if found is None:
             if self._settings.sources == ("tf",):
-                rospy.logwarn_throttle(10.0, f"tf does not know where {self._robot} is: {problem}")
+                rospy.logwarn_throttle(10.0, f"tf does not know where {self._robot} is: {why}")
             return None
         self._seen_by_tf = True
         self.has_lost_position = self._is_stale(found.header.stamp.to_sec())
@@ -298,7 +310,8 @@ class RobotLink(rospy.SubscribeListener):
             what = f"tf does not know where {self._robot} is: {frames[0]} to {frames[1]} is not published any more"
             rospy.logwarn_throttle(10.0, what)
             return None
-        return position_of(found.transform.translation, found.transform.rotation)
+        at = position_of(found.transform.translation, found.transform.rotation)
+        return at._replace(height=height)
 
     def _is_stale(self, stamp: float) -> bool:
         """Return True if the transform with this stamp (0: a static one) was not renewed for some time."""

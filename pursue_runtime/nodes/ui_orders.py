@@ -23,8 +23,8 @@ class UIOrders:
         subscribe(ANSWERS, OrderAnswer, self._on_answer, ending, queue_size=100)
 
     def typed(self, text: str) -> bool:
-        """Publish an order, such as `tea within 5 min`, `bot1 at room4 within 10 min` or `cancel tea`; return False
-        for what may be something else."""
+        """Publish an order, such as `tea within 5 min`, `bot1 at room4 within 10 min`, `cancel tea` or `leave bot1`;
+        return False for what may be something else."""
         if not is_order(text, self._menu):
             return False
         self.order(text)

@@ -28,6 +28,7 @@ from pursue_runtime.observer.assumptions import Breach, breach, overstayed
 from pursue_runtime.observer.ending import has_come
 from pursue_runtime.observer.lateness import late_words, untimely_words
 from pursue_runtime.observer.mission_orders import NOTHING, MissionOrders
+from pursue_runtime.observer.mission_status import IS_LATE
 from pursue_runtime.observer.orders import first_overdue
 from pursue_runtime.observer.planning import stays
 from pursue_runtime.orders import Order
@@ -65,7 +66,7 @@ class Mission(MissionOrders):
         moments = [*self._early.values(), *([] if begins is None else [begins])]
         delays += [(moment - now) / self._unit for moment in moments]
         delays += [delay + self._tolerance for name, delay in self._bounds(position) if name not in self.late]
-        delays += [delay + self._lost_after for name, delay in self._late_agents(position)]
+        delays += [delay for _, delay in self._losing(position)]
         if self.status == RUNNING and not self._warned:
             delays.append(stays(self._cover, position, self._tolerance) + self._cover_grace)
         delays += [] if self._begun is None else [begin - self._passed(now) for begin in self.ending.begins]
@@ -151,9 +152,9 @@ class Mission(MissionOrders):
                 continue
             self.late.add(name)
             self._log("warn", in_words(late_words(automaton, position)))
-        for name, delay in self._late_agents(position):
-            if delay + self._lost_after <= EPSILON:
-                self._mark_lost(name, f"is late by {self._lost_after:g} time units")
+        for name, delay in self._losing(position):
+            if delay <= EPSILON:
+                self._mark_lost(name, f"{IS_LATE} {self._lost_after:g} time units")
         states = self._after_losses(now)
         states = states or (self._new_state(now) if has_broken else [])  # no two states have one number
         if self.status in LIVE and has_come(self.ending.begins, self._passed(now)):
@@ -251,6 +252,10 @@ class Mission(MissionOrders):
 
     def _take_command(self, moves: Tuple[Move, ...], now: float) -> List[SystemState]:
         """Apply the moves of a command, unless a robot that takes part is not where the state has it."""
+        out = self.service.commanded(moves)
+        if out:
+            self._reject("uncommanded", f"{moves[0].edge.word}: {out} is out of service")
+            return []
         if self.robots.refuse(moves, self.position(now).values):
             self._reject("held", f"{moves[0].edge.word}: {in_words(' and '.join(self.robots.reasons()))}")
             return self._status_changes(now)

@@ -12,6 +12,7 @@ from pursue_runtime.observer.ordering import (
     ATTEMPTS,
     CANCEL,
     FAR,
+    JOIN,
     MOST_LEAD_TIME,
     PATIENCE,
     QUIET,
@@ -51,13 +52,20 @@ class MissionOrders(MissionStatus):
             if order.how == CANCEL and self._withdraw(order):
                 return self._status_changes(now)
             order = meant(self.model, self.position(now), order)
-            effect(self.model, self.position(now), order)
+            self._effect(self.position(now), order)
             self.ordering.add(order)
         except Refused as refusal:
             self._say(self.ordering.say, called(text), str(refusal))
             return []
         self._log("info", f"ordered: {order.text}")
         return self._status_changes(now)
+
+    def _effect(self, position: Position, order: PersonOrder) -> Effect:
+        """Return what an order does in this position. Raises Refused."""
+        if not order.is_service:
+            return effect(self.model, position, order)
+        self.service.check(order, self.robots.displaced, self.silent)
+        return Effect((), {}, None)
 
     def _withdraw(self, cancel: PersonOrder) -> bool:
         """Take back an order that waits for its answer; return False where none does."""
@@ -85,7 +93,7 @@ class MissionOrders(MissionStatus):
             order = self.ordering.first
             try:
                 order = self.ordering.waiting[0] = meant(self.model, self.position(now), order)
-                self._request_with(order, effect(self.model, self.position(now), order), now)
+                self._request_with(order, self._effect(self.position(now), order), now)
                 return True
             except Refused as refusal:
                 self._refuse(order, str(refusal))
@@ -117,7 +125,8 @@ class MissionOrders(MissionStatus):
         ordered = Ordered(order.word, order.came, done.clocks, WINDOW / self._unit, spread, says)
         place = now + ahead * self._unit, order.text
         before = self._planning.request
-        self._planning.request_plan(place, after, now, ahead, excused, {}, self.ways, ordered)
+        out = self.service.after(order)
+        self._planning.request_plan(place, after, now, ahead, excused, {}, self.ways, ordered, out)
         request = self._planning.request
         self.ordering.attempts += request is not None and request is not before
         if self._planning.no_plan_reason or self.ordering.attempts > ATTEMPTS:
@@ -131,7 +140,8 @@ class MissionOrders(MissionStatus):
     def _still_comes(self, asked: PlanRequest, order: PersonOrder, excused: FrozenSet[str], now: float) -> bool:
         """Return True while the plan that is asked for can come into force."""
         mine = asked.order is not None and (asked.order.event, asked.order.came) == (order.word, order.came)
-        if not mine or asked[6:9] != (tuple(sorted(excused)), *self.ways.revision()):
+        gone, out = (tuple(sorted(names)) for names in (excused, self.service.after(order)))
+        if not mine or (*asked[6:9], asked.out_of_service) != (gone, *self.ways.revision(), out):
             return False
         left = (asked.begin(self._unit) - now) / self._unit
         if left > 0.0:
@@ -154,7 +164,7 @@ class MissionOrders(MissionStatus):
 
     def _behind(self, order: PersonOrder, position: Position, at: float) -> Position:
         """Return the position behind the order at that time. Raises Refused."""
-        return effect(self.model, position, order).after(position, (at - order.came) / self._unit)
+        return self._effect(position, order).after(position, (at - order.came) / self._unit)
 
     def on_plan(self, number: int, answer: Mapping[str, Any], now: float) -> List[SystemState]:
         """Take the planner's answer, as in MissionStatus; one for what was written has what it adds to the model."""
@@ -177,6 +187,8 @@ class MissionOrders(MissionStatus):
         if request is None or request.number != number or request.order is None or order is None:
             return super().on_no_plan(number, why, now)
         self._planning.reset()
+        if order.how == JOIN:
+            return self._join_anyway(order, now)
         why = f"no plan without it was found, so it goes on: {why}" if order.how == CANCEL else why
         self._refuse(order, why, (order.within or 0.0) + more if more else 0.0)
         return self._status_changes(now)
@@ -200,7 +212,7 @@ class MissionOrders(MissionStatus):
             self._planning.reset()
             return self._status_changes(now)
         try:
-            done = effect(self.model, self.position(now), order)
+            done = self._effect(self.position(now), order)
         except Refused as refusal:
             self._planning.reset()
             self._refuse(order, str(refusal))
@@ -240,6 +252,8 @@ class MissionOrders(MissionStatus):
         self.in_force = proposal.data
         self.plan, self._cover = proposal.data["plan"], proposal.cover
         self._planning.put_in_force(proposal)
+        if order.is_service:
+            return self._serve(order, now)
         by = 0.0 if done.deadline is None else order.came + done.deadline * self._unit
         self.ordering.answer(OrderAnswer(order.text, True, by))
         self._log("info", f"the order {order.text} is accepted, with plan {self.plan}")
@@ -252,6 +266,26 @@ class MissionOrders(MissionStatus):
         self.ending.on_order(done.clocks)
         self._since = {}  # nothing that was decided with the plan before stands
         return states
+
+    def _serve(self, order: PersonOrder, now: float) -> List[SystemState]:
+        """Take a robot out of service, or bring it back: nothing else changes."""
+        says = self.service.take(order, self.position(now))
+        self.ordering.answer(OrderAnswer(order.text, True, why=says))
+        self._log("info", in_words(says))
+        self._new_state(now)
+        self._event, self._agent = order.word, order.event
+        self.counts["taken"] += 1
+        moves = self._evaluate(now, "")
+        return [self.state(now), *self._take(moves, now)]
+
+    def _join_anyway(self, order: PersonOrder, now: float) -> List[SystemState]:
+        """Bring a robot back under the plan in force, which sends it nothing, and keeps all promises."""
+        try:
+            self._effect(self.position(now), order)
+        except Refused as refusal:
+            self._refuse(order, str(refusal))
+            return self._status_changes(now)
+        return self._serve(order, now)
 
     def _forget(self, order: PersonOrder, done: Effect, now: float) -> List[SystemState]:
         """Let a promise fall away, in a state with the plan that does without it."""

@@ -14,6 +14,7 @@ from pursue_runtime.observer.ordering import Ordering
 from pursue_runtime.observer.orders import Orders
 from pursue_runtime.observer.planning import Planning
 from pursue_runtime.observer.robots import Robots
+from pursue_runtime.observer.service import Service
 from pursue_runtime.observer.shared_ends import ALL, SharedEnds
 from pursue_runtime.observer.ways import Ways
 from pursue_runtime.sentences import Told, in_words
@@ -62,6 +63,7 @@ class MissionState:
         self._told = Told()  # what was logged of the reason since the mission holds
         self.ways = Ways(model)
         self.robots = Robots(model)
+        self.service = Service(model)
         self.orders = Orders(model)
         self.shared_ends = SharedEnds(model, shared_ends)
         self.in_force: Optional[Dict[str, Any]] = None  # the data of the plan, None: the workspace's own
@@ -108,7 +110,8 @@ class MissionState:
         state = SystemState(self.seq, now, position.locations, position.values, position.clocks, *what)
         held, displaced, returning = self.robots.revision()
         finished = tuple(sorted(self.shared_ends.finished))
-        robots = state._replace(held=held, displaced=displaced, returning=returning)
+        out = tuple(sorted(self.service.out))
+        robots = state._replace(held=held, displaced=displaced, returning=returning, out_of_service=out)
         return robots._replace(commanded=self._commanded, finished=finished, orders=self.orders.texts())
 
     def revision(self) -> Tuple[object, ...]:

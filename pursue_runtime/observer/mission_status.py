@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, Mapping, Optional
+from typing import AbstractSet, Any, Dict, List, Mapping, Optional, Set, Tuple
 
 from pursue_runtime.data import DataError
 from pursue_runtime.event_words import FINISH
@@ -11,7 +11,7 @@ from pursue_runtime.model import Model, Position
 from pursue_runtime.observer import life
 from pursue_runtime.observer.assumptions import broken_reason
 from pursue_runtime.observer.mission_state import ACTING, MissionState
-from pursue_runtime.observer.planning import PlanRequest, covers, is_uncovered
+from pursue_runtime.observer.planning import PlanRequest, covers, is_uncovered, without_commands
 from pursue_runtime.observer.uncovered import uncovered_position, uncovered_reason
 from pursue_runtime.sentences import as_sentence, in_words, marked
 from pursue_runtime.state import ENDED, HOLDING, LIVE, RUNNING, SystemState
@@ -22,6 +22,9 @@ from pursue_runtime.zones import due
 COVER_GRACE = 2.0
 """Seconds for which clocks may be outside what the strategy covers while no agent is late: words may be lost, and are
 published again."""
+
+IS_LATE, WAS_LOST = "is late by", "was lost before"
+"""How the reason begins why a robot counts as lost that is late, and one that did before the observer was restarted."""
 
 
 class MissionStatus(MissionState):
@@ -53,7 +56,10 @@ class MissionStatus(MissionState):
     def on_plan(self, number: int, answer: Mapping[str, Any], now: float) -> List[SystemState]:
         """Take the planner's answer to the request of this number."""
         try:
-            found = self._planning.on_plan(number, answer)
+            asked = self._planning.request
+            out = () if asked is None else asked.out_of_service
+            unneeded = self.service.unneeded(out, self.position(now).locations)
+            found = self._planning.on_plan(number, answer, unneeded)
         except (DataError, KeyError, TypeError) as problem:
             return self.on_no_plan(number, f"the plan cannot be read: {problem}", now)
         proposal = self._planning.proposal
@@ -93,12 +99,13 @@ class MissionStatus(MissionState):
             self.ending.begin(self.position(now))
         self.seq, self._since = state.seq, {}
         self._event, self._agent, self._ended = state.event, state.agent, state.stamp if state.status in ENDED else None
-        self.late, self.lost, self.silent = set(state.late), dict.fromkeys(state.lost, "was lost before"), set()
+        self.late, self.lost, self.silent = set(state.late), dict.fromkeys(state.lost, WAS_LOST), set()
         self._early, self._warned = {}, False
         self.ways.turns.clear()
         self._relying = -1
         self._planning.adopt(self.late.union(self.lost))
         self.robots.adopt(state)
+        self.service.adopt(state.out_of_service)
         self.orders.adopt(state.orders, now)
         self.shared_ends.adopt(state)
         self._beginnings.forget()
@@ -165,6 +172,7 @@ class MissionStatus(MissionState):
         relied_on = {name: why for name, why in self.lost.items() if self._matters(name, now)}
         trouble = self._planning.unexcused(relied_on)
         trouble = trouble or self._planning.unavoided(self.ways.blocked)
+        trouble = trouble or self._planning.commanding(self.service.out)
         trouble = trouble or broken_reason(self.model, self.position(now), self._planning.not_assumed)
         trouble = trouble or self._uncovered(now, patience)
         waits = self.robots.reasons()
@@ -177,7 +185,7 @@ class MissionStatus(MissionState):
             if not self._warned:
                 self._log("warn", in_words(trouble))
             self._warned, trouble = True, ""
-        reasons = waits + [f"{node} is silent" for node in sorted(self.silent)]
+        reasons = waits + [f"{node} is silent" for node in sorted(self._missed(now))]
         if not trouble and not reasons and self.status == RUNNING and self._look_at_orders(now):
             pass
         elif not trouble and not reasons and self._stands_idle(now):
@@ -188,7 +196,8 @@ class MissionStatus(MissionState):
             reasons.append(f"{trouble}; {self._planning.progress()}")
         else:
             trouble += f"; no other plan: {self._planning.no_plan_reason}"
-            awaited = " and ".join(map(marked, sorted(self.late - set(self.lost))))
+            late = {name for name, why in self.lost.items() if why.startswith((IS_LATE, WAS_LOST))} & self._in_order
+            awaited = " and ".join(map(marked, sorted(self.late - (set(self.lost) - late))))
             if not awaited:
                 self._conclude(life.STOP, trouble, now)
                 return
@@ -213,6 +222,11 @@ class MissionStatus(MissionState):
         if self.status == RUNNING:
             self._log("debug", f"no strategy in state {self.seq}: {uncovered_position(position)}")
         return uncovered_reason(self.model, self._cover, position, tolerance, self.late - set(self.lost))
+
+    def _missed(self, now: float) -> Set[str]:
+        """Return the controllers that are silent, but for those of robots out of service that have nothing to do."""
+        unneeded = self.service.unneeded(self.service.out, self.position(now).locations)
+        return self.silent - (without_commands(self.in_force, unneeded) if self.in_force else set())
 
     def _matters(self, name: str, now: float) -> bool:
         """Return True unless what the plan in force does in this state holds whatever the automaton does."""
@@ -249,23 +263,47 @@ class MissionStatus(MissionState):
         excused = gone - set(self.ways.turns) - set(awaited)
         ends = [delay for name, delay in self._bounds(position) if name not in gone]
         ahead = max(0.0, min([self._planning.lead_time / self._unit, *ends]))
-        self._planning.request_plan(self.counts["taken"], position, now, ahead, excused, awaited, self.ways)
+        what = position, now, ahead, excused, awaited, self.ways
+        self._planning.request_plan(self.counts["taken"], *what, out=self.service.after())
         return not self._planning.no_plan_reason
 
     def _awaited(self, position: Position) -> Dict[str, float]:
         """Return the agents that are late, and the time units until each counts as lost."""
         late = {name: delay + self._lost_after for name, delay in self._late_agents(position)}
-        return {name: left for name, left in late.items() if name not in self.ways.turns}
+        return {name: left for name, left in late.items() if left > 0 and name not in self.ways.turns}
+
+    def _losing(self, position: Position) -> List[Tuple[str, float]]:
+        """Return the late agents that will count as lost, and the time units until then (negative: overdue).
+
+        With orders of passage nobody gets in the way of who is late: the others pass before it or wait, so it counts as
+        lost only where all of them wait.
+        """
+        late = [(name, delay + self._lost_after) for name, delay in self._late_agents(position)]
+        if self._in_order.isdisjoint(name for name, _ in late) or self._all_wait(position):
+            return late
+        return [(name, delay) for name, delay in late if name not in self._in_order]
+
+    @property
+    def _in_order(self) -> AbstractSet[str]:
+        """Return who passes places in an order; others wait for them."""
+        return frozenset() if self._cover is None else self._cover.in_order
 
     def _stands_idle(self, now: float) -> bool:
-        """Return True while nobody does anything but agents that are late, and the plan in force waits for them."""
+        """Return True while nobody does anything but agents that are late, and the plan in force waits for them.
+
+        With orders of passage that is as it should be, as long as they are not lost.
+        """
         position = self.position(now)
-        late = {name for name, _ in self._late_agents(position)}
-        others = [each.name for each in self.model.of_kind(*ACTING) if each.name not in late.union(self.lost)]
-        if not late or self._cover is None or self._on_uncovered != "plan":
+        if self._cover is None or self._on_uncovered != "plan" or not self._late_agents(position):
             return False
+        return not self._in_order and self._all_wait(position)
+
+    def _all_wait(self, position: Position) -> bool:
+        """Return True if nobody is under way but agents that are late or lost, and the plan in force has no command."""
+        gone = self.late.union(self.lost)
+        others = [each.name for each in self.model.of_kind(*ACTING) if each.name not in gone]
         busy = any(is_under_way(position.locations[name]) for name in others)
-        return not busy and not self._has_commands(self._cover, position)
+        return not busy and (self._cover is None or not self._has_commands(self._cover, position))
 
     @staticmethod
     def _has_commands(cover: Cover, position: Position) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from typing import Collection, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
-from pursue_runtime.event_words import CANCELLED, one_line
+from pursue_runtime.event_words import CANCELLED, JOINS, LEAVES, one_line
 from pursue_runtime.locations import event_of, is_movement
 from pursue_runtime.model import ORDER_DESK, Automaton, Edge, Model, Move, Position
 from pursue_runtime.sentences import marked
@@ -46,13 +46,19 @@ LONGEST = 200
 CANCEL, URGENT = "cancel", "urgent"
 """The words before an order that withdraw it, or have it looked at before those without such a word."""
 
+LEAVE, JOIN = "leave", "join"
+"""The words before a robot that is taken out of service, or is brought back."""
+
+_SERVICE = re.compile(rf"\s*({LEAVE}|{JOIN})\s+([A-Za-z]\w*)\s*", re.ASCII)
+
 _TEXT = re.compile(
     r"\s*(?:(cancel|urgent)\s+)?([A-Za-z(][\w ,()]*?)(?:\s+within\s+(\d{1,6}(?:\.\d{1,6})?)\s*(s|min|h)?)?\s*", re.ASCII
 )
 
 EXPECTED = (
     "the name of an order, perhaps with a time, as in: tea within 300 (time units), tea within 5 min, urgent tea; "
-    "what is to hold or to happen, with a time: bot1 at room4 within 10 min; or cancel tea"
+    "what is to hold or to happen, with a time: bot1 at room4 within 10 min; or cancel tea; or of a robot: leave bot1, "
+    "join bot1"
 )
 
 MOST_WRITTEN = 50
@@ -61,7 +67,8 @@ MOST_WRITTEN = 50
 
 class PersonOrder(NamedTuple):
     """An order as it came: its event, within how many time units it is to be answered (None: as the scenario promises),
-    when it came, the text that it is called by, and the word before it (CANCEL, URGENT, "": none).
+    when it came, the text that it is called by, and the word before it (CANCEL, URGENT, "": none). Behind LEAVE and
+    JOIN the event is the robot.
 
     `says`: what a person has written, which the scenario has no event for; it has one of its own, "" as long as no plan
     is in force with it.
@@ -77,13 +84,19 @@ class PersonOrder(NamedTuple):
     @property
     def word(self) -> str:
         """Return the event of the state in which it is taken; of what has none so far its text."""
-        return self.event + CANCELLED if self.how == CANCEL else self.event or self.text
+        words = {CANCEL: self.event + CANCELLED, LEAVE: LEAVES, JOIN: JOINS}
+        return words.get(self.how, self.event or self.text)
+
+    @property
+    def is_service(self) -> bool:
+        """Return True where a robot leaves or joins."""
+        return self.how in (LEAVE, JOIN)
 
 
 class OrderAnswer(NamedTuple):
     """The answer to an order: whether it is accepted, by when it is answered at the latest (ROS time; 0: it has no
     deadline, or is refused), within how many time units it could be promised (0: that is not known), and why it is
-    refused, a sentence."""
+    refused, a sentence; of a robot that leaves or joins what that means."""
 
     order: str
     accepted: bool
@@ -95,6 +108,8 @@ class OrderAnswer(NamedTuple):
         """Return the answer as a sentence at the time `now`, with names in braces."""
         if self.order.startswith(f"{CANCEL} "):
             return "cancelled" if self.accepted else f"not cancelled: {self.why}"
+        if self.accepted and self.why:
+            return self.why
         if self.accepted:
             return "accepted" + (f": answered in {max(0.0, self.by - now):.0f} s at the latest" if self.by else "")
         could = f"; it could be promised within {self.possible:g} time units" if self.possible else ""
@@ -121,11 +136,17 @@ class Refused(Exception):
 
 
 def read_order(text: str, came: float, unit: float, model: Model) -> PersonOrder:
-    """Read `event`, `urgent event within 5 min`, `bot1 at room4 within 5 min` or `cancel event`; `unit`: seconds per
-    time unit. Raises Refused."""
+    """Read `event`, `urgent event within 5 min`, `bot1 at room4 within 5 min`, `cancel event`, `leave robot` or
+    `join robot`; `unit`: seconds per time unit. Raises Refused."""
+    service = _SERVICE.fullmatch(text) if len(text) <= LONGEST else None
+    if service is not None:
+        return PersonOrder(service[2], None, came, called(text.strip()), service[1])
     match = _TEXT.fullmatch(text) if len(text) <= LONGEST else None
     how, says, number, unit_name = match.groups() if match is not None else ("", "", None, None)
-    if match is None or "within" in says.split() or (how == CANCEL and number is not None and says in model.orders):
+    words = says.split()
+    is_service = words[:1] in ([LEAVE], [JOIN]) and words[1:2] in [[each.name] for each in model.of_kind("robot")]
+    is_wrong = is_service or "within" in words or (how == CANCEL and number is not None and says in model.orders)
+    if match is None or is_wrong:
         raise Refused(f"this is no order; expected {EXPECTED}")
     seconds = _UNITS[unit_name or ""]
     within = None if number is None else float(number) * seconds / unit if seconds else float(number)
@@ -138,7 +159,10 @@ def read_order(text: str, came: float, unit: float, model: Model) -> PersonOrder
 
 
 def is_order(text: str, menu: Collection[str]) -> bool:
-    """Return True for what only an order can be: one of the menu, or what is written with a time, or cancelled."""
+    """Return True for what only an order can be: one of the menu, or what is written with a time, or cancelled; or a
+    robot that leaves or joins."""
+    if len(text) <= LONGEST and _SERVICE.fullmatch(text):
+        return True
     match = _TEXT.fullmatch(text) if len(text) <= LONGEST else None
     how, says, number, _ = match.groups() if match is not None else ("", "", None, None)
     return says in menu or (match is not None and (number is not None or (bool(how) and " " in says)))
@@ -304,7 +328,7 @@ class Ordering:
         """Take back the newest order of the same that waits for its answer, and return it; None: none waits."""
         same = cancel.says or cancel.event
         for order in sorted(self.waiting, key=lambda each: -each.came):
-            if (order.says or order.event) == same and order.how != CANCEL:
+            if (order.says or order.event) == same and order.how in ("", URGENT):
                 if order is self.first:
                     self.attempts, self.lead_time = 0, 0.0
                 self.waiting.remove(order)

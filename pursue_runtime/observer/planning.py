@@ -52,7 +52,7 @@ class PlanRequest(NamedTuple):
     that stands behind a way. The robots in `turning` turn round when it begins, and may be back at any time. Those in
     `awaited` are late; the plan relies on them for so many time units more, counted from `stamp`. `order`: the state is
     the one behind an order of a person, which is taken together with the plan. `written`: the orders that people have
-    written, whose automata are in the state.
+    written, whose automata are in the state. Nothing is sent to the robots that are `out_of_service`.
     """
 
     number: int
@@ -66,6 +66,7 @@ class PlanRequest(NamedTuple):
     turning: Tuple[str, ...] = ()
     awaited: Optional[Mapping[str, float]] = None
     order: Optional[Ordered] = None
+    out_of_service: Tuple[str, ...] = ()
     written: Tuple[Written, ...] = ()
 
     def data(self) -> Dict[str, Any]:
@@ -114,10 +115,10 @@ class Planning:
     """The steps from one plan to the next: request, proposal, acknowledgement by all controllers, in force.
 
     `excused`: the agents on which the plan in force does not rely; `avoided`: the ways along which it sends nobody;
-    `not_assumed`: the variables of the assumptions on which it does not rely;
-    `lead_time`: seconds from a request to the begin of its plan, more once a plan came too late, until one is in force;
-    `no_plan_reason`: why there is no plan from here; `searched`: the seconds of real time that the planner has needed
-    so far, 0 while they are within ~planning_limit; `written`: the orders that people have written.
+    `idle`: the robots to which it sends nothing; `not_assumed`: the variables of the assumptions on which it does not
+    rely; `lead_time`: seconds from a request to the begin of its plan, more once a plan came too late, until one is in
+    force; `no_plan_reason`: why there is no plan from here; `searched`: the seconds of real time that the planner has
+    needed so far, 0 while they are within ~planning_limit; `written`: the orders that people have written.
     """
 
     def __init__(self, controllers: Iterable[str]) -> None:
@@ -125,6 +126,7 @@ class Planning:
         self.proposal: Optional[Proposal] = None
         self.excused: FrozenSet[str] = frozenset()
         self.avoided: FrozenSet[Block] = frozenset()
+        self.idle: FrozenSet[str] = frozenset()
         self.not_assumed: FrozenSet[str] = frozenset()
         self.no_plan_reason = ""
         self.searched = 0.0
@@ -149,6 +151,10 @@ class Planning:
         """Return that blocked ways are such as the plan in force may use; "" if there are none."""
         return blocked_reason(blocked, self.avoided)
 
+    def commanding(self, out: AbstractSet[str]) -> str:
+        """Return to which of the robots out of service the plan in force may send something; "": to none."""
+        return " and ".join(f"{marked(name)} is out of service" for name in sorted(out - self.idle))
+
     def request_plan(
         self,
         place: object,
@@ -159,9 +165,10 @@ class Planning:
         awaited: Mapping[str, float],
         ways: Ways,
         order: Optional[Ordered] = None,
+        out: FrozenSet[str] = frozenset(),
     ) -> None:
         """Request a plan from this position, unless there is a request, a proposal or a failure for this `place`."""
-        place = place, excused, sorted(awaited), ways.revision(), None if order is None else order.came
+        place = place, excused, sorted(awaited), ways.revision(), out, None if order is None else order.came
         if place != self._place:
             known = self.lead_time
             self.reset()
@@ -176,7 +183,8 @@ class Planning:
         self.searched = 0.0
         what = position.locations, position.values, position.clocks, stamp, ahead
         gone = tuple(sorted(excused))
-        self.request = PlanRequest(self._number, *what, gone, *ways.revision(), awaited or None, order, self.written)
+        asked = PlanRequest(self._number, *what, gone, *ways.revision(), awaited or None, order, written=self.written)
+        self.request = asked._replace(out_of_service=tuple(sorted(out)))
 
     def adopt(self, absent: AbstractSet[str]) -> None:
         """Start anew from a state in which these agents are late or lost: others that were excused may be back."""
@@ -207,8 +215,9 @@ class Planning:
             return "looking for another plan"
         return f"no other plan was found in {self.searched:g} s (~planning_limit), still looking"
 
-    def on_plan(self, number: int, answer: Mapping[str, Any]) -> bool:
-        """Make the planner's answer the proposal; return False if it was not requested. Raises DataError, KeyError."""
+    def on_plan(self, number: int, answer: Mapping[str, Any], unneeded: AbstractSet[str] = frozenset()) -> bool:
+        """Make the planner's answer the proposal; return False if it was not requested. Controllers that are `unneeded`
+        and have nothing to do in it need not acknowledge it. Raises DataError, KeyError."""
         if self.request is None or number != self.request.number:
             return False
         check_avoids(answer, self.request.blocked)
@@ -218,6 +227,8 @@ class Planning:
             data["takes"] = {**answer["takes"], **begins}
         if self.request.order is not None:
             data["order"] = self.request.order.event
+        if self.request.out_of_service:
+            data["out_of_service"] = list(self.request.out_of_service)
         if self.request.written or "adds" in answer:
             data["adds"] = answer["adds"]
             if self.request.order is not None and self.request.order.asked is not None:
@@ -226,7 +237,7 @@ class Planning:
             data["awaited"] = sorted(self.request.awaited)
         self.proposal = Proposal(data, read_cover(answer["cover"]), self.request)
         self.request = None
-        self._unacknowledged = set(self._controllers)
+        self._unacknowledged = set(self._controllers) - without_commands(answer, unneeded)
         return True
 
     def on_no_plan(self, number: int, why: str) -> Optional[PlanRequest]:
@@ -254,6 +265,7 @@ class Planning:
         """Note that the proposal is in force."""
         self.excused = frozenset(proposal.request.excused)
         self.avoided = frozenset(proposal.request.blocked)
+        self.idle = frozenset(proposal.request.out_of_service)
         self.not_assumed = frozenset(name for name, value in proposal.request.values.items() if value == 0)
         self.reset()
 
@@ -261,6 +273,12 @@ class Planning:
         """Drop a proposal that does not cover the present clocks; the next one gets a longer lead time."""
         self.lead_time = (now - proposal.request.stamp) * 1.3 + MIN_LEAD_TIME
         self.proposal = None
+
+
+def without_commands(plan: Mapping[str, Any], nodes: AbstractSet[str]) -> Set[str]:
+    """Return those of the controllers that have nothing to do in a plan."""
+    known = {node: plan["strategies"].get(node) for node in nodes}
+    return {node for node, own in known.items() if own is not None and not own["strategy"]}
 
 
 # What a plan covers; `tolerance` is how far clocks may be off, in time units ------------------------------------------

@@ -183,6 +183,8 @@ class Picture:
             return LOST, " (lost)"
         if name in state.held:
             return WAITS, " (held)"
+        if name in state.out_of_service:
+            return WAITS, " (out of service)"
         if name in state.displaced:
             return WAITS, " (returning)" if name in state.returning else " (displaced)"
         return (LATE, " (late)") if name in state.late else (COLOURS[kind], "")

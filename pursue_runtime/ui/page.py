@@ -163,6 +163,7 @@ class Page:
             "inside": status_texts(self._inside, self._model, state, facts.at),
             "rest": {**{name: state.locations.get(name, "") for name in others}, **state.values},
             "seq": state.seq, "plan": state.plan, "lost": list(state.lost),
+            "out_of_service": list(state.out_of_service),
             "ordered": self._answers, "answers": facts.answers, "received": _round(facts.received),
             "stays": facts.stays, "offers": list(facts.offers),
             "lanes": self._lanes.shown() if facts.verdict else None,
@@ -248,6 +249,7 @@ class Page:
             ("counts as lost", state.lost), ("held, until it is resumed", state.held),
             ("is not known to be there", [name for name in state.displaced if name not in state.returning]),
             ("is sent back there", state.returning), ("has finished", state.finished),
+            ("out of service", state.out_of_service),
             ("is not needed in this mission", () if state.plan else self._promise.unneeded),
             *((says, [name]) for name, says in self._at_doors.says(state).items()),
         )

@@ -14,6 +14,7 @@ from benchmarks.robots_on_map import DEVIATION, Floor, Nature, drive, pose_after
 from pursue_gen.drawing.ground import FREE, read_ground
 from pursue_gen.language import parse
 from pursue_gen.survey.make import Options, surveyed
+from pursue_gen.workspace.levels import Level
 
 pytestmark = pytest.mark.benchmark
 
@@ -25,7 +26,7 @@ ROBOT = Nature(0.4, 0.3, 0.7, 1.0, {"fetch": 3.0})
 
 def test_paths_keep_the_radius_from_walls_and_are_hardly_longer_than_the_shortest() -> None:
     scenario = parse(from_map.SCENARIO, "my_floor.pur", "my_floor")
-    shortest = surveyed(scenario, GROUND, "map.yaml", Options()).text
+    shortest = surveyed(scenario, (Level(GROUND),), Options()).text
     for (a, b), metres in {(DESK, HALL): 7.7, (HALL, SHELF): 6.7}.items():
         assert f"distance {metres}" in shortest
         path = FLOOR.path(a[:2], b[:2])

@@ -17,6 +17,7 @@ from pursue_gen.explanation.changes import Change, findings
 from pursue_gen.explanation.explain import Explanation, as_json, explain, render
 from pursue_gen.language import parse
 from pursue_gen.solving.rules import CONTROLLABLE, IDEAL, Rules, played
+from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.solve import solve
@@ -503,3 +504,25 @@ def test_what_no_robot_can_play_takes_no_work_from_what_can_be_changed() -> None
     found = findings(errands, DEFAULT, Budget(Limits(work=12_000_000)))
     assert "water_room1 lasting 1 instead of 3" in [change.sentence for change in found.changes]
     assert {"ends chosen by the plan", "ends chosen by the plan and no reaction"} <= set(found.undecided)
+
+
+BARN = """unit second
+poi "silo" poi "row_a" poi "row_b" poi "yard" poi "charger"
+connect silo and row_a distance 20 connect silo and row_b distance 25 connect row_a and row_b distance 8
+connect row_a and yard distance 15 connect silo and charger distance 5
+agent "feeder" controllable mobile 1 location silo
+battery feeder lasts 30 min, charges in 10 min at charger
+objective: patrol row_a, row_b every 10 min by feeder
+"""
+
+
+def test_changes_are_found_where_only_a_policy_shows_that_they_win() -> None:
+    """The exact game is too large for the budget: its clocks run to half an hour."""
+    scenario = parse(BARN, "barn.pur", "barn")
+    found = {change.what: change for change in findings(scenario, DEFAULT, Budget(Limits(work=3_000_000))).changes}
+    patrol, charge = found["deadline"], found["charges"]
+    assert not patrol.least and patrol.next_lost == patrol.before == "600"
+    changes = ((f"every {patrol.after} s", "every 10 min"), (f"charges in {charge.after} s", "charges in 10 min"))
+    for new, old in changes:
+        changed = parse(BARN.replace(old, new), "barn.pur", "barn")
+        assert solved(translate(changed), scenario_objective(changed), DEFAULT).strategy

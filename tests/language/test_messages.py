@@ -25,6 +25,10 @@ SLIPS = [
     ('poi "a" label b', "PML010", 15, "expected a name in quotes after `label`, found `b`", 'label "b"'),
     ('connect a and b distance 3 label "c"', "PML010", 28, "found `label`", "the form is"),
     ("hello", "PML011", 1, "expected a statement", "a statement begins with unit, rest, poi, door, lift, connect"),
+    ("lift l1 holds 1 robot", "PML011", 1, "found `lift`", "an objective; write objective: lift l1 holds 1"),
+    ("patrol a, b every 60 by any robot", "PML011", 1, "found `patrol`", "write objective: patrol a, b every 60 by"),
+    ("do e and f within 5", "PML011", 1, "found `do`", "write reach_objective: do e and f within 5"),
+    ("avoid " + "e" * 200, "PML011", 1, "found `avoid`", "write objective: in front of it"),
     (")", "PML011", 1, "expected a statement", "a statement begins with"),
     ("connect a b distance 3", "PML010", 11, "expected `and` after `a`, found `b`", "connect a and b distance 3"),
     ("connect a and b", "PML010", 16, "expected `distance` after `b`, but the", "connect a and b distance 3"),
@@ -202,6 +206,13 @@ def test_every_slip_of_a_file_is_reported_at_once() -> None:
     source += "objective: avoid\n"
     found = [(finding.code, finding.span and finding.span.line) for finding in syntax_errors(source)]
     assert found == [("PML010", 1), ("PML011", 6), ("PML010", 10), ("PML010", 14)]
+
+
+def test_every_objective_without_its_word_is_reported_at_once() -> None:
+    agent = 'agent "bot" controllable mobile 1 location a'
+    lines = ['poi "a"', agent, "keep a", "patrol a by bot", "if e then f within 5", f"{agent} x"]
+    found = [(one.span.line, one.code) for one in findings("\n".join(lines)) if one.span]
+    assert found == [(3, "PML010"), (4, "PML011"), (5, "PML011"), (6, "PML010")]
 
 
 def test_no_nonsense_follows_from_a_syntax_error() -> None:

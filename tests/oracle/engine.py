@@ -28,6 +28,7 @@ from pursue_gen.synthesis.relaxed import RelaxedPlanner
 from pursue_gen.zones.dbm import Dbm
 from pursue_gen.zones.federation import Federation, predt
 from tests.oracle.zone_graph import Node, Transition, ZoneGraph
+from tests.oracle.zones import includes_zone, lasting, past
 
 Piece = Tuple[Dbm, Action]
 
@@ -136,7 +137,7 @@ class _Fixpoint(ABC):
             if move.target >= 0 and targets[move.target]:
                 before = graph.pre(number, move, targets[move.target])
                 if delay:
-                    before = before.minus(upre).reduced().lasting(delay, graph.nodes[number].reach)
+                    before = lasting(before.minus(upre).reduced(), delay, graph.nodes[number].reach)
                 if before:
                     result.append((move, before))
         return result
@@ -212,7 +213,7 @@ class _Reach(_Fixpoint):
 
     def _won(self) -> bool:
         """True if all of the start is won."""
-        return bool(self.found) and self.found[0].includes_zone(self.graph.start)
+        return bool(self.found) and includes_zone(self.found[0], self.graph.start)
 
     def _refresh(self, changed: Set[int]) -> None:
         """Take in new nodes, and those in which more is reached: what was won there stays won."""
@@ -347,7 +348,7 @@ class _Safety(_Fixpoint):
         number = self.pop()
         while number is not None and not self._lost():
             danger, cpre = self._dangers(number)
-            lost = danger.down().minus(predt(_union(before for _, before in cpre), danger))
+            lost = past(danger).minus(predt(_union(before for _, before in cpre), danger))
             new = lost.intersect(self.rest[number]).reduced()
             if new:
                 self.grow(number, new)
@@ -355,7 +356,7 @@ class _Safety(_Fixpoint):
         return not self._lost()
 
     def _lost(self) -> bool:
-        return not self.rest or not self.rest[0].includes_zone(self.graph.start)
+        return not self.rest or not includes_zone(self.rest[0], self.graph.start)
 
     def _dangers(self, number: int) -> Tuple[Federation, List[Tuple[Transition, Federation]]]:
         """E, where something bad is at hand, and where each of the controller's moves is safe."""
@@ -373,7 +374,7 @@ class _Safety(_Fixpoint):
             if safe:
                 danger, cpre = self._dangers(number)
                 # At a bound that only the controller can leave, waiting on is not possible.
-                threatened = safe.intersect(danger.union(self._unforced[number]).down())
+                threatened = safe.intersect(past(danger.union(self._unforced[number])))
                 pieces: List[Piece] = [(zone, None) for zone in safe.minus(threatened).disjoint()]
                 blocks.append(_block(node.state, [*pieces, *_assign(threatened, cpre)]))
         return tuple(blocks)

@@ -12,6 +12,7 @@ from typing import Callable, Deque, Dict, Iterable, List, Sequence, Set, Tuple
 
 from pursue_gen.proof.moves import Arena, JointMove, State
 from pursue_gen.zones.dbm import Dbm
+from tests.oracle.zones import before_reset, extrapolated
 
 NEVER = -1
 """The largest constant of a clock that is not compared before its next reset."""
@@ -39,9 +40,9 @@ class MaxConstants:
         never = [x for x in range(1, zone.dim) if largest[x] == NEVER]
         larger = zone
         if never:
-            freed = zone.reset(never).before_reset(never)
+            freed = before_reset(zone.reset(never), never)
             larger = zone if freed is None else freed
-        larger = larger.extrapolated([0] + [max(0, c) for c in largest[1:]])
+        larger = extrapolated(larger, [0] + [max(0, c) for c in largest[1:]])
         invariant = self._arena.situation(state).invariant
         within = None if invariant is None else larger.intersect(invariant)
         return zone if within is None else within

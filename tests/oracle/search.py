@@ -17,6 +17,7 @@ from tests.oracle.delays import Broken
 from tests.oracle.extrapolation import MaxConstants
 from tests.oracle.invariant import is_invariant
 from tests.oracle.unions import with_neighbours
+from tests.oracle.zones import hull
 
 _OFTEN = 8
 """As `often` of search.hpp."""
@@ -102,7 +103,7 @@ def _everything(loop: LoopInPython, depth: Depth, monitor: LimitMonitor) -> Foun
                 return _failed(loop, reason, [*steps_to(n), move], target, after, len(found))
             if not depth.exact:
                 if depth.many and len(known) >= depth.many:
-                    after, hulled = reduce(Dbm.hull, known, after), True
+                    after, hulled = reduce(hull, known, after), True
                 else:
                     after = with_neighbours(after, known)
             known[:] = [other for other in known if not after.includes(other)] + [after]
@@ -219,7 +220,7 @@ class _Latest:
                 if any(other.includes(after) for other in known):
                     continue
                 hulled = self.many and len(known) >= self.many
-                after = reduce(Dbm.hull, known, after) if hulled else with_neighbours(after, known)
+                after = reduce(hull, known, after) if hulled else with_neighbours(after, known)
                 known[:] = [other for other in known if not after.includes(other)] + [after]
                 pending.append((target, after))
         return constant(latest)

@@ -13,6 +13,7 @@ from pursue_gen.tga.network import Network
 from pursue_gen.tga.scale import common_denominator
 from pursue_gen.zones.dbm import Dbm, constant, is_strict, raw
 from tests.oracle.unions import outside
+from tests.oracle.zones import hull
 
 Bound = Tuple[int, int, int]
 
@@ -186,10 +187,10 @@ def _merge(place: _Place, action: Action) -> None:
 
 def _together(place: _Place, action: Action, parts: Sequence[_BoundedZone]) -> Optional[_BoundedZone]:
     """The parts of the action as one, or None."""
-    hull = parts[0].zone
+    whole = parts[0].zone
     for part in parts[1:]:
-        hull = hull.hull(part.zone)
-    return _BoundedZone(hull) if place.may_have(action, hull) else None
+        whole = hull(whole, part.zone)
+    return _BoundedZone(whole) if place.may_have(action, whole) else None
 
 
 def _relax(place: _Place, action: Action) -> None:

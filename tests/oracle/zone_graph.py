@@ -24,6 +24,7 @@ from pursue_gen.synthesis.game import (
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.zones.dbm import Dbm, complement, constant
 from pursue_gen.zones.federation import Federation
+from tests.oracle.zones import before_reset, extrapolated, hull
 
 Chooser = Callable[[State, Sequence[JointMove]], Sequence[JointMove]]
 """Of a state and its moves that the controller can take, those that a search is to follow at first."""
@@ -102,7 +103,7 @@ class ZoneGraph:
         guard = self.guard(number, move) if targets else None
         if guard is None:
             return Federation()
-        before = (zone.before_reset(move.joint.resets) for zone in targets.zones)
+        before = (before_reset(zone, move.joint.resets) for zone in targets.zones)
         return Federation(tuple(zone for zone in before if zone is not None)).intersect_zone(guard)
 
     def at_bound(self, number: int, owner: int) -> Federation:
@@ -171,7 +172,7 @@ class ZoneGraph:
         if inside is None:
             return None
         if not node.reach.includes(inside):
-            node.reach = self._closed(node.reach.hull(inside), node.within)
+            node.reach = self._closed(hull(node.reach, inside), node.within)
             self._enqueue(number)
         return number
 
@@ -183,7 +184,7 @@ class ZoneGraph:
     def _closed(self, zone: Dbm, within: Dbm) -> Dbm:
         """The zone and its future within the invariant, extrapolated."""
         future = _common(zone.up(), within)
-        return _common(future.extrapolated(self._max_constants).up(), within)
+        return _common(extrapolated(future, self._max_constants).up(), within)
 
 
 def max_constants(game: Game) -> Tuple[int, ...]:

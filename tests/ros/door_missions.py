@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from ros_world import Ros, lay_over
@@ -16,11 +17,11 @@ FAKE = Path(__file__).with_name("fake_move_base.py")
 CALM = {"mode": "still", "on_uncovered": "warn", "lost_after": 1000}
 
 
-def made_of(text: str, name: str, ros: Ros, folder: Path) -> Path:
+def made_of(text: str, name: str, ros: Ros, folder: Path, **more: Any) -> Path:
     """The workspace of a scenario."""
     read = parse(text, f"{name}.pur", name)
     won = solve_scenario(read, DEFAULT)
-    options = Options(reaction=DEFAULT.reaction)
+    options = Options(reaction=DEFAULT.reaction, **more)
     return lay_over(ros, write_workspace(read, won.network, won.objective, won.strategy, options, folder / "ws"))
 
 

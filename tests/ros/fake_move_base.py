@@ -10,9 +10,9 @@ first goal, of its second …; the last one of all that follow): succeed, abort 
 (it finds no plan, and gives up after the recovery), oscillating (gives up then, with that text), twice (the result
 comes twice), stale (a result of long ago comes first), turned (it arrives, but looks the wrong way).
 
-Orders of a test on <robot>/test: `put X Y YAW` (a person carries it there), `restart SECONDS` (move_base is killed
-and started again after so long), `play NAME` (what becomes of the goals from now on), `travel SECONDS`,
-`tf on`, `tf off` (its position is published on tf, or not any more).
+Orders of a test on <robot>/test: `put X Y YAW` (a person carries it there), `map FRAME` (its map changes), `restart
+SECONDS` (move_base is killed and started again after so long), `play NAME` (what becomes of the goals from now on),
+`travel SECONDS`, `tf on`, `tf off` (its position is published on tf, or not any more).
 
 Standard output has what each robot receives: `bot1 goal 1.00 2.00`, `bot1 lost 1.00 2.00` (a simple goal that came
 before the action server was up), `bot1 cancel`, `bot1 action e 1.00 2.00` (with its position then); and `bot1 stands
@@ -71,7 +71,7 @@ class Body:
         self.name = name
         self.at: Tuple[float, float, float] = (start[0], start[1], start[2] if len(start) > 2 else 0.0)
         self.way: Optional[Tuple[float, float, Tuple[float, float, float], Tuple[float, float, float]]] = None
-        self.has_tf = True
+        self.has_tf, self.frame = True, "map"
         self._shown = (math.inf, math.inf, 0.0)
         self._frames = tf2_ros.TransformBroadcaster()
         self._poses = rospy.Publisher(f"{name}/amcl_pose", PoseWithCovarianceStamped, queue_size=10, latch=True)
@@ -79,6 +79,10 @@ class Body:
     def go(self, target: Tuple[float, float, float], travel: float) -> None:
         """Set out."""
         self.way = (rospy.get_time(), travel, self.at, target)
+
+    def change_map(self, frame: str) -> None:
+        """Its map is another one, with this frame."""
+        self.frame, self._shown = frame, (math.inf, math.inf, 0.0)
 
     def put(self, at: Tuple[float, float, float]) -> None:
         """Be carried there; a robot on its way goes on from there."""
@@ -100,7 +104,7 @@ class Body:
     def show(self) -> None:
         """Publish where it is."""
         frame = TransformStamped(child_frame_id=f"{self.name}/base_link")
-        frame.header.stamp, frame.header.frame_id = rospy.Time.now(), "map"
+        frame.header.stamp, frame.header.frame_id = rospy.Time.now(), self.frame
         pose = self.pose()
         frame.transform.translation.x, frame.transform.translation.y = self.at[:2]
         frame.transform.rotation = pose.orientation
@@ -130,6 +134,7 @@ class FakeMoveBase:
         self.lock = threading.RLock()
         self.namespace = settings.get("namespace", name)
         self.body = body or Body(self.namespace, settings.get("start", [0.0, 0.0]))
+        self.body.frame = str(settings.get("frame", "map"))
         self.travel, self.acts = float(settings.get("travel", 1.0)), float(settings.get("acts", 1.0))
         self.named = bool(settings.get("named", False))
         boot, self.recovery = float(settings.get("boot", 0.0)), float(settings.get("recovery", 2.0))
@@ -213,7 +218,9 @@ class FakeMoveBase:
                 return
             self.count += 1
             known = GoalID(message.goal_id.stamp or now, message.goal_id.id or f"/{self.name}-{self.count}-{now}")
-            self.say(f"goal {target.position.x:.2f} {target.position.y:.2f}")
+            frame = message.goal.target_pose.header.frame_id
+            where = "" if frame == "map" else f" in {frame}"
+            self.say(f"goal {target.position.x:.2f} {target.position.y:.2f}{where}")
             goal = GoalStatus(known, GoalStatus.PENDING, "")
             self.goals.append((goal, math.inf))
             if self.gives_up < math.inf:  # a recovery behaviour is not interrupted
@@ -344,6 +351,8 @@ class FakeMoveBase:
             if what == "put":
                 x, y, yaw = map(float, rest)
                 self.body.put((x, y, yaw))
+            elif what == "map":
+                self.body.change_map(rest[0])
             elif what == "play":
                 self.plays = rest
             elif what == "tf":

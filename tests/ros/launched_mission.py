@@ -317,7 +317,7 @@ class LaunchedMission:
 
 @contextlib.contextmanager
 def launched(
-    ros: Ros, workspace: Path, folder: Path, robots: Sequence[str] = ("bot1", "bot2"), **arguments: object
+    ros: Ros, workspace: Path, folder: Path, robots: Sequence[str] = ("bot1", "bot2"), /, **arguments: object
 ) -> Iterator[LaunchedMission]:
     """A mission of the workspace with these launch arguments; whatever was started has ended afterwards."""
     folder.mkdir(parents=True, exist_ok=True)

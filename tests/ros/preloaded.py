@@ -1,9 +1,9 @@
 """A Python that has loaded ROS's modules already, and becomes each program that tests start.
 
 Half of a short mission's processor time is rospy's import, once for each node. `preloaded(…)` has programs (`PROGRAMS`)
-that stand first on PATH of missions. Each hands its arguments, variables, folder and open files to one process that has
-imported what they all import; that forks, and its child runs the script. Signals are passed on, but for SIGSTOP (see
-`process_of`), and the status comes back. Workspaces' own modules are imported by each node.
+that stand first on PATH of missions. Each (preloaded_client.cpp) hands its arguments, variables, folder and open files
+to one process that has imported what they all import; that forks, and its child runs the script. Signals are passed on,
+but for SIGSTOP (see `process_of`), and the status comes back. Workspaces' own modules are imported by each node.
 
 Run by itself, with the socket's address, this file is that process. It ends with its standard input.
 """
@@ -15,7 +15,6 @@ import atexit
 import contextlib
 import gc
 import importlib
-import marshal
 import os
 import random
 import runpy
@@ -43,57 +42,8 @@ MODULES = (
 )  # fmt: skip
 """What nodes and ROS's own programs import; what tests hide from nodes is not among it."""
 
-_NAMESPACE = "/proc/self/ns/net"
-"""Tells which network a process has. Where it is another one than here, programs start by themselves."""
-
-_FORWARDED = (signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGTERM, signal.SIGUSR1, signal.SIGUSR2)
-
-CLIENT = """\
-#!{python} -ISE
-import array, marshal, os, signal, socket, sys
-
-def otherwise(program, arguments):
-    os.environ["PATH"] = ":".join(part for part in os.environ["PATH"].split(":") if part != {folder!r})
-    os.execvp(program, [program, *arguments])
-
-name, arguments = os.path.basename(sys.argv[0]), sys.argv[1:]
-elsewhere = os.readlink({namespace!r}) != {here!r}
-if elsewhere or name == "python3" and not (arguments and os.path.isfile(arguments[0])):
-    otherwise(name, arguments)
-forwarded = {forwarded}
-signal.pthread_sigmask(signal.SIG_BLOCK, forwarded)
-link = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-try:
-    link.connect({address!r})
-except OSError:
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, forwarded)
-    otherwise(name, arguments)
-if name != "python3":
-    arguments.insert(0, {programs}[name])
-files = array.array("i", [0, 1, 2])
-asked = marshal.dumps((arguments, os.getcwd(), dict(os.environ)))
-link.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 1 << 20)
-link.sendmsg([asked], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, files)])
-child = int(link.recv(64))
-with open("/proc/self/comm", "w") as file:
-    file.write(str(child))
-os.kill(child, signal.SIGCONT)
-
-def forward(number, frame):
-    try:
-        os.kill(child, number)
-    except ProcessLookupError:
-        pass
-
-for number in forwarded:
-    signal.signal(number, forward)
-signal.pthread_sigmask(signal.SIG_UNBLOCK, forwarded)
-status = int(link.recv(64) or b"-9")
-if status < 0:
-    signal.signal(-status, signal.SIG_DFL) if -status not in (signal.SIGKILL, signal.SIGSTOP) else None
-    os.kill(os.getpid(), -status)
-sys.exit(status)
-"""
+_CLIENT = Path(__file__).with_name("preloaded_client.cpp")
+"""What all programs are. Where the network is another one than here, each starts by itself."""
 
 
 def process_of(started: int) -> int:
@@ -114,17 +64,17 @@ class Program(NamedTuple):
 @contextlib.contextmanager
 def preloaded(place: Path, path: str, modules: Sequence[str] = MODULES) -> Iterator[Path]:
     """A folder for PATH, whose programs work until the end; `path` is what PATH is without it."""
-    address, programs = str(place / "socket"), place / "bin"
-    programs.mkdir()
+    address, programs, scripts = str(place / "socket"), place / "bin", place / "scripts"
     found = {name: where for name in PROGRAMS for where in [shutil.which(name, path=path)] if where}
+    here = {"FOLDER": programs, "ADDRESS": address, "NAMESPACE": os.readlink("/proc/self/ns/net")}
+    known = [f'-D{name}="{value}"' for name, value in here.items()]
+    subprocess.run(["g++", "-std=c++17", "-O1", *known, str(_CLIENT), "-o", str(place / "client")], check=True)
+    for folder in (programs, scripts):
+        folder.mkdir()
+    for name, where in found.items():
+        os.link(str(place / "client"), str(programs / name))
+        (scripts / name).symlink_to(where)
     python = found["python3"]
-    text = CLIENT.format(
-        python=python, folder=str(programs), forwarded=tuple(map(int, _FORWARDED)), address=address, programs=found,
-        namespace=_NAMESPACE, here=os.readlink(_NAMESPACE),
-    )  # fmt: skip
-    for name in found:
-        (programs / name).write_text(text)
-        (programs / name).chmod(0o755)
     command = [python, str(Path(__file__).resolve()), address, *modules]
     environment = {"PATH": path, "LANG": "C.UTF-8", "SETUPTOOLS_USE_DISTUTILS": "stdlib"}
     with open(place / "log", "wb") as log:
@@ -186,7 +136,10 @@ class Server:
             link.close()
             return None
         files.frombytes(more[0][2])
-        program = Program(*marshal.loads(text), list(files)[3:])
+        number, *texts = map(os.fsdecode, text.split(b"\0")[:-1])
+        arguments, folder, variables = texts[: int(number)], texts[int(number)], texts[int(number) + 1 :]
+        named = dict(each.split("=", 1) for each in variables if "=" in each)
+        program = Program(arguments, folder, named, list(files)[3:])
         child = os.fork()
         if not child:
             self._forget()

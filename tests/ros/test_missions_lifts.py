@@ -104,6 +104,29 @@ def test_a_robot_with_move_base_says_when_it_is_in_the_cabin(ros: Ros, tmp_path:
     assert re.findall("asked to (.*)", there.output())[:3] == ["0", "1", "be free"]
 
 
+def test_goals_are_in_the_frame_of_their_level_and_it_gets_out_on_the_map_of_the_other_one(
+    ros: Ros, tmp_path: Path
+) -> None:
+    need_messages(ros)
+    above = HOTEL.replace("[20, 0, 0,", "[0, 0, 8,").replace(" hall1 [24, 0, 0, 0, 0, 1, 0]", "")
+    over = made_of(above, "hotel", ros, tmp_path, levels={"L1": 0.0, "L2": 8.0})
+    bot = {"start": [0.0, 0.0], "frame": "L1/map", "travel": 2.0, "acts": 2.2, "plays": ["succeed"]}
+    (tmp_path / "fake.yaml").write_text(yaml.safe_dump({"robots": {"bot": bot}}))
+    (tmp_path / "robots.yaml").write_text('map_frame: "{level}/map"\n')
+    fake = f"rosparam load {tmp_path}/fake.yaml /fake_move_base && exec python3 {FAKE}"
+    lift = f"source devel/setup.bash; exec python3 {LIFT} Int32 pursue/lifts/lift1/command pursue/lifts/lift1/state x"
+    arguments = {**PLAYED, **CALM, "goals": "action", "ends": "pose", "robots": str(tmp_path / "robots.yaml")}
+    with launched(ros, over, tmp_path / "run", ("bot",), **arguments) as run, run.program(fake, "fake") as robot:
+        run.until(lambda: "bot stands 2.00 0.00" in robot.output())
+        with run.program(lift, "lift") as there:
+            run.until(lambda: "is at 1" in there.output())
+            assert "in L2/map" not in robot.output(), "its map is still that of the level below"
+            with run.program("rostopic pub /bot/test std_msgs/String 'data: map L2/map'", "map"):
+                assert run.until_over() == "won", run.output()
+    goals = ["2.00 0.00 in L1/map", "4.00 0.00 in L1/map", "0.00 0.00 in L2/map"]
+    assert re.findall("bot goal (.*)", robot.output()) == goals
+
+
 def test_simulated_lifts_are_ridden_by_simulated_robots(ros: Ros, tmp_path: Path) -> None:
     over = made_of(HOTEL, "hotel", ros, tmp_path)
     with launched(ros, over, tmp_path / "run", ("bot",), use_sim_time=True, speed=20) as run:

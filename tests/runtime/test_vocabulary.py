@@ -81,6 +81,13 @@ def test_what_is_done_on_the_way_is_no_setting_off_on_the_page_and_the_terminal(
     assert sentence(MODEL, under_way(4, "shout"), now) == "Porter 1 does call out"
 
 
+@pytest.mark.parametrize(("event", "says"), [("_leaves_", "out of service"), ("_joins_", "in service again")])
+def test_a_robot_leaves_and_joins(event: str, says: str) -> None:
+    model = Model(model_data(mover("bot", "robot", 9)))
+    there = SystemState(5, 0.0, {"bot": "a"}, {}, {}, event, "bot")
+    assert sentence(model, there, there) == f"bot is {says}"
+
+
 def test_an_order_is_accepted_or_cancelled() -> None:
     model = Model({**model_data(mover("bot", "robot", 9), desk("tea")), "labels": {"tea": "Green tea"}})
     for event, says in (("tea", "is ordered, and accepted"), ("tea_cancelled_", "is cancelled")):

@@ -9,6 +9,7 @@ from typing import Dict, List, Tuple
 
 from pursue_gen.drawing.ground import FREE, Ground
 from pursue_gen.survey.make import Options, Survey, surveyed
+from pursue_gen.workspace.levels import Level
 from pursue_gen.workspace.map_check import read_placed
 from pursue_gen.workspace.robot_size import sizes_of
 from tests.survey.maps import Box, drawn, ground_of
@@ -49,7 +50,7 @@ def survey(ground: Ground, points: List[Point]) -> Survey:
     robots = 'agent "bot{}" controllable mobile 1 radius 0.2 tolerance 0.1 inflation 0.3 location p0 can_do work\n'
     text += 'event "work" location p1 duration 2\n' + robots.format(1) + robots.format(2) + "reach_objective: do work\n"
     scenario = read_placed(text, "first.pur")
-    return surveyed(scenario, ground, "map.yaml", Options(sizes_of(scenario)))
+    return surveyed(scenario, (Level(ground),), Options(sizes_of(scenario)))
 
 
 def proposed(found: Survey) -> Dict[int, Point]:

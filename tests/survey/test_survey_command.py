@@ -304,7 +304,7 @@ def test_what_cannot_be_meant_is_refused(options: Any, told: str) -> None:
     ("text", "options", "told"),
     [
         (re.sub(r"//\[.*", "", TEXT), [], "rooms.pur:2:5: error MAP001: 0 places of 3 with a pose"),
-        (TEXT, ["--radius", "5"], "error MAP001: the map has no free ground"),
+        (TEXT, ["--radius", "5"], "error MAP001: map.yaml has no free ground"),
         (TEXT.replace("location desk", "location dest"), [], "rooms.pur:12:"),
     ],
 )

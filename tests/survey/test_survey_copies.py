@@ -13,6 +13,7 @@ from pursue_gen.language import check, parse
 from pursue_gen.language.formatter import format_text
 from pursue_gen.survey.make import Options, Survey, surveyed
 from pursue_gen.survey.times import Drive
+from pursue_gen.workspace.levels import Level
 from pursue_gen.workspace.map_check import read_placed
 from pursue_gen.workspace.robot_size import RobotSize, Sizes
 from tests.conftest import ROOT
@@ -50,7 +51,7 @@ def test_a_copy_is_sound_and_is_its_own_copy(file: Path, ways: bool) -> None:
         scenario = read_placed(text, str(file))
         speeds = {agent.name: 0.5 for agent in scenario.agents if agent.is_robot and agent.mobile is not None}
         options = Options(Sizes(RobotSize(0.2)), ways=ways, drive=Drive(speeds))
-        return surveyed(scenario, ground(text), "map.yaml", options)
+        return surveyed(scenario, (Level(ground(text)),), options)
 
     copy = survey(text).text
     assert not [one for one in check(parse(copy, str(file))) if one.severity is Severity.ERROR]

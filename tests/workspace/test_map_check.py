@@ -12,6 +12,7 @@ import pytest
 
 from pursue_gen.drawing.ground import Ground, read_ground
 from pursue_gen.language import parse
+from pursue_gen.workspace.levels import Level
 from pursue_gen.workspace.map_check import check_spots
 from pursue_gen.workspace.robot_size import RobotSize, Sizes, sizes_of
 from tests.tools.authoring.commands import pursue
@@ -36,7 +37,7 @@ def floor_of(folder: Path, yaml: str = YAML, rows: List[List[int]] = ROWS) -> Gr
 def told(floor: Ground, behind: str, robots: int = 1, distance: float = 1.0) -> List[str]:
     text = f'poi "a" {behind}\nevent "work"\n'
     text += "".join(f'agent "bot{k}" controllable mobile 1 location a can_do work\n' for k in range(1, robots + 1))
-    found = check_spots(parse(text + "reach_objective: do work\n", "test.pur"), floor, distance)
+    found = check_spots(parse(text + "reach_objective: do work\n", "test.pur"), (Level(floor),), distance)
     assert all(finding.span is not None and finding.hint for finding in found)
     return [finding.message for finding in found if finding.code == "WSP008"]
 
@@ -102,7 +103,7 @@ def found_in(floor: Ground, poses: str, robot: RobotSize, robots: int = 2) -> Li
     text = "".join(f'poi "{name}" //{pose}\n' for name, pose in zip(names, poses.splitlines()))
     text += "".join(f"connect {a} and {b} distance 3\n" for a, b in zip(names, names[1:])) + 'event "work"\n'
     text += "".join(f'agent "bot{k}" controllable mobile 1 location a can_do work\n' for k in range(1, robots + 1))
-    findings = check_spots(parse(text + "reach_objective: do work\n", "test.pur"), floor, 0.8, Sizes(robot))
+    findings = check_spots(parse(text + "reach_objective: do work\n", "test.pur"), (Level(floor),), 0.8, Sizes(robot))
     return [(finding.code, finding.message, finding.hint) for finding in findings]
 
 
@@ -162,7 +163,7 @@ def test_each_spot_is_measured_against_the_robots_that_are_sent_there(tmp_path: 
 
     def found(x: float) -> List[Tuple[str, str]]:
         made = parse(text % x, "test.pur")
-        return [(one.code, one.message) for one in check_spots(made, floor, 0.8, sizes_of(made))]
+        return [(one.code, one.message) for one in check_spots(made, (Level(floor),), 0.8, sizes_of(made))]
 
     assert found(0.35) == [], "the large robot has no room there, the small one has"
     ((code, message),) = found(1.3)
@@ -178,7 +179,7 @@ def test_a_spot_before_its_place_is_in_the_way_of_those_who_come(tmp_path: Path)
     ways = {("a", "b"): [(2.0, 2.0), (6.0, 2.0)]}
     for y, told in ((2.3, True), (2.5, False)):
         made = parse(text % y + "reach_objective: do work\n", "test.pur")
-        found = check_spots(made, floor, 0.8, Sizes(RobotSize(0.2, 0.1)), ways=ways)
+        found = check_spots(made, (Level(floor, ways=ways),), 0.8, Sizes(RobotSize(0.2, 0.1)))
         assert [one.code for one in found if one.code == "MAP006"] == ["MAP006"] * told
         assert all("is 0.30 m from the way from a to b" in one.message and "need 0.4 m" in one.message for one in found)
 

@@ -16,6 +16,7 @@ from pursue_gen.drawing.clearance import Clearance, to_line
 from pursue_gen.drawing.floor import MapSettings
 from pursue_gen.drawing.ground import Ground, cells_of
 from pursue_gen.language.scenario import Pose, Scenario
+from pursue_gen.workspace.levels import Level
 from pursue_gen.workspace.map_check import check_spots
 from pursue_gen.workspace.map_spots import SPARE_REACH, is_seen, spare_spots, with_spots
 from pursue_gen.workspace.robot_size import RobotSize, Sizes
@@ -39,16 +40,19 @@ def ground(walls: List[List[float]], width: float = 8.0, height: float = 6.0) ->
     return Ground(place, columns, rows, cells_of(place, 1, [bytes(row) for row in greys[::-1]]))
 
 
+FLAT = (Level(ground([])),)
+
+
 def beside(made: Scenario, floor: Ground, size: RobotSize = SIZE, distance: float = 0.8) -> Dict[str, List[float]]:
     """Where robots stand at the first place."""
-    where = placing(with_spots(made, floor, distance, Sizes(size)), distance)
+    where = placing(with_spots(made, (Level(floor),), distance, Sizes(size)), distance)
     found: Dict[str, Pose] = {robot: table["a"] for robot, table in where.spots.items()}
     return {robot: [round(pose.x, 3), round(pose.y, 3)] for robot, pose in found.items()}
 
 
 def test_where_there_is_room_on_both_sides_all_is_as_without_a_map() -> None:
     made = scenario({"a": f"//[4, 3, 0, {EAST}]", "b": f"//[6.5, 3, 0, {EAST}]"}, 3)
-    assert placing(with_spots(made, ground([]), 0.8, Sizes(SIZE)), 0.8).spots == spots_of(made, 0.8)
+    assert placing(with_spots(made, FLAT, 0.8, Sizes(SIZE)), 0.8).spots == spots_of(made, 0.8)
 
 
 def test_a_spot_in_a_wall_or_too_near_one_gives_way_to_the_next_one() -> None:
@@ -85,7 +89,7 @@ def test_a_small_robot_stands_where_a_large_one_could_not() -> None:
     made = scenario({"a": f"//[4, 3, 0, {EAST}]"}, 3)
     niche = ground([[0, 4.2, 8, 4.4], [0, 0, 8, 2.0], [5.4, 0, 8, 6], [0, 0, 2.6, 6]])
     sizes = Sizes(RobotSize(0.5, 0.1), {"bot2": RobotSize(0.2, 0.1)})
-    placed = placing(with_spots(made, niche, 0.8, sizes), 0.8).spots
+    placed = placing(with_spots(made, (Level(niche),), 0.8, sizes), 0.8).spots
     assert (placed["bot2"]["a"].x, placed["bot2"]["a"].y) == (4, 3.8), "0.4 m from the wall"
     clear = Clearance(niche).metres(placed["bot3"]["a"].x, placed["bot3"]["a"].y, 2.0)
     assert clear > 0.6, "which needs more"
@@ -97,7 +101,7 @@ def test_a_spot_is_not_on_the_way_to_its_place_nor_on_that_of_others() -> None:
     beyond = {("b", "c"): [(4.0, 5.0), (3.6, 2.2), (1.0, 1.0)]}
     found = []
     for ways in ({}, there, {("b", "a"): there["a", "b"][::-1]}, {**there, **beyond}):
-        done = with_spots(made, ground([]), 0.8, Sizes(SIZE), ways)
+        done = with_spots(made, (Level(ground([]), ways=ways),), 0.8, Sizes(SIZE))
         found.append(next((spot.pose.x, spot.pose.y) for spot in done.pois[0].spots))
     assert found[:3] == [(4, 3.8), (4, 2.2), (4, 2.2)], "left, unless the way comes from there"
     x, y = found[3]
@@ -112,7 +116,7 @@ def test_where_nothing_fits_the_spots_are_as_without_a_map() -> None:
 
 def test_a_pose_of_its_own_and_a_place_without_a_pose_stay() -> None:
     made = scenario({"a": f"//[4, 3, 0, {EAST}] bot2 [4, 5.95, 0, {EAST}]", "b": ""}, 2)
-    done = with_spots(made, ground([]), 0.8, Sizes(SIZE))
+    done = with_spots(made, FLAT, 0.8, Sizes(SIZE))
     assert done.pois == made.pois and done.text == made.text
 
 
@@ -128,8 +132,9 @@ def test_a_spare_spot_has_room_and_is_apart_from_all_others_and_off_the_ways(
     made = scenario({"a": f"//[4, 3, 0, {EAST}]", "b": f"//[6, 5, 0, {EAST}]"}, robots)
     ways = {("a", "b"): [(4.0, 3.0), (4.0, 5.0), (6.0, 5.0)]}
     sizes = Sizes(RobotSize(0.3, 0.1), {"bot1": RobotSize(0.2, 0.1, 0.5)})
-    placed = with_spots(made, floor, 0.8, sizes, ways)
-    found, spots, clear = spare_spots(placed, floor, 0.8, sizes, ways), placing(placed, 0.8).spots, Clearance(floor)
+    levels = (Level(floor, ways=ways),)
+    placed = with_spots(made, levels, 0.8, sizes)
+    found, spots, clear = spare_spots(placed, levels, 0.8, sizes), placing(placed, 0.8).spots, Clearance(floor)
     points = [(robot, at, pose) for table in (spots, found) for robot in table for at, pose in table[robot].items()]
     for robot, table in found.items():
         for place, pose in table.items():
@@ -144,7 +149,8 @@ def test_a_spare_spot_has_room_and_is_apart_from_all_others_and_off_the_ways(
 
 def test_where_there_is_room_each_robot_has_a_spare_spot_at_each_place() -> None:
     made, ways = scenario({"a": f"//[4, 3, 0, {EAST}]"}, 2), {("a", "b"): [(4.0, 3.0), (8.0, 3.0)]}
-    found = spare_spots(with_spots(made, ground([]), 0.8, Sizes(SIZE), ways), ground([]), 0.8, Sizes(SIZE), ways)
+    levels = (Level(ground([]), ways=ways),)
+    found = spare_spots(with_spots(made, levels, 0.8, Sizes(SIZE)), levels, 0.8, Sizes(SIZE))
     assert {robot: list(table) for robot, table in found.items()} == {"bot1": ["a"], "bot2": ["a"]}
 
 
@@ -164,8 +170,9 @@ def test_robots_are_apart_and_no_spot_is_worse_than_without_a_map(
     apart = [math.dist(one, other) for k, one in enumerate(points) for other in points[:k]]
     assert min(apart) >= 0.79
     counts = []
-    for placed in (made, with_spots(made, ground([]), 0.8, Sizes(size))):
-        messages = [one.message for one in check_spots(placed, floor, 0.8, Sizes(size)) if one.code == "WSP008"]
+    for placed in (made, with_spots(made, FLAT, 0.8, Sizes(size))):
+        said = check_spots(placed, (Level(floor),), 0.8, Sizes(size))
+        messages = [one.message for one in said if one.code == "WSP008"]
         counts.append(sum("spot" in message for message in messages))
     assert counts[0] <= counts[1]
 

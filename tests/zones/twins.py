@@ -9,6 +9,7 @@ import pytest
 
 from pursue_gen.zones.dbm import INF, Dbm, Number
 from pursue_gen.zones.federation import Federation, predt
+from tests.oracle import zones as oracle
 
 try:
     from pursue_gen.zones.native import _zones
@@ -35,9 +36,6 @@ class NativeFederation:
     def includes_zone(self, zone: Any) -> bool:
         return bool(self.binding.contains(list(self.zones), zone))
 
-    def includes(self, other: NativeFederation) -> bool:
-        return all(map(self.includes_zone, other.zones))
-
     def union(self, other: NativeFederation) -> NativeFederation:
         zones: List[Any] = list(self.zones)
         for zone in other.zones:
@@ -57,8 +55,7 @@ class NativeFederation:
         return tuple(self.binding.disjoint(list(self.zones)))
 
     def lasting(self, delay: int, universe: Any) -> NativeFederation:
-        lasting = self.binding.lasting(list(self.zones), delay)
-        return self._made(self.binding.intersection(lasting, [universe]))
+        return self._made(self.binding.intersection(self.binding.lasting(list(self.zones), delay), [universe]))
 
 
 @dataclass(frozen=True)
@@ -120,6 +117,40 @@ def native_zones(binding: Any, zones: Sequence[Dbm]) -> List[Any]:
 def python(zone: Any) -> Dbm:
     """A zone of any implementation as Python's."""
     return Dbm(zone.dim, tuple(INF if bound >= _UNBOUNDED else bound for bound in zone.m))
+
+
+def hull(one: Any, other: Any) -> Any:
+    """The smallest zone that includes both, by their implementation or the oracle."""
+    return oracle.hull(one, other) if isinstance(one, Dbm) else one.hull(other)
+
+
+def before_reset(zone: Any, clocks: Sequence[int]) -> Any:
+    """What setting the clocks to 0 takes into the zone, by its implementation or the oracle."""
+    return oracle.before_reset(zone, clocks) if isinstance(zone, Dbm) else zone.before_reset(clocks)
+
+
+def extrapolated(zone: Any, largest: Sequence[int]) -> Any:
+    """The zone without what lies beyond the constants, by its implementation or the oracle."""
+    return oracle.extrapolated(zone, largest) if isinstance(zone, Dbm) else zone.extrapolated(largest)
+
+
+def lasting(federation: Any, delay: int, universe: Any) -> Any:
+    """From where every time within the delay stays in it, by its implementation or the oracle."""
+    if isinstance(federation, Federation):
+        return oracle.lasting(federation, delay, universe)
+    return federation.lasting(delay, universe)
+
+
+def includes_zone(federation: Any, zone: Any) -> bool:
+    """True if every point of the zone is in it, by its implementation or the oracle."""
+    if isinstance(federation, Federation):
+        return oracle.includes_zone(federation, zone)
+    return bool(federation.includes_zone(zone))
+
+
+def includes(federation: Any, other: Any) -> bool:
+    """True if every point of the other is in it."""
+    return all(includes_zone(federation, zone) for zone in other.zones)
 
 
 def holds(zones: Any, point: Sequence[Number]) -> bool:

@@ -30,6 +30,7 @@ from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import Limits, Progress
 from pursue_gen.tools.report.make import ReportOptions, lost_report, won_report
 from pursue_gen.tools.report.whole import report_page
+from pursue_gen.workspace.levels import Level
 from pursue_gen.workspace.map_spots import with_spots
 from pursue_gen.workspace.robot_size import Told, sizes_of
 from pursue_gen.workspace.spots import SPOT_DISTANCE
@@ -106,7 +107,8 @@ def _solve(given: Work, pipe: Connection) -> None:
     scenario = settled(checked(given.text, given.file), request, progress)
     request = request.since(start)
     if given.floor is not None:
-        scenario = with_spots(scenario, read_ground(given.floor), SPOT_DISTANCE, sizes_of(scenario, given.told))
+        level = Level(read_ground(given.floor), given.floor)
+        scenario = with_spots(scenario, (level,), SPOT_DISTANCE, sizes_of(scenario, given.told))
     try:
         found = promised_of(scenario, request, progress)
     except (Lost, LimitHit) as problem:

@@ -10,6 +10,7 @@ from typing import Any, Dict, Optional
 from pursue_gen.drawing.ground import read_ground
 from pursue_gen.language.formatter import format_text
 from pursue_gen.tools.draw.solve_work import ERRORS, Work, sentences, working
+from pursue_gen.workspace.levels import Level
 from pursue_gen.workspace.map_check import read_placed
 from pursue_gen.workspace.robot_size import sizes_of
 
@@ -54,7 +55,7 @@ def _measured(given: SurveyWork, floor: Path) -> Dict[str, Any]:
     speeds = {} if given.speed is None else dict.fromkeys(robots, given.speed)
     drive = Drive(speeds, float(scenario.unit or 1))
     options = Options(sizes_of(scenario).with_radius(given.radius), ways=given.ways, drive=drive)
-    found = surveyed(scenario, read_ground(floor, whole=True), floor.name, options)
+    found = surveyed(scenario, (Level(read_ground(floor, whole=True), floor),), options)
     lines = [*sentences(found.findings), *table(found)]
     paths = [{"a": way.a, "b": way.b, "line": way.line} for way in found.ways if way.line]
     return {"verdict": SURVEYED, "lines": lines, "surveyed": format_text(found.text, given.file), "paths": paths}

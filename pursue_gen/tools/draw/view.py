@@ -30,6 +30,7 @@ from pursue_gen.tools.draw.made import names, number_at
 from pursue_gen.tools.draw.places import positions
 from pursue_gen.tools.draw.poses import heading
 from pursue_gen.tools.draw.statement_edits import names_behind, words_behind
+from pursue_gen.workspace.levels import Level
 from pursue_gen.workspace.map_check import but_for_ways, check_spots
 from pursue_gen.workspace.robot_size import NOTHING_TOLD, Told, sizes_of
 from pursue_gen.workspace.spots import SPOT_DISTANCE
@@ -88,7 +89,7 @@ def _findings(document: Draft, ground: Optional[Ground], told: Told) -> Tuple[Di
     wrong = but_for_ways(found)
     if ground is None or scenario is None or any(one.severity is Severity.ERROR for one in wrong):
         return found
-    return in_order((*found, *check_spots(scenario, ground, SPOT_DISTANCE, sizes_of(scenario, told))))
+    return in_order((*found, *check_spots(scenario, (Level(ground),), SPOT_DISTANCE, sizes_of(scenario, told))))
 
 
 def _wanted(document: Draft, findings: Sequence[Diagnostic]) -> List[str]:

@@ -38,6 +38,7 @@ from pursue_gen.tga.objectives import clock_of, stated
 from pursue_gen.tga.pauses import pauses
 from pursue_gen.tools.replanning.as_before import shared_as_before
 from pursue_gen.tools.replanning.ordered import longer
+from pursue_gen.tools.replanning.out_of_service import drawn_in, kept_no_more
 from pursue_gen.tools.replanning.request import Request, read_request
 from pursue_gen.tools.replanning.start import around, network_from, passed_bounds, start_clocks
 from pursue_gen.tools.replanning.tours import followers, tours_from_here
@@ -109,6 +110,7 @@ def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
         raise PursueError(problem.diagnostics) from None
     network = network_from(game, request, told_apart=bool(request.awaited))
     reason = _reason_lost(network, objective, request.scenario)
+    reason = reason or drawn_in(network.automata, request.scenario, request.out_of_service)
     if reason:
         return _lost(reason)
     own = followers(game, request)
@@ -119,8 +121,8 @@ def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
         if on is not None:
             return _won(*on, request, None)
         clocks = start_clocks(network, request)
-        if is_too_much(network, objective, request.rules.reaction, clocks, request.excused):
-            return _lost(_cannot_be_met(game, request))
+        if is_too_much(network, objective, request.rules.reaction, clocks, request.excused | request.out_of_service):
+            return _lost(_cannot_be_met(game, request, network, limits.since(start)))
         if _patrols_many(game, objective):  # nothing in between does better than tours
             most = replace(limits, states=min(states, _FEW))
             verdict = solve(network, objective, request.rules.reaction, limits=most.since(start))
@@ -133,7 +135,7 @@ def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
                 return _won(free.strategy, network, request, None if states else objective)
             verdict = _verdict(network, objective, request.rules.reaction, limits.since(start))
         if verdict.strategy is None:
-            return _lost(_cannot_be_met(game, request))
+            return _lost(_cannot_be_met(game, request, network, limits.since(start)))
         left = SolveOptions(limits.since(start))
         strategy = prove(
             network, objective, verdict.strategy, request.rules.reaction, verdict.ranks, left, states=states or LIMIT,
@@ -235,7 +237,7 @@ def _reason_lost(network: Network, objective: Objective, scenario: Scenario) -> 
     return f"the mission is lost already: {_objectives(scenario, [missed] if missed else None)} is broken"
 
 
-def _cannot_be_met(game: Network, request: Request) -> str:
+def _cannot_be_met(game: Network, request: Request, network: Network, limits: Limits) -> str:
     """One sentence: the objective that cannot be guaranteed from here, and the agents on which it depends."""
     clocks = start_clocks(game, request)
     agents = [*(agent.name for agent in request.scenario.agents), *request.scenario.facts]
@@ -250,8 +252,13 @@ def _cannot_be_met(game: Network, request: Request) -> str:
     for a, b, *alone in sorted(request.blocked):
         for_whom = "".join(f" for {marked(name)}" for name in alone)
         without.append(f"without the way between {marked(a)} and {marked(b)}{for_whom}")
+    without += [f"while {marked(name)} is out of service" for name in sorted(request.out_of_service)]
     ordered = [each for name, each in stated(request.scenario).items() if clock_of(name) in request.sooner]
-    if request.window:
+    if request.window and request.out_of_service and not request.sooner:
+        objective, reaction = scenario_objective(request.scenario), request.rules.reaction
+        lost = kept_no_more(network, objective, request.scenario, reaction, limits)
+        what = f"{_objectives(request.scenario, lost)} cannot be kept"
+    elif request.window:
         asked = as_written(_objectives(request.scenario, ordered), request)
         what = f"{asked} cannot be promised beside all that is promised already"
     else:

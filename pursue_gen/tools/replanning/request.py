@@ -32,9 +32,9 @@ class Request:
     its begin. `sooner`: the clocks that an order of a person has started, with how much sooner it is to be answered
     than the scenario promises. `shares`: the automata of robots that keep those promises by the workspace's plan, for
     each of its shares. `spread`: the state is foreseen, and by so much more or less its clocks may be: for each
-    the parts of that, and those that two have in common are the same for both. `written`: the orders that people have
-    written, which the scenario has; `asked`: one that it does not have, which was written so many time units before
-    the plan begins.
+    the parts of that, and those that two have in common are the same for both. Nothing is sent to the robots that are
+    `out_of_service`. `written`: the orders that people have written, which the scenario has; `asked`: one that it does
+    not have, which was written so many time units before the plan begins.
     """
 
     scenario: Scenario
@@ -55,6 +55,7 @@ class Request:
     window: Fraction = Fraction(0)
     sooner: Mapping[str, Fraction] = field(default_factory=dict)
     spread: Mapping[str, Mapping[str, Fraction]] = field(default_factory=dict)
+    out_of_service: FrozenSet[str] = frozenset()
     written: Tuple[WrittenOrder, ...] = ()
     asked: Optional[Tuple[WrittenOrder, Fraction]] = None
 
@@ -98,6 +99,7 @@ def read_request(data: object) -> Request:
         window=_time(request.get("window", 0), "window"),
         sooner=_times(request, "sooner"),
         spread={key: _times(each, key) for key, each in _tables(request, "spread")},
+        out_of_service=_agents(request.get("out_of_service", ()), "out_of_service", scenario),
         written=written,
         asked=None if asked is None else (_written(asked), _time(_object(asked, "asked").get("waited"), "waited")),
     )

@@ -13,6 +13,7 @@ from pursue_gen.language.numbers import Number
 from pursue_gen.tga.assumptions import without_broken
 from pursue_gen.tga.network import Automaton, ClockBound, Constraint, Edge, Guard, Network, with_controllability
 from pursue_gen.tga.scale import common_denominator, least_common_multiple
+from pursue_gen.tools.replanning.out_of_service import without_commands
 from pursue_gen.tools.replanning.request import Request, wrong
 
 T = TypeVar("T")
@@ -26,8 +27,8 @@ def network_from(network: Network, request: Request, told_apart: bool = False) -
 
     Whoever is excused gets no command where it is and ends what it does at any time or never; whoever is there longer
     than the model allows may stay, but who is awaited not for ever; who is turning may be back too early; nobody is
-    sent along a blocked way. `told_apart`: also clocks that are above all that the network compares them with. Raises
-    PursueError (exit status 2) for a place that the network does not have.
+    sent along a blocked way, and nothing to robots out of service. `told_apart`: also clocks that are above all that
+    the network compares them with. Raises PursueError (exit status 2) for a place that the network does not have.
     """
     locations, values, clocks = _place(network, request)
     agents = {*(agent.name for agent in request.scenario.agents), *request.scenario.facts}
@@ -46,7 +47,8 @@ def network_from(network: Network, request: Request, told_apart: bool = False) -
     positions = (agent_position(name) for name in request.excused if _shares(network, name))
     absent = {(position, values[position]) for position in positions if position in values}
     automata = [_without_company(automaton, absent) for automaton in automata]
-    there = replace(network, automata=tuple(automata), variables=tuple(values.items()))
+    serving = without_commands(automata, request.scenario, request.out_of_service)
+    there = replace(network, automata=serving, variables=tuple(values.items()))
     reaction = request.rules.reaction
     grid = least_common_multiple((_FINEST, common_denominator([reaction, *there.times])))
     beyond = {name: value + 1 for name, value in clocks.items()} if told_apart else _beyond(there, ceil(reaction))

@@ -29,12 +29,12 @@ def tours_from_here(
         return None
     network = network_from(with_automata_of(game, own), request, told_apart=True)
     clocks = start_clocks(network, request)
-    start = options.limits.now()
+    start, gone = options.limits.now(), request.excused | request.out_of_service
     for late in _LATE:
         whenever = replace(network, start=around(network.start, request.ahead, late))
         now = Now(clocks, late)
         left = options.since(start)
-        found = goes_on(whenever, objective, request.rules.reaction, own, now, request.excused, left)
+        found = goes_on(whenever, objective, request.rules.reaction, own, now, gone, left)
         if found is not None:
             return found, whenever
     return None

@@ -22,6 +22,7 @@ from pursue_gen.tools.replay.moves import Move, after, place_of
 from pursue_gen.tools.replay.orders import Orders, in_time, of_plan, since_for
 from pursue_gen.tools.replay.record import MissionRecord
 from pursue_gen.tools.replay.robots import Done, check_robots
+from pursue_gen.tools.replay.service import changed_service, commands_out_of_service
 from pursue_gen.tools.replay.steps import ReplayedStep, aged, change, delays, where
 from pursue_gen.tools.replay.word_matches import match_words, unmatched_words
 from pursue_gen.tools.replay.written import with_what_was_written
@@ -82,7 +83,7 @@ def check(
     steps = [replace(step, word=said.of(step.state.seq)) for step in steps]
     commanded = CommandCheck(record, game, orders, lateness + tolerance, offset + tolerance).findings(steps)
     findings += [*unread, *checker.findings, *checker.timing(steps), *commanded]
-    findings += unmatched_words(record, said, checker.moves)
+    findings += [*commands_out_of_service(steps), *unmatched_words(record, said, checker.moves)]
     if not record.by_words:
         done = [*checker.turns, *((s.before, s.state, s.move[0][0], s.is_command) for s in steps)]
         findings += check_robots(record, game, sorted(done, key=lambda step: step[1].seq), checker.orders, lateness)
@@ -318,6 +319,7 @@ class _Checker:
             self._report(WORLD, "lost", state, f"{agent} counts as lost: nothing is expected of it any more")
         for agent in sorted(set(before.lost) - set(state.lost)):
             self._report(NOTE, "back", state, f"{agent} is back")
+        self.findings += changed_service(before, state, self._record.plans)
         if state.plan != before.plan:
             self._report(NOTE, "plan", state, f"plan {state.plan} is in force")
             if state.plan not in self.orders and not self._game.why_not:

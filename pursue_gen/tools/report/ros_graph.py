@@ -15,6 +15,7 @@ from pursue_gen.tools.report.graphviz import Graph, arrow, node, quoted
 from pursue_gen.tools.report.html import Section, rendered
 
 EVENTS, STATE, TEXT, PLAN = "/pursue/events", "/pursue/state", "/pursue/system_state", "/pursue/plan"
+ORDERS, ANSWERS = "/pursue/orders", "/pursue/answers"
 SEEN, DOORS, ABOARD = "/pursue/seen", "/pursue/doors", "/pursue/aboard"
 DIAGNOSTICS = "/diagnostics"
 _STATE = "pursue_msgs/SystemState"
@@ -48,6 +49,8 @@ def topics(scenario: Scenario, subs: Sequence[SubStrategy]) -> Tuple[Topic, ...]
         Topic(STATE, _STATE, (_OBSERVER,), (*controllers, _SIMULATOR, *doors, f"/{UI}")),
         Topic(TEXT, _STRING, (_OBSERVER,), ()),
         Topic(PLAN, _STRING, (_OBSERVER,), (*controllers, f"/{UI}")),
+        Topic(ORDERS, _STRING, (f"/{UI}",), (_OBSERVER,)),
+        Topic(ANSWERS, "pursue_msgs/OrderAnswer", (_OBSERVER,), (f"/{UI}",)),
         Topic(SEEN, _STATE, (*controllers, _SIMULATOR, *doors, f"/{UI}"), (_OBSERVER,)),
         Topic(DIAGNOSTICS, _STATUS, (*nodes, *doors), (_OBSERVER, _SIMULATOR, *doors, f"/{UI}")),
     ]

@@ -6,6 +6,7 @@ time unit lasts one second.
 
 from __future__ import annotations
 
+import math
 import random
 from dataclasses import dataclass
 from typing import Dict, FrozenSet, List, Mapping, Optional, Sequence, Tuple
@@ -33,13 +34,20 @@ FAULTS: Mapping[str, str] = {
 RATES: Mapping[str, float] = {"delay": 0.1, "loss": 0.05, "duplicates": 0.1, "reorder": 0.1, "orders": 0.05}
 """How often these happen; `loss=0.2` in the place of `loss` sets another probability."""
 
+LATE = 15.0
+"""Time units by which who is late is so at most; `late=60` in the place of `late` sets another number. Not
+measured."""
+
+_LEAST = 0.2
+"""Time units by which who is late is so at least. Not measured."""
+
 HARMLESS = ("duplicates", "junk")
 """Faults that delay no agent: missions in which nothing else goes wrong are won as if nothing did."""
 
 
 def read_faults(text: str) -> Tuple[str, ...]:
     """The kinds of faults of `--faults`: names with commas between them, `all`, `none`. A name in RATES may have a
-    probability, as in `loss=0.2`. Raises PursueError."""
+    probability, as in `loss=0.2`, and `late` time units, as in `late=60`. Raises PursueError."""
     names = [name.strip() for name in text.split(",") if name.strip()]
     if names == ["none"] or not names:
         return ()
@@ -47,8 +55,8 @@ def read_faults(text: str) -> Tuple[str, ...]:
         return tuple(FAULTS)
     wrong = [name for name in names if "=" in name and _rate(name) is None]
     if wrong:
-        hint = f"a probability from 0 to 1 for {', '.join(RATES)}, such as loss=0.2"
-        raise PursueError([error("SIM002", f"{', '.join(wrong)} is no fault with a probability", hint=hint)])
+        hint = f"a probability from 0 to 1 for {', '.join(RATES)}, such as loss=0.2; time units for late: late=60"
+        raise PursueError([error("SIM002", f"{', '.join(wrong)} is no fault with such a number", hint=hint)])
     kinds = {name.partition("=")[0]: name for name in names}
     unknown = [name for name in kinds if name not in FAULTS]
     if unknown:
@@ -58,12 +66,14 @@ def read_faults(text: str) -> Tuple[str, ...]:
 
 
 def _rate(text: str) -> Optional[float]:
-    """The probability in `loss=0.2`; None if there is none."""
+    """The probability in `loss=0.2`, the time units in `late=60`; None if there are none."""
     name, _, number = text.partition("=")
     try:
         rate = float(number)
     except ValueError:
         return None
+    if name == "late":
+        return rate if _LEAST <= rate < math.inf else None
     return rate if name in RATES and 0.0 <= rate <= 1.0 else None
 
 
@@ -100,7 +110,8 @@ class FaultPlan:
         With one kind, the mission has it; of several, each with probability 1/2, but one at least.
         """
         self._draw = draw = random.Random(f"{seed}/faults")
-        self._rates = {**RATES, **{text.partition("=")[0]: _rate(text) or 0.0 for text in kinds if "=" in text}}
+        given = {text.partition("=")[0]: _rate(text) or 0.0 for text in kinds if "=" in text}
+        self._rates = {**RATES, "late": LATE, **given}
         kinds = [text.partition("=")[0] for text in kinds]
         self._absence = absence
         chosen = [kind for kind in kinds if len(kinds) == 1 or draw.random() < 0.5]
@@ -151,7 +162,7 @@ class FaultPlan:
     def duration(self, low: float, high: float, usual: float) -> float:
         """How long an activity with this window takes, in time units, where it would have taken the usual time."""
         if self._chance("late", 0.2):
-            return high + self._draw.uniform(0.2, 15.0)
+            return high + self._draw.uniform(_LEAST, self._rates["late"])
         if self._chance("early", 0.2):
             return low * self._draw.uniform(0.5, 1.0)
         return usual

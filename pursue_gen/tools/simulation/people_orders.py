@@ -1,5 +1,5 @@
 """People who order in a simulated mission: at any time, what the scenario lets them, as soon as they like, and who
-change their minds."""
+change their minds; who take robots out of service, and bring them back."""
 
 from __future__ import annotations
 
@@ -18,6 +18,11 @@ CANCELLED, URGENT = 0.2, 0.1
 """The shares of orders that are cancelled some time later, and that are urgent. Not measured."""
 
 
+LEAVING, AWAY = 0.3, 200.0
+"""The share of orders with which a robot is taken out of service as well, and the time units until it is brought back
+at most. Not measured."""
+
+
 class PeopleOrders:
     """Orders of a mission, which `order` gets as texts: one after the other, at random times."""
 
@@ -29,8 +34,9 @@ class PeopleOrders:
         for event, longest in timed:
             if event in self._menu:
                 self._deadlines[event] = min(longest, self._deadlines.get(event, longest))
-        self._events, self._order = events, order
+        self._events, self._order, self._robots = events, order, stage.robots
         self._draw, self._mood = random.Random(f"{seed}/orders"), random.Random(f"{seed}/mood")
+        self._service = random.Random(f"{seed}/service")
 
     def begin(self) -> None:
         """Order from now on, where there is something to order."""
@@ -47,4 +53,9 @@ class PeopleOrders:
         if self._mood.random() < CANCELLED:
             later = self._events.now + self._mood.uniform(0, 0.5) * (deadline or USUAL)
             self._events.schedule(later, lambda: self._order(f"cancel {event}"))
+        if self._service.random() < LEAVING:
+            robot = self._service.choice(self._robots)
+            self._order(f"leave {robot}")
+            back = self._events.now + self._service.uniform(0, AWAY)
+            self._events.schedule(back, lambda: self._order(f"join {robot}"))
         self.begin()

@@ -29,7 +29,7 @@ function showAgent(widget, agent, now) {
 function whyAndThen(agent, now) { // only what the strategy says; nothing where it is not known here
   const parts = [agent.why].filter((text) => text);
   if (agent.then) parts.push(`${agent.awaited ? "then" : "next"}: ${agent.then.does}${due(agent.then, now)}`);
-  else if (view.planned && view.status === "running" && !agent.awaited && !agent.lost && !parts.length) parts.push("waits: nothing is planned for it until something else happens");
+  else if (view.planned && view.status === "running" && !agent.awaited && !agent.lost && !isOut(agent.name) && !parts.length) parts.push("waits: nothing is planned for it until something else happens");
   return parts.join("; ");
 }
 

@@ -4,6 +4,8 @@
 const SENT = 2000; // ms for which a button that was pressed does nothing: a second press would be a second order
 
 function setOrders() {
+  const robots = scene.agents.filter(({ kind }) => kind === "robot");
+  $("service").hidden = robots.length === 0;
   say($("within-unit"), scene.counts);
   $("written").placeholder = example();
   $("order-buttons").replaceChildren(...scene.orders.map(({ word, label }) => {
@@ -13,6 +15,19 @@ function setOrders() {
     onPress(button, () => send(button, inTime(word)));
     return button;
   }));
+  $("service-buttons").replaceChildren(...robots.map(({ name }) => serviceButton(name)));
+}
+
+function serviceButton(robot) {
+  const button = make("button", "service");
+  button.type = "button";
+  button.dataset.robot = robot;
+  onPress(button, () => send(button, `${isOut(robot) ? "join" : "leave"} ${robot}`));
+  return button;
+}
+
+function isOut(robot) {
+  return view.out_of_service.includes(robot);
 }
 
 function example() { // what one may write, with names of this scenario
@@ -38,7 +53,10 @@ function showOrders(here) {
   for (const button of [$("write"), ...$("order-buttons").children]) {
     enable(button, here && view.status === "running" && button.dataset.sent !== "true" && $("within").checkValidity());
   }
-  for (const button of document.querySelectorAll("#answers button")) {
+  for (const button of $("service-buttons").children) {
+    say(button, `${isOut(button.dataset.robot) ? "Bring back" : "Take out"} ${shown(button.dataset.robot)}`);
+  }
+  for (const button of document.querySelectorAll("#answers button, #service-buttons button")) {
     enable(button, here && view.status === "running" && button.dataset.sent !== "true");
   }
   const known = JSON.stringify(view.ordered);
@@ -47,7 +65,7 @@ function showOrders(here) {
   $("answers").replaceChildren(...view.ordered.map(({ at, order, accepted, text }) => {
     const line = make("li", accepted ? "good" : "bad");
     line.append(make("span", "at", units(at)), make("span", "", `${shown(order)}: ${text}`));
-    if (accepted && !order.startsWith("cancel ")) {
+    if (accepted && !/^(cancel|leave|join) /.test(order)) {
       const button = make("button", "small", "Cancel"), word = order.replace(/^urgent /, "").replace(/ within .*$/, "");
       button.type = "button";
       onPress(button, () => send(button, `cancel ${word}`));

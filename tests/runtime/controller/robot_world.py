@@ -100,8 +100,8 @@ class World:
         self.robot.on_status(answers, self.now, self.now)
         self.act()
 
-    def at(self, x: float, y: float, yaw: float = 0.0) -> None:
-        self.robot.on_position(Position(x, y, yaw), self.now)
+    def at(self, x: float, y: float, yaw: float = 0.0, height: Optional[float] = None) -> None:
+        self.robot.on_position(Position(x, y, yaw, height), self.now)
         self.act()
 
     def vanish(self) -> None:

@@ -96,6 +96,18 @@ def test_it_gets_out_when_it_knows_where_it_is_on_the_map_of_that_floor() -> Non
     assert places(robot) == ["l1 at c", "l1 at b", "b"]
 
 
+def test_it_gets_out_when_it_is_on_the_map_of_that_level_where_each_has_its_own() -> None:
+    room = RIDE._replace(place=place_of("b", [3.0, 4.0, 8.0, 0.0, 0.0, 0.0, 1.0]))
+    robot = on_its_way(room, ends="result", position="pose")
+    opens(robot, "c")
+    robot.at(2.0, 2.0, height=0.0)
+    robot.result(SUCCEEDED)
+    opens(robot, "b")
+    assert places(robot) == ["l1 at c", "l1 at b"], "its map is still that of the level below"
+    robot.at(2.0, 2.0, height=8.0)
+    assert places(robot) == ["l1 at c", "l1 at b", "b"]
+
+
 def test_one_that_reports_its_ends_itself_rides_by_itself() -> None:
     robot = on_its_way(RIDE._replace(halts=RIDE.halts[:1]), goals="simple", ends="words")
     assert places(robot) == []

@@ -18,8 +18,10 @@ import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from std_msgs.msg import String
 
+from pursue_runtime.controller.frames import MapFrames
+from pursue_runtime.controller.goal import Goal, Movement
 from pursue_runtime.controller.settings import Settings
-from pursue_runtime.controller.whereabouts import Position
+from pursue_runtime.controller.whereabouts import Position, place_of
 from pursue_runtime.nodes import mission_test, positions, recorder, robot_link
 from pursue_runtime.nodes.communication_manager import CommunicationManager
 from pursue_runtime.nodes.drive_legs import DriveLegs
@@ -176,7 +178,7 @@ def test_a_position_is_shown_when_it_has_changed(monkeypatch: pytest.MonkeyPatch
     watch: Any = positions._Watch.__new__(positions._Watch)
     watch._settings = {"bot": Settings(simulated=False, ends="pose", namespace="bot")}
     watch._poses, watch._paths, watch._frames, watch._renewed = {}, {}, None, {}
-    shown: List[Dict[str, Position]] = []
+    shown: List[Any] = []
     looks = iter([Position(1.0, 2.0, 0.0), Position(1.001, 2.0, 0.0), Position(3.0, 2.0, 0.0)])
     watch._ending = SimpleNamespace(called=False)
 
@@ -187,8 +189,14 @@ def test_a_position_is_shown_when_it_has_changed(monkeypatch: pytest.MonkeyPatch
 
     monkeypatch.setattr(positions.time, "sleep", sleep)
     watch.run(lambda places, _: shown.append(places))
-    assert shown == [{"bot": Position(1.0, 2.0, 0.0)}, {"bot": Position(3.0, 2.0, 0.0)}]
+    assert shown == [{"bot": (1.0, 2.0, 0.0)}, {"bot": (3.0, 2.0, 0.0)}]
     assert watch._transform("bot", watch._settings["bot"]) is None, "nobody listens to tf"
+
+
+def test_positions_on_the_map_of_any_level_are_shown() -> None:
+    is_map = positions.is_map
+    assert is_map("/high/map", "{level}/map") and is_map("map", "/map")
+    assert not is_map("map", "{level}/map") and not is_map("high/map2", "{level}/map") and not is_map("a/b", "map")
 
 
 # A robot's topics -----------------------------------------------------------------------------------------------------
@@ -235,6 +243,50 @@ def test_a_pose_of_amcl_counts_until_tf_has_shown_the_robot(link: Any) -> None:
     link._seen_by_tf = True
     link._pose(message)
     assert len(link.places) == 1
+
+
+def test_a_position_is_on_the_level_of_its_frame_and_goals_are_in_that_of_their_height(
+    link: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(rospy.Time, "now", lambda: rospy.Time(7))
+    link.frames = MapFrames("{level}/map", {"low": 0.0, "high": 4.0})
+    message = PoseWithCovarianceStamped()
+    message.header.frame_id, message.pose.pose.orientation.w = "/high/map", 1.0
+    link._pose(message)
+    message.header.frame_id = "map"
+    link._pose(message)
+    assert link.places == [Position(0.0, 0.0, 0.0, 4.0)], "map is no frame of these"
+    sent: List[Any] = []
+    link._send = lambda order: sent.append(order.message)
+    for height in (0.0, 4.2):
+        place = place_of("room", [1.0, 2.0, height, 0.0, 0.0, 0.0, 1.0])
+        link._log = lambda *_: None
+        link.go(Goal("bot-1", Movement("going_a_to_room", place)), place.pose)
+    assert [each.header.frame_id for each in sent] == ["low/map", "high/map"]
+
+
+def test_tf_tells_the_level_by_the_frame_that_the_robot_is_in(link: Any) -> None:
+    link.frames = MapFrames("{level}/map", {"low": 0.0, "high": 4.0})
+    link._tf = SimpleNamespace(TransformException=LookupError)
+    known = {"low/map": 4.0, "high/map": 0.0}
+
+    def lookup(frame: str, *_: object) -> Any:
+        if frame not in known:
+            raise LookupError(frame)
+        at = SimpleNamespace(x=1.0, y=2.0, z=known[frame])
+        turn = SimpleNamespace(x=0.0, y=0.0, z=0.0, w=1.0)
+        stamp = rospy.Time(0)
+        return SimpleNamespace(
+            header=SimpleNamespace(stamp=stamp), transform=SimpleNamespace(translation=at, rotation=turn)
+        )
+
+    link._frames = SimpleNamespace(lookup_transform=lookup)
+    link._is_stale = lambda stamp: False
+    assert link.look() == Position(1.0, 2.0, 0.0, 4.0), "joined frames: it is high above the lower one"
+    del known["low/map"]
+    assert link.look() == Position(1.0, 2.0, 0.0, 4.0)
+    known.clear()
+    assert link.look() is None
 
 
 # The ends of nodes, and the test of a workspace -----------------------------------------------------------------------

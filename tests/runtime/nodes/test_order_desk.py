@@ -78,6 +78,13 @@ def test_the_ui_publishes_orders_of_its_scenario_alone_and_gets_the_answers(grap
     assert answers == [("tea", True, "accepted")]
 
 
+def test_without_orders_robots_leave_and_join_all_the_same(graph: Dict[str, Any]) -> None:
+    orders = UIOrders(Model(model_data(mover("bot", "robot", 9))), None, lambda *_: None)  # type: ignore[arg-type]
+    assert not any(map(orders.typed, ("tea", "leave", "join bot at hall")))
+    assert orders.typed("leave bot") and orders.typed("join  bot")
+    assert graph["published"] == ["leave bot", "join  bot"]
+
+
 def test_where_the_scenario_has_no_orders_some_can_be_written(graph: Dict[str, Any]) -> None:
     orders = UIOrders(Model(model_data(mover("bot", "robot", 9))), None, lambda *_: None)  # type: ignore[arg-type]
     assert not orders.typed("tea") and orders.typed("bot at a within 3")

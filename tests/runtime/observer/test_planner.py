@@ -55,7 +55,7 @@ def test_it_is_asked_from_where_the_mission_is_and_its_plan_is_read(tmp_path: Pa
     assert json.loads(copy.read_text()) == {
         "format": 1, "game": {"name": "chase"}, "locations": {"bot": "a"}, "values": {"Pbot": 1},
         "clocks": {"Cbot": 2.5}, "ahead": 1.5, "excused": ["dog"], "blocked": [["a", "b"]], "turning": ["cat"],
-        "awaited": None,
+        "awaited": None, "out_of_service": [],
     }
 
 

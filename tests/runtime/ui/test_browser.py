@@ -117,7 +117,7 @@ class Node:
 
     def show(self, seq: int, at: float, clock: float = 50.0, **more: Any) -> None:
         self.phase, self.shown = "running", self.clock()
-        facts = {name: more.pop(name) for name in ("commanded", "held") if name in more}
+        facts = {name: more.pop(name) for name in ("commanded", "held", "out_of_service") if name in more}
         self.state = state(self.model, seq, 100.0 + at, dict.fromkeys(self.model.clocks, clock), **more)
         self.state = self.state._replace(**facts)
         self.board.on_state(self.state, at)
@@ -622,6 +622,29 @@ def test_an_order_is_sent_once_with_the_time_that_is_wanted_and_its_answer_is_sh
     page.wait("document.querySelectorAll('#answers button[aria-disabled=true]').length === 1")
     assert node.wanted[2:] == [("order", "cancel coffee", 2)]
     assert not page.value("window.hacked || false") and page.complaints == []
+
+
+def test_a_robot_is_taken_out_of_service_and_brought_back(page: Browser, show: Callable[..., Node]) -> None:
+    node = show(*everybody())
+    node.show(1, 0.0, event="_start_")
+    page.click("#service summary")
+    says(page, "#service-buttons [data-robot=bot]", "Take out bot")
+    page.wait("document.querySelector('[data-robot=bot]').getAttribute('aria-disabled') === 'false'")
+    page.value("document.querySelector('[data-robot=bot]').click()")
+    page.wait("document.querySelector('[data-robot=bot]').getAttribute('aria-disabled') === 'true'")
+    node.board.on_answer(3.0, "leave bot", True, "{bot} is out of service")
+    page.wait("document.querySelectorAll('#answers li').length === 1")
+    says(page, "#answers .good", "leave bot: bot is out of service")
+    assert page.value("document.querySelectorAll('#answers button').length") == 0
+    node.show(2, 4.0, event="_leaves_", agent="bot", out_of_service=("bot",))
+    says(page, "[data-robot=bot]", "Bring back bot")
+    says(page, "#agents", "out of service")
+    says(page, "#log", "bot is out of service")
+    page.wait("document.querySelector('[data-robot=bot]').getAttribute('aria-disabled') === 'false'")
+    page.value("document.querySelector('[data-robot=bot]').click()")  # the remark of this node may cover it
+    page.wait("document.querySelector('[data-robot=bot]').getAttribute('aria-disabled') === 'true'")
+    says(page, "#remark", "as you like")
+    assert node.wanted == [("order", "leave bot", 1), ("order", "join bot", 2)] and page.complaints == []
 
 
 def test_what_is_written_is_ordered_too(page: Browser, show: Callable[..., Node]) -> None:

@@ -42,7 +42,8 @@ def shown(now: Any, group: str, picture: Any = None) -> List[Mark]:
 
 def at(status: str = "running", reason: str = "", **more: Any) -> Any:
     """A state, with `lists` of agents and locations."""
-    lists = {key: more.pop(key) for key in ("late", "lost", "held", "displaced", "returning") if key in more}
+    named = ("late", "lost", "held", "displaced", "returning", "out_of_service")
+    lists = {key: more.pop(key) for key in named if key in more}
     return state(MODEL, 3, 100.0, {}, status, reason=reason, **more)._replace(**lists)
 
 
@@ -106,6 +107,7 @@ def test_the_next_command_of_the_strategy_is_a_pale_arrow_and_stands_behind_what
     ({"late": ("bot",)}, LATE, " (late)"),
     ({"late": ("bot",), "lost": ("bot",)}, LOST, " (lost)"),
     ({"late": ("bot",), "held": ("bot",)}, WAITS, " (held)"),
+    ({"displaced": ("bot",), "out_of_service": ("bot",)}, WAITS, " (out of service)"),
     ({"displaced": ("bot",)}, WAITS, " (displaced)"),
     ({"displaced": ("bot",), "returning": ("bot",)}, WAITS, " (returning)"),
 ])  # fmt: skip

@@ -128,9 +128,10 @@ def test_what_the_mission_waits_for() -> None:
 def test_what_has_to_be_known_of_an_agent_is_said() -> None:
     now = at(2, 100.0, bot="going_a_to_b", nurse="doing_screw_in_s")
     now = now._replace(held=("bot",), lost=("thief",), displaced=("boy", "nurse"), returning=("boy",))
-    seen = view(page(), now)
+    seen = view(page(), now._replace(out_of_service=("bot",)))
+    assert seen["out_of_service"] == ["bot"]
     assert {each["name"]: each["notes"] for each in seen["agents"]} == {
-        "bot": ["held, until it is resumed"], "thief": ["counts as lost"],
+        "bot": ["held, until it is resumed", "out of service"], "thief": ["counts as lost"],
         "nurse": ["is not known to be there"], "boy": ["is sent back there"],
     }  # fmt: skip
 

@@ -282,11 +282,12 @@ def test_ways_are_measured_on_the_map_as_survey_does(tmp_path: Path) -> None:
     done = until(lambda: page.answer("job", {})["state"] == "ended" and page.answer("job", {}), "the end")
     from pursue_gen.survey.make import Options, surveyed
     from pursue_gen.survey.times import Drive
+    from pursue_gen.workspace.levels import Level
     from pursue_gen.workspace.map_check import read_placed
 
     ground = read_ground(rooms.with_suffix(".yaml"), whole=True)
     options = Options(ways=True, drive=Drive({"bot1": 0.4, "bot2": 0.4}))
-    copy = surveyed(read_placed(text, rooms.name), ground, "three_rooms.yaml", options).text
+    copy = surveyed(read_placed(text, rooms.name), (Level(ground, Path("three_rooms.yaml")),), options).text
     assert done["surveyed"] == format_text(copy, "copy.pur")
     assert any(line.startswith("hall - shelf") for line in done["lines"])
     path = next(one["line"] for one in done["paths"] if (one["a"], one["b"]) == ("desk", "hall"))

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Dict
 
 from stages import stage
 
 from pursue_gen.tools.replay import check
 from pursue_gen.tools.replay.finding import FAULT
+from pursue_gen.tools.replay.record import MissionRecord
 from pursue_gen.tools.simulation.mission import SimulatedMission, simulate_mission
 from pursue_gen.tools.simulation.outcome import SAFE, Settings
-from pursue_runtime.event_words import CANCELLED
+from pursue_runtime.event_words import CANCELLED, JOINS, LEAVES
 
 ORDERS = "hotel/tea_orders"
+WRONG = (FAULT, "service")
 
 
 def test_whatever_is_accepted_is_kept() -> None:
@@ -23,7 +26,7 @@ def test_whatever_is_accepted_is_kept() -> None:
 
 def test_with_faults_no_robot_gets_a_command_that_no_plan_holds() -> None:
     settings = Settings("mixed", ("delay", "loss", "deaths", "restart", "reorder"), until=400.0)
-    for seed in (1, 3, 7):  # in others a plan for a mission that holds is looked for for long
+    for seed in (3, 7, 9):  # in others a plan for a mission that holds is looked for for long
         outcome = simulate_mission(stage(ORDERS), settings, seed)
         assert outcome.problems == (), outcome.reason
 
@@ -53,6 +56,29 @@ def test_what_is_cancelled_is_not_due_any_more_and_that_is_proven() -> None:
     ]
     found = check(replace(record, states=states), game).findings
     assert [each.kind for each in found if each.seq == cancelled[0] and each.level == FAULT] == ["step"]
+
+
+def test_a_robot_that_leaves_gets_no_command_and_a_judge_finds_what_does_not_fit_that() -> None:
+    mission = SimulatedMission(stage(ORDERS), Settings("still", until=700.0), 3, None)
+    outcome = mission.run()
+    record, game = mission.recorder.record(mission.events.now), stage(ORDERS).game
+    left, joined = (next(each for each in record.states if each.event == word) for word in (LEAVES, JOINS))
+    assert outcome.end == SAFE and left.seq < joined.seq and left.out_of_service == (left.agent,)
+    found = check(record, game).findings
+    assert not [each for each in found if each.level == FAULT]
+    assert [each.seq for each in found if each.kind == "service"][:2] == [left.seq, joined.seq]
+
+    def faults(changed: MissionRecord) -> Dict[int, str]:
+        return {each.seq: each.text for each in check(changed, game).findings if (each.level, each.kind) == WRONG}
+
+    plan = {**record.plans[left.plan], "order": "tea"}
+    assert set(faults(replace(record, plans={**record.plans, left.plan: plan}))) == {left.seq}
+    states = [each._replace(out_of_service=("nora",)) for each in record.states]
+    texts = faults(replace(record, states=states)).values()
+    assert any("nora, which takes part in it, is out of service" in text for text in texts)
+    states = [each._replace(out_of_service=()) if each.seq > left.seq else each for each in record.states]
+    unsaid = {left.seq + 1: "bert is in service again, and nobody brought it back"}
+    assert faults(replace(record, states=states)) == unsaid
 
 
 def test_nobody_orders_where_there_is_nothing_to_order() -> None:

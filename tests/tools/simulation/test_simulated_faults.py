@@ -41,11 +41,19 @@ def test_names_all_and_none() -> None:
 def test_faults_of_messages_may_have_another_probability() -> None:
     assert read_faults("junk, loss=0.5") == ("loss=0.5", "junk")
     assert 120 < len(sent(trouble("loss=0.5"))) < 280
-    for text in ("loss=2", "loss=often", "junk=0.5", "rain=0.5", "loss="):
+    for text in ("loss=2", "loss=often", "junk=0.5", "rain=0.5", "loss=", "late=0.1", "late=inf", "late=long"):
         with pytest.raises(PursueError) as refused:
             read_faults(text)
         assert refused.value.exit_status == 2
-        assert "no fault with a probability" in refused.value.diagnostics[0].message
+        assert "no fault with such a number" in refused.value.diagnostics[0].message
+
+
+def test_who_is_late_may_be_so_by_another_time() -> None:
+    assert read_faults("late=60") == ("late=60",)
+    for kind, most in (("late", 15.0), ("late=60", 60.0)):
+        about = trouble(kind)
+        late = [took - 8.0 for took in (about.duration(5.0, 8.0, 6.0) for _ in range(400)) if took != 6.0]
+        assert min(late) >= 0.2 and most / 2 < max(late) <= most and about.happened == {"late": len(late)}
 
 
 def test_an_unknown_name_is_refused_with_those_there_are() -> None:
