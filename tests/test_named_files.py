@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import ast
-import gc
 import os
 import re
 import subprocess
 import sys
 import threading
+import traceback
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, Callable, Dict, Iterator, List
+from typing import Any, Callable, Dict, List, Optional
 
 import pytest
 
@@ -39,13 +39,6 @@ from pursue_runtime.ui.trace import TraceError
 
 ROOT = Path(__file__).resolve().parents[1]
 PATIENCE = 300
-
-
-@pytest.fixture(autouse=True)
-def _garbage() -> Iterator[None]:
-    """An error's traceback holds megabytes of what was read, in a cycle, and would do so for many tests to come."""
-    yield
-    gc.collect()
 
 
 def certificate(file: Path) -> None:
@@ -108,6 +101,13 @@ READERS: Dict[str, Callable[[Path], object]] = {
 REFUSALS = (PursueError, DataError, TraceError)
 
 
+def give_back(problem: Optional[BaseException]) -> None:
+    """Gives back the megabytes of what was read, which frames of an error hold, in a cycle, for many tests to come."""
+    if problem is not None:
+        traceback.clear_frames(problem.__traceback__)
+        give_back(problem.__cause__ or problem.__context__)
+
+
 def refused(work: Callable[[], object]) -> str:
     """Why it is refused; fails where it does not end."""
     found: List[BaseException] = []
@@ -123,6 +123,7 @@ def refused(work: Callable[[], object]) -> str:
     thread.join(PATIENCE)
     assert not thread.is_alive(), "it hangs"
     (problem,) = found
+    give_back(problem)
     assert isinstance(problem, REFUSALS), repr(problem)
     if isinstance(problem, PursueError):
         (finding, *_) = problem.diagnostics
