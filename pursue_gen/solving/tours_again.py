@@ -9,17 +9,13 @@ When a plan comes into force is not known to the moment: what is proven holds fr
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import AbstractSet, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.language.network_names import AT_RISK, LOSE
-from pursue_gen.outcomes import NotProven
 from pursue_gen.solving.due_moves import Duty
 from pursue_gen.solving.gaps import onward
-from pursue_gen.solving.options import SolveOptions
-from pursue_gen.solving.proving import prove
 from pursue_gen.solving.rounds import is_too_late, least_wait
 from pursue_gen.solving.tours import RESERVE, Opening, blocks_of, state_of
 from pursue_gen.solving.walkers import Patrol, Walker, patrol_of
@@ -49,17 +45,11 @@ class _Round:
     watchers: Tuple[Watcher, ...]
 
 
-def goes_on(
-    network: Network,
-    objective: Objective,
-    reaction: Fraction,
-    own: Strategy,
-    now: Now,
-    excused: AbstractSet[str],
-    options: SolveOptions,
+def going_on(
+    network: Network, objective: Objective, reaction: Fraction, own: Strategy, now: Now, excused: AbstractSet[str]
 ) -> Optional[Strategy]:
-    """A proven strategy by which robots go on with their tours, for an objective that asks for patrols alone; None
-    where that does not keep them any more, or a robot that is `excused` is needed.
+    """A strategy by which robots go on with their tours, for an objective that asks for patrols alone, not proven yet;
+    None where that does not keep them any more, or a robot that is `excused` is needed.
 
     The network has the automata of `own` (its tours and watchers), and may start whenever the plan may begin.
     """
@@ -79,10 +69,7 @@ def goes_on(
         kept = (some.tour.name, *(w.name for w in some.watchers), *(duty.name for duty in some.duties))
         shares.append(tuple((name, LOSE) for name in kept))
     watchers = tuple(watcher for some in rounds for watcher in some.watchers)
-    strategy = Strategy(tuple(blocks), shares=tuple(shares), watchers=watchers, tours=tuple(r.tour for r in rounds))
-    with suppress(NotProven):
-        return prove(network, objective, strategy, reaction, options=options)
-    return None
+    return Strategy(tuple(blocks), shares=tuple(shares), watchers=watchers, tours=tuple(r.tour for r in rounds))
 
 
 def _between(network: Network, walker: Walker) -> Tuple[Fraction, Fraction]:

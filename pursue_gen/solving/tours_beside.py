@@ -6,16 +6,20 @@ Whether they are in each other's way is for the checker to say, which takes both
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from typing import AbstractSet, Optional
+from typing import AbstractSet, FrozenSet, Optional
 
+from pursue_gen.outcomes import LimitHit, NotProven
 from pursue_gen.solving.due_moves import duties, patrols
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.options import SolveOptions
+from pursue_gen.solving.proving import prove
 from pursue_gen.solving.shares import won_in_shares
 from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.solving.tours import PATROL, proven_tours, tours_of
+from pursue_gen.solving.tours_again import Now, going_on
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Kind, Network, Objective
 from pursue_gen.tga.part import part_of
@@ -45,6 +49,35 @@ def won_beside_tours(
     if others is None:
         return None
     return proven_tours(network, objective, _together(tours, others.strategy), reaction, options, start)
+
+
+def goes_on(
+    network: Network, objective: Objective, reaction: Fraction, own: Strategy, now: Now, excused: FrozenSet[str],
+    patrolled: AbstractSet[str], options: SolveOptions,
+) -> Optional[Strategy]:
+    """A proven strategy by which robots go on with the tours of `own` in the middle of a play (see `tours_again`), and
+    the others keep what else is promised; None where none is found with little work. `patrolled`: the automata of
+    patrols."""
+    visited = tuple(place for place in objective.bad if place[0] in patrolled)
+    rest = tuple(place for place in objective.bad if place[0] not in patrolled)
+    if objective.reaches:
+        return None
+    on_tour = {tour.robot for tour in own.tours}
+    away = excused.union(name for name in commanded_agents(network) if rest and name not in on_tour)
+    strategy = going_on(network, replace(objective, bad=visited), reaction, own, now, away)
+    if strategy is None:
+        return None
+    if rest:
+        followed = {tour.name for tour in own.tours}.union(watcher.name for watcher in own.watchers)
+        game = _without(network, on_tour | followed.union(name for name, _ in visited))
+        limited = replace(options, limits=replace(options.limits, work=_WORK))
+        others = won_in_shares(game, replace(objective, bad=rest), reaction, limited)
+        if others is None:
+            return None
+        strategy = _together(strategy, others.strategy)
+    with suppress(NotProven, LimitHit):
+        return prove(network, objective, strategy, reaction, options=options)
+    return None
 
 
 def _only_ones(network: Network, visited: Objective, known: AbstractSet[str]) -> AbstractSet[str]:

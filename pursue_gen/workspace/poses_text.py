@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, Dict, List, Mapping, Sequence
 
@@ -77,7 +78,8 @@ def _doorways(scenario: Scenario, places: Table, own: Mapping[str, Table], robot
     for agent in (agent for agent in scenario.agents if agent.name in robots):
         for (a, b), lift in rides_of(scenario, agent).items():
             start = own.get(agent.name, places).get(a, places[a])
-            found.setdefault(agent.name, {})[movement(a, b)] = inline(_halts(lift, a, b, start))
+            halts = _halts(lift, a, b, start, places[b].z)
+            found.setdefault(agent.name, {})[movement(a, b)] = inline(halts)
         for (a, b), doors in doors_of(scenario, agent).items():
             start = own.get(agent.name, places).get(a, places[a])
             way: Dict[str, Any] = {"doors": sorted(doors)}
@@ -88,15 +90,15 @@ def _doorways(scenario: Scenario, places: Table, own: Mapping[str, Table], robot
     return found
 
 
-def _halts(lift: Lift, a: str, b: str, start: Pose) -> List[Dict[str, Any]]:
-    """Where a robot waits for a lift from one floor to another one, and then in it; one that has no pose in it alone
-    knows how it rides."""
+def _halts(lift: Lift, a: str, b: str, start: Pose, height: float) -> List[Dict[str, Any]]:
+    """Where a robot waits for a lift from one floor to another one, at this height, and then in it; one that has no
+    pose in it alone knows how it rides. It gets in at the height of where it sets off."""
     cabin, there = lift.cabin_at(a), lift.cabin_at(b)
     to_get_in: Dict[str, Any] = {"doors": [gate_at(lift.name, a)]}
     if cabin is None:
         return [to_get_in]
-    inside = {"doors": [gate_at(lift.name, b)], "wait": _numbers(cabin), "aboard": True}
-    out = {} if there is None or there == cabin else {"out": _numbers(there)}
+    inside = {"doors": [gate_at(lift.name, b)], "wait": _numbers(replace(cabin, z=start.z)), "aboard": True}
+    out = {} if there is None or there == cabin else {"out": _numbers(replace(there, z=height))}
     return [{**to_get_in, "wait": before_cabin(cabin, start)}, {**inside, **out}]
 
 
@@ -116,7 +118,7 @@ def in_front_of(door: Pose, start: Pose) -> List[float]:
     if (door.x - start.x) * ahead[0] + (door.y - start.y) * ahead[1] < 0:
         ahead, yaw = (-ahead[0], -ahead[1]), yaw + math.pi
     distance = min(DOOR_DISTANCE, _apart(start, door))
-    at = (door.x - distance * ahead[0], door.y - distance * ahead[1], door.z)
+    at = (door.x - distance * ahead[0], door.y - distance * ahead[1], start.z)
     return [round(number, 3) + 0.0 for number in (*at, 0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))]
 
 

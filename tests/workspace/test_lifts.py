@@ -59,6 +59,8 @@ def test_a_robot_waits_in_front_of_the_lift_and_in_the_cabin_as_it_is_on_its_flo
 def test_where_a_lift_goes_straight_up_on_one_map_the_robot_knows_where_it_is() -> None:
     ways = read_poses(yaml.safe_load(files(" //[4, 0, 0, 0, 0, 1, 0]")["src/controller_bot/config/poses.yaml"])).doors
     assert ways["bot"][UP][1].out is None
+    waits = [ways["bot"][way][1].wait for way in (UP, DOWN)]
+    assert [wait and wait[2] for wait in waits] == [0.0, 4.0], "it gets in at the height of its floor"
 
 
 def test_without_a_pose_of_the_cabin_it_goes_on_where_it_gets_in() -> None:

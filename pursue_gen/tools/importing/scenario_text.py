@@ -151,10 +151,16 @@ class _Writer:
         return found
 
     def _head(self) -> List[str]:
-        return [
+        lines = [
             f"// {one_line(self._building.name)}, from Open-RMF's traffic editor. Metres and seconds.",
             "// Say what is wanted below (docs/language.md); durations are first guesses.",
         ]
+        used = {stop.node[0] for stop in self._stops}
+        levels = [level for level in self._building.levels if level.name in used]
+        if len(levels) > 1:  # as the file of levels has them
+            known = ", ".join(f"{one_line(level.name)} {level.elevation:g}" for level in levels)
+            lines.append(f"// Levels and their elevations, for maps of them (docs/survey.md): {known}.")
+        return lines
 
     def _poi_lines(self) -> List[str]:
         lines = []

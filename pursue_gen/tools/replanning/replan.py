@@ -7,7 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from math import ceil
-from typing import Any, Dict, Mapping, Optional, Sequence
+from typing import AbstractSet, Any, Dict, Mapping, Optional, Sequence
 
 from pursue_gen.diagnostics import PursueError
 from pursue_gen.language.document import statement_text
@@ -123,9 +123,12 @@ def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
         clocks = start_clocks(network, request)
         if is_too_much(network, objective, request.rules.reaction, clocks, request.excused | request.out_of_service):
             return _lost(_cannot_be_met(game, request, network, limits.since(start)))
-        if _patrols_many(game, objective):  # nothing in between does better than tours
+        many = _patrolled(game, objective)
+        if many and len(many) == len(objective.bad):  # nothing in between does better than tours
             most = replace(limits, states=min(states, _FEW))
             verdict = solve(network, objective, request.rules.reaction, limits=most.since(start))
+        elif many and own.tours and states:  # the same beside other promises: each game takes long there
+            return _lost(f"no plan was found{_at_limit(limits)}")
         else:
             shared = _won_in_shares(network, objective, request, options, little)
             if shared is not None:
@@ -170,10 +173,10 @@ def _won_in_shares(
     return None if found is None else found.strategy
 
 
-def _patrols_many(game: Network, objective: Objective) -> bool:
-    """True where patrols of so many places are asked for, and nothing else, that tours are looked for first."""
-    names = {name for name, _ in objective.bad}
-    return not objective.reaches and len(names) >= PATROL and names <= patrols(game)
+def _patrolled(game: Network, objective: Objective) -> AbstractSet[str]:
+    """The automata of patrols where so many places are to be visited that tours are looked for first; else none."""
+    names = {name for name, _ in objective.bad} & patrols(game)
+    return names if not objective.reaches and len(names) >= PATROL else frozenset()
 
 
 def _verdict(network: Network, objective: Objective, reaction: Fraction, limits: Limits) -> Verdict:

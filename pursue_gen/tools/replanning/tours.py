@@ -7,8 +7,10 @@ from fractions import Fraction
 from typing import Optional, Tuple
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.solving.due_moves import patrols
 from pursue_gen.solving.options import SolveOptions
-from pursue_gen.solving.tours_again import Now, goes_on
+from pursue_gen.solving.tours_again import Now
+from pursue_gen.solving.tours_beside import goes_on
 from pursue_gen.synthesis.plan_parts import read_tours, read_watchers
 from pursue_gen.synthesis.strategy import Strategy, with_automata_of
 from pursue_gen.tga.network import Network, Objective
@@ -29,12 +31,13 @@ def tours_from_here(
         return None
     network = network_from(with_automata_of(game, own), request, told_apart=True)
     clocks = start_clocks(network, request)
-    start, gone = options.limits.now(), request.excused | request.out_of_service
+    start, patrolled = options.limits.now(), patrols(game)
+    gone = request.excused | request.out_of_service
     for late in _LATE:
         whenever = replace(network, start=around(network.start, request.ahead, late))
         now = Now(clocks, late)
         left = options.since(start)
-        found = goes_on(whenever, objective, request.rules.reaction, own, now, gone, left)
+        found = goes_on(whenever, objective, request.rules.reaction, own, now, gone, patrolled, left)
         if found is not None:
             return found, whenever
     return None

@@ -131,6 +131,7 @@ levels:
 def test_levels_are_joined_by_lifts_and_lie_above_each_other(tmp_path: Path) -> None:
     text = imported(tmp_path, TOWER)
     assert 'poi "Lift1_L2" //[10.00, -2.80, 5.00, 0, 0, 0, 1]' in text, "2.8 m before the middle of the cabin"
+    assert "// Levels and their elevations, for maps of them (docs/survey.md): L1 0, L2 5.\n" in text
     assert "connect Lift1_L2 and lobby_L2 distance 2.2\n" in text  # half as many pixels a metre as on the first level
     lift = 'lift "Lift1" at Lift1_L1, Lift1_L2 comes within 40 s takes 10 s to 20 s //[10.00, 0.00, 0.00, 0, 0, 0, 1]\n'
     called = "{adapter: rmf, name: Lift1, floors: {Lift1_L1: L1, Lift1_L2: L2}}"

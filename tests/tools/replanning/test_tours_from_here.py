@@ -20,6 +20,7 @@ from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.tours import won_by_tours
 from pursue_gen.solving.tours_again import is_too_much
+from pursue_gen.solving.tours_beside import won_beside_tours
 from pursue_gen.synthesis.limits import Limits
 from pursue_gen.synthesis.plan_parts import follower_lines
 from pursue_gen.synthesis.solve import solve
@@ -40,6 +41,7 @@ from pursue_runtime.model import Model, Position
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import read_cover
 from tests.patrols import corridor, game_of, small_patrols, tours_of
+from tests.solving.test_tours_beside import with_a_porter
 from tests.tools.replanning.plays import game_of as game_data
 
 LATE = Rules().reaction
@@ -112,6 +114,26 @@ def test_whoever_passes_the_place_of_another_is_not_relied_on_either() -> None:
     model = model_of(text, network, objective, own)
     position = walked(model, own, "bot1", 4, 3.0, walked(model, own, "bot2", 4, 3.0, model.initial())).aged(5.0)
     assert replan(there(text, own, position), NONE)["won"]
+
+
+def test_robots_go_on_with_their_tours_beside_one_that_answers_calls() -> None:
+    text = with_a_porter(12, " every 400")
+    network, objective = game_of(text)
+    found = won_beside_tours(network, objective, LATE, OPTIONS)
+    assert found is not None
+    own, model = found.strategy, model_of(text, network, objective, found.strategy)
+    for steps, late in ((0, 20.0), (1, 0.5), (2, 6.0)):
+        position = walked(model, own, "bot1", steps, 3.0, model.initial()).aged(late)
+        request = read_request(there(text, own, position))
+        on = tours_from_here(network, objective, own, request, OPTIONS)
+        assert on is not None, (steps, late)
+        strategy, here = on
+        assert {tour.robot for tour in strategy.tours} == {"bot1", "bot2"} and "porter" in strategy.commanded
+        assert verify(with_automata_of(here, strategy), objective, strategy, LATE).ok
+    gone = read_request(there(text, own, model.initial().aged(20.0), excused=["bot1"]))
+    assert tours_from_here(network, objective, own, gone, OPTIONS) is None
+    gone = read_request(there(text, own, model.initial().aged(20.0), excused=["porter"]))
+    assert tours_from_here(network, objective, own, gone, OPTIONS) is None
 
 
 def test_what_is_too_late_for_all_robots_is_known_at_once() -> None:
