@@ -51,16 +51,23 @@ def drawn_in(automata: Sequence[Automaton], scenario: Scenario, robots: FrozenSe
 def kept_no_more(
     network: Network, objective: Objective, scenario: Scenario, reaction: Fraction, limits: Limits
 ) -> List[StatedObjective]:
-    """An objective that cannot be kept in this game even if it is the only one, as far as each of these searches finds
-    that; none where it takes several of them."""
+    """An objective that cannot be kept in this game even if it is the only one, or all that is to be reached, as far as
+    searches find that; none where it takes several of them."""
     start = limits.now()
+    for statements, alone in _one_by_one(objective, scenario):
+        with suppress(LimitHit):
+            if solve(network, alone, reaction, limits=limits.since(start)).strategy is None:
+                return statements
+    return []
+
+
+def _one_by_one(objective: Objective, scenario: Scenario) -> Iterator[Tuple[List[StatedObjective], Objective]]:
     for name, statement in stated(scenario).items():
         bad = tuple(place for place in objective.bad if place[0] == name)
-        alone = Objective(Kind.SAFETY, bad=bad)
-        with suppress(LimitHit):
-            if bad and solve(network, alone, reaction, limits=limits.since(start)).strategy is None:
-                return [statement]
-    return []
+        if bad:
+            yield [statement], Objective(Kind.SAFETY, bad=bad)
+    if objective.goal:
+        yield list(scenario.reach), Objective(Kind.REACH, goal=objective.goal)
 
 
 def _shared(automata: Sequence[Automaton], scenario: Scenario, robots: FrozenSet[str]) -> Shared:

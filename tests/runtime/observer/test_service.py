@@ -141,6 +141,17 @@ def test_where_no_plan_with_it_is_found_a_robot_comes_back_under_the_one_in_forc
     assert answer.accepted and ward.mission.plan == 1 and not ward.mission.state(ward.now).out_of_service
 
 
+def test_without_a_plan_it_does_not_come_back_from_elsewhere(ward: Ward) -> None:
+    ward.order("leave bot2")
+    ward.call("order", "join bot2")
+    request = ward.mission.plan_request
+    assert request is not None
+    ward.call("hear", "bot2:_displaced_ is 4 m from west")
+    ward.call("unplanned", request.number, "it took too long")
+    (answer,) = ward.mission.ordering.drain()
+    assert not answer.accepted and ward.mission.state(ward.now).out_of_service == ("bot2",)
+
+
 def test_its_controller_may_be_switched_off_while_it_is_away(ward: Ward) -> None:
     ward.order("leave bot2")
     ward.call("silent", "controller_bot2")

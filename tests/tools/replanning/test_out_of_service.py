@@ -26,6 +26,16 @@ agent "bot2" controllable mobile 1 location east can_do answer
 objective: if ring then answer within 60
 """
 
+GOAL = """\
+poi "hall"
+event "greet" location hall
+event "wave" location hall
+agent "bot1" controllable mobile 1 location hall can_do greet
+agent "bot2" controllable mobile 1 location hall can_do wave
+reach_objective: do greet
+objective: avoid wave
+"""
+
 HANDING = """\
 poi "hall"
 poi "east"
@@ -92,6 +102,11 @@ def test_a_refusal_says_what_can_be_kept_no_more() -> None:
         "'objective: if ring then answer within 60' cannot be kept while {bot1} is out of service and while {bot2} is "
         "out of service"
     )
+
+
+def test_a_refusal_names_what_is_to_be_reached_where_that_is_lost_by_itself() -> None:
+    answer = asked(GOAL, ["bot1"])
+    assert answer["why"] == "'reach_objective: do greet' cannot be kept while {bot1} is out of service"
 
 
 def test_nobody_begins_what_a_robot_out_of_service_would_take_part_in() -> None:
