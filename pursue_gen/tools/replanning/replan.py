@@ -158,15 +158,18 @@ def _won_in_shares(
     network: Network, objective: Objective, request: Request, options: SolveOptions, work: int
 ) -> Optional[Strategy]:
     """A proven strategy in shares that so much work finds; None where it finds none. For an order they are shared out
-    as before if that wins, and little effort finds nothing else."""
+    as before if that wins, and little effort finds nothing else; as before at first where nothing is to be sooner: who
+    leaves or joins moves but the promises of one robot."""
     if not can_be_shared(network, objective):
         return None
     limited, known = replace(options, limits=replace(options.limits, work=work)), Known()
     search = partial(won_in_shares, network, objective, request.rules.reaction, limited, known=known)
-    found = search(EFFORTS[:1])
-    if found is not None:
-        return found.strategy
-    strategy = shared_as_before(network, objective, request, options, known) if request.window else None
+    before = partial(shared_as_before, network, objective, request, options, known)
+    strategy = before() if request.window and not request.sooner else None
+    found = search(EFFORTS[:1]) if strategy is None else None
+    strategy = strategy if found is None else found.strategy
+    if strategy is None and request.sooner:
+        strategy = before()
     if strategy is not None:
         return strategy
     found = search(EFFORTS[1:])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any, Dict
 
@@ -87,6 +88,16 @@ objective: avoid any robot at room3 and cleaner at room3
 """
 
 
+ROOMS = [f"room{number}" for number in range(16)]
+
+FLEET = "\n".join([
+    'poi "hall"', *(f'poi "{room}"\nconnect hall and {room} distance {8 + k % 5}' for k, room in enumerate(ROOMS)),
+    f'group "rooms": {", ".join(ROOMS)}', 'event "tea" on_order', 'event "serve" location room0 duration 3',
+    *(f'agent "bot{number}" controllable mobile 1 location hall can_do serve' for number in range(8)),
+    "objective: patrol rooms every 300 by any robot", "objective: if tea then serve within 300",
+])  # fmt: skip
+
+
 @lru_cache(maxsize=None)
 def won(text: str) -> api.Solved:
     return api.solve(api.parse(text))
@@ -110,6 +121,17 @@ def test_an_order_is_promised_with_little_work_where_promises_stay_shared_out(mo
     assert {robot for robots, _ in request.shares for robot in robots} == {"amy", "bob"}
     monkeypatch.setattr(sys.modules[answer_to.__module__], "_FOR_AN_ORDER", 8_000_000)
     assert answer_to(request, 12_000)["won"], "shared out anew it takes more than that"
+
+
+def test_who_leaves_has_promises_that_go_to_others_in_turn(monkeypatch: pytest.MonkeyPatch) -> None:
+    request = requested(monkeypatch, FLEET)
+    (gone,) = next(robots for robots, promises in request.shares if len(robots) == 1 and promises)
+    quiet = {name: "idle" if place == "atRisk" else place for name, place in request.locations.items()}
+    leaves = replace(request, locations=quiet, sooner={}, out_of_service=frozenset({gone}))
+    monkeypatch.setattr(sys.modules[answer_to.__module__], "_FOR_AN_ORDER", 1_000_000)
+    monkeypatch.setattr(sys.modules[answer_to.__module__], "won_in_shares", lambda *_, **__: None)  # shared out anew
+    answer = answer_to(leaves, 12_000)
+    assert answer["won"] and not answer["strategies"][f"controller_{gone}"]["strategy"]
 
 
 def test_somebody_who_stays_where_an_order_finds_them_is_no_hindrance(monkeypatch: pytest.MonkeyPatch) -> None:
