@@ -15,7 +15,7 @@ A, B, OWN = ([float(x), 2.0, 0.0, 0.0, 0.0, 0.0, 1.0] for x in (1, 5, 9))
 
 def test_without_poses_of_their_own_all_robots_have_those_of_the_places() -> None:
     poses = read_poses({"poses": {"a": A, "b": B}})
-    assert poses == Poses({"a": A, "b": B}, {}, {}, {})
+    assert poses == Poses({"a": A, "b": B}, {}, {}, {}, {})
     assert poses.of(["bot1", "bot2"]) == {"bot1": {"a": A, "b": B}, "bot2": {"a": A, "b": B}}
 
 
@@ -89,9 +89,9 @@ def test_what_is_no_table_of_poses_is_refused(data: Dict[str, Any], what: str) -
 
 def test_all_formats_of_the_file_are_read_and_a_newer_one_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "poses.yaml"
-    for number in (1, 2, 3, 4, 5):
+    for number in (1, 2, 3, 4, 5, 6):
         file.write_text(f"format: {number}\nposes: {{a: {A}}}\n")
         assert read_poses(read_data(str(file))).places == {"a": A}
-    file.write_text("format: 6\nposes: {}\n")
-    with pytest.raises(DataError, match=r"poses\.yaml has format 6, and pursue_runtime [\d.]+ reads format 5"):
+    file.write_text("format: 7\nposes: {}\n")
+    with pytest.raises(DataError, match=r"poses\.yaml has format 7, and pursue_runtime [\d.]+ reads format 6"):
         read_data(str(file))

@@ -195,7 +195,7 @@ def test_a_mission_that_a_stranger_signed_is_refused_whoever_sends_it(robot: Rob
     ("strategy.yaml", STRATEGY.replace(b"strategy: []", b"strategy: [{state: {}, commands: [7]}]")),
     ("poses.yaml", POSES.replace(b"1.0]", b"]")), ("poses.yaml", POSES.replace(b"1.0]", b".nan]")),
     ("poses.yaml", b"format: 1\nposes: 7"), ("poses.yaml", POSES + b"robots: [bot1]\n"),
-    ("poses.yaml", POSES.replace(b"format: 1", b"format: 6")), ("more.yaml", b"- 1"),
+    ("poses.yaml", POSES.replace(b"format: 1", b"format: 7")), ("more.yaml", b"- 1"),
 ])  # fmt: skip
 def test_data_that_the_nodes_of_this_machine_cannot_read_are_refused(robot: Robot, path: str, content: bytes) -> None:
     bad = mission("bad", {f"controller_bot1/{path}": content})
