@@ -295,3 +295,30 @@ def test_objectives_that_orders_of_passage_keep_do_matter() -> None:
     found = won(text)
     assert verdict_json(DEFAULT, found)["left_out"] == ["guest"]
     assert strategy_data_of(parse(text, "passing.pur", "passing"), found, "dedicated").left_out == ("guest",)
+
+
+ON_CALL = """unit second
+poi "n1" poi "n2" poi "n3" poi "n4" poi "roomA" poi "roomB" poi "roomC" poi "dockA" poi "dockB" poi "dockC"
+connect n1 and n2 distance 8 m connect n2 and n3 distance 8 m
+connect n3 and n4 distance 8 m connect n4 and n1 distance 8 m
+connect n1 and roomA distance 5 m connect n2 and roomB distance 5 m
+connect n3 and roomC distance 5 m connect n4 and dockA distance 4 m
+connect n4 and dockB distance 4 m connect n1 and dockC distance 4 m
+event "call" location roomA
+event "bring" location roomA duration 10 s
+event "load" location roomC duration 10 s
+rule "order": load before bring
+agent "r1" controllable speed 0.5 location dockA
+agent "r2" controllable speed 0.5 location dockB can_do load, bring
+agent "nurse" speed 1 location roomA can_do call
+objective: patrol roomA, roomB every 10 min by r1
+objective: if call then bring within 10 min
+objective: every place holds 1 robot
+objective: every way holds 1 robot
+"""
+
+
+def test_a_robot_on_call_makes_way_for_one_on_patrol_but_not_to_where_that_one_goes() -> None:
+    """It went aside into the room that the other one was on its way to, and neither could go on."""
+    found = won(ON_CALL)
+    assert verify(found.network, found.objective, found.strategy, found.reaction).ok

@@ -371,6 +371,7 @@ py::object simplify(const Tables& tables, std::int64_t factor, int late, const s
 }  // namespace
 
 PYBIND11_MODULE(_proof, module) {
+    keep_what_is_freed();
     module.doc() = "The native checker of strategies.";
     py::class_<Tables>(module, "Tables", "A network and a strategy, as tables.py makes them.")
         .def(py::init([](const py::dict& network, const py::list& blocks, const py::list& constraints) {

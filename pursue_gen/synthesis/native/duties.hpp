@@ -186,6 +186,9 @@ class Duties {
             if (!met.insert(next).second) continue;
             if (about_[next] == robot) locations.insert(values_[next]);
             if (now_->achiever[next] < 0) continue;
+            // Also where it comes with the last step: what is done by coming somewhere has no need of being there.
+            for (const int effect : operators_[now_->achiever[next]].effects)
+                if (about_[effect] == robot) locations.insert(values_[effect]);
             for (const int need : operators_[now_->achiever[next]].needs) open.push_back(now_->support[need]);
         }
         return locations;

@@ -272,6 +272,7 @@ std::vector<std::tuple<int, int, Matrix::raw_t>> minimal_bounds(int dim, const p
 }  // namespace
 
 PYBIND11_MODULE(_core, module) {
+    keep_what_is_freed();
     module.doc() = "Native engine of the timed game solver.";
     py::register_exception<Limit>(module, "LimitReached");
     module.def("solve", &solve, py::arg("game"), py::arg("seconds") = 0.0, py::arg("states") = 0,
