@@ -48,7 +48,7 @@ def topics(scenario: Scenario, subs: Sequence[SubStrategy]) -> Tuple[Topic, ...]
         Topic(EVENTS, _STRING, nodes, (_OBSERVER, f"/{UI}")),
         Topic(STATE, _STATE, (_OBSERVER,), (*controllers, _SIMULATOR, *doors, f"/{UI}")),
         Topic(TEXT, _STRING, (_OBSERVER,), ()),
-        Topic(PLAN, _STRING, (_OBSERVER,), (*controllers, f"/{UI}")),
+        Topic(PLAN, _STRING, (_OBSERVER,), (*controllers, _SIMULATOR, *doors, f"/{UI}")),
         Topic(ORDERS, _STRING, (f"/{UI}",), (_OBSERVER,)),
         Topic(ANSWERS, "pursue_msgs/OrderAnswer", (_OBSERVER,), (f"/{UI}",)),
         Topic(SEEN, _STATE, (*controllers, _SIMULATOR, *doors, f"/{UI}"), (_OBSERVER,)),

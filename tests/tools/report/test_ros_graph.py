@@ -23,7 +23,7 @@ NAMES = {
 }  # fmt: skip
 SHARED = {
     "subscribe_states(": "Subscriber(STATE, ", "subscribe(": "Subscriber(", "Witnesses(": "Subscriber(SEEN, ",
-    "Witness(": "Publisher(SEEN, ", "Membership(": "Publisher(SEEN, ",
+    "Witness(": "Publisher(SEEN, ", "Membership(": "Publisher(SEEN, Subscriber(PLAN, ",
 }  # fmt: skip
 """What nodes call in other modules, and what that does there."""
 
