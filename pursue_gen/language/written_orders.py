@@ -22,11 +22,11 @@ CAN_BE_ORDERED = (
     "expected a condition, as in bot1 at room4 or any robot at room3, or an event that is to happen, as in do clean"
 )
 
+_DO = re.compile(r"do\s+(?P<event>\w+)(\s+at\s+(?P<place>\w+))?(\s+by\s+(?P<who>any\s+robot|\w+))?\s*", re.ASCII)
+
+
 class NoOrder(Exception):
     """What a person has written cannot be ordered; its text, a sentence, says why, and what to write."""
-
-
-_DO = re.compile(r"do\s+(?P<event>\w+)(\s+at\s+(?P<place>\w+))?(\s+by\s+(?P<who>any\s+robot|\w+))?\s*", re.ASCII)
 
 
 def event_names(scenario: Scenario, count: int) -> Tuple[str, ...]:
