@@ -12,10 +12,10 @@ from typing import Dict, Iterable, List, Optional, Tuple, TypeVar
 from lark import Token
 
 from pursue_gen.diagnostics import Span
+from pursue_gen.language.chunks import COMMENTS
 from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.lines import Lines
 from pursue_gen.language.syntax import (
-    COMMENTS,
     Statement,
     Syntax,
     statements_of,

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pursue_gen.language.chunks import COMMENTS
 from pursue_gen.language.document import Document, Edit, behind, edited, statement_text, written
 from pursue_gen.language.parser import parse, read
-from pursue_gen.language.syntax import COMMENTS
 from pursue_gen.language.tokens import end_of, start_of
 
 from .texts import STATEMENTS

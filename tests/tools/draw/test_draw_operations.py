@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pursue_gen.diagnostics import PursueError
+from pursue_gen.language.chunks import COMMENTS
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.parser import parse
-from pursue_gen.language.syntax import COMMENTS
 from pursue_gen.tools.draw.operations import change
 from pursue_gen.tools.draw.view import view
 from tests.conftest import thesis_scenario

@@ -9,11 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pursue_gen.language.chunks import COMMENTS
 from pursue_gen.language.document import Edit, edited
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.kinds import KEYWORDS, MEANINGS, STATEMENTS
 from pursue_gen.language.parser import read
-from pursue_gen.language.syntax import COMMENTS, accepts
+from pursue_gen.language.syntax import accepts
 from pursue_gen.tools.lsp.completion import complete, fill_in
 
 from .scenarios import SCENARIOS, SMALL, marked

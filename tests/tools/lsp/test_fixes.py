@@ -8,9 +8,9 @@ from typing import List
 import pytest
 
 from pursue_gen.diagnostics import Diagnostic
+from pursue_gen.language.chunks import COMMENTS
 from pursue_gen.language.document import edited
 from pursue_gen.language.draft import Draft
-from pursue_gen.language.syntax import COMMENTS
 from pursue_gen.tools.lsp.fixes import _PROPOSERS, Fix, fixes
 
 from .scenarios import ROOT, SMALL
