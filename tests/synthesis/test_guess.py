@@ -245,6 +245,38 @@ def test_nobody_shuts_another_one_in_a_dead_end() -> None:
     assert verify(network, objective, strategy, DEFAULT.reaction, closed=True).ok
 
 
+HUB = """
+poi "west"
+poi "hub"
+poi "east"
+poi "room"
+connect west and hub distance 8
+connect hub and east distance 8
+connect hub and room distance 5
+event "call"
+event "bring" location west duration 10
+agent "cart" controllable mobile 1 location west
+agent "porter" controllable mobile 1 location east can_do bring
+agent "nurse" location room can_do call
+objective: patrol room, west every 300 by cart
+objective: if call then bring within 300
+objective: every place holds 1 robot
+objective: every way holds 1 robot
+"""
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_robots_whose_ways_cross_leave_home_one_at_a_time(late: bool) -> None:
+    """Nobody can make way at the hub: the cart's home is the room, which the porter never needs."""
+    network, objective = game_of(HUB)
+    names = patrols(network) if late else frozenset()
+    strategy, _ = guess(network, objective, DEFAULT.reaction, late=names)
+    assert strategy is not None
+    assert verify(network, objective, strategy, DEFAULT.reaction).ok
+    tight = HUB.replace("bring within 300", "bring within 60")  # a trip of the cart and one's own take longer
+    assert guess(*game_of(tight), DEFAULT.reaction)[0] is None
+
+
 POST = """
 poi "dock"
 poi "post"

@@ -3,36 +3,29 @@
 
 #include <numeric>
 
-#include "steps.hpp"
+#include "decider.hpp"
 
 namespace pursue {
 
-// A command, and the lower bound on a clock from which on it is given (i == j: at once).
-struct Order {
-    int joint;
-    Bound since{0, 0, 0};
-};
-
-class Dispatch : private Steps {
+class Dispatch : public Decider {
   public:
-    // `joints` and `duties`: of the game; what is decided are numbers of joints.
-    Dispatch(const Game& game, Joints& joints, Duties& duties, const Guess& guess)
-        : Steps(game, joints, duties, guess), patrols_(game.automata.size()) {
-        for (const int a : guess.patrols) patrols_[a] = true;
+    Dispatch(const Game& game, Joints& joints, Duties& duties, const Guess& guess) : Decider(game, joints, duties, guess) {
         if (guess.alternates == Alternates::visits) alternating_ = duties.visits();
         if (guess.alternates == Alternates::long_limits) alternating_ = duties.with_long_limits();
     }
 
-    std::size_t robots() const { return duties_.robots().size(); }
-    bool is_patrol(int a) const { return patrols_[a]; }
-    bool is_charging(int a, int location) const { return duties_.chargers().is_charging(a, location); }
-    bool has_guards() const { return tasks_.has_guards(); }
-    bool alternates() const { return !alternating_.empty(); }
+    bool alternates() const override { return !alternating_.empty(); }
+
+    std::vector<int> remembered(const Discrete& d) override {
+        std::vector<int> memory(robots(), -1);
+        remember(d, memory, std::vector<int>(memory));
+        return memory;
+    }
 
     // Which duty each robot is at, -1: none, after a move from d; before, it was at those of `memory`. More than the numbers
     // of automata once: it is a patrol that is put off, and the robot goes to a call first; several times: to that patrol next,
     // or, for one that alternates, that was the last of those that it does in turn with others.
-    void remember(const Discrete& d, const Joint& joint, std::vector<int>& memory) {
+    void remember(const Discrete& d, const Joint& joint, std::vector<int>& memory) override {
         const std::vector<int> last = memory;
         for (std::size_t r = 0; r < memory.size(); ++r) {
             int& duty = memory[r];
@@ -43,32 +36,7 @@ class Dispatch : private Steps {
         remember(joint.target(d), memory, last);
     }
 
-    // The same in a state that is entered with this memory; before it was `last`.
-    void remember(const Discrete& d, std::vector<int>& memory, const std::vector<int>& last) {
-        for (std::size_t r = 0; r < memory.size(); ++r) {
-            int& duty = memory[r];
-            const bool again = guess_.next == Next::soonest_due && !charges(d, duty);
-            if (duty >= 0 && (again || !duties_.is_open(d, duty % count_))) duty = -1;
-            if (guess_.charging == Charging::until_called && charges(d, duty) && is_asked(d, r, memory)) duty = -1;
-            if (tasks_.guarded(r, d) >= 0) duty = -1;
-            if (is_waiting(duty) && is_called(d, r, memory)) duty = guess_.visits_first ? duty - count_ : -1;
-        }
-        for (;;) {
-            std::tuple<std::int64_t, std::size_t, int> best{Duties::NEVER, 0, -1};
-            for (std::size_t r = 0; r < memory.size(); ++r)
-                if (memory[r] < 0 && tasks_.guarded(r, d) < 0) best = std::min(best, next_duty(d, r, memory, last[r]));
-            const auto [place, robot, duty] = best;
-            if (duty < 0) return;
-            memory[robot] = duty;
-            if (is_put_off(d, robot, duty, memory, last[robot])) memory[robot] += count_;
-            else if (is_waiting(last[robot]) && !is_patrol(duty)) memory[robot] += count_ * (2 + last[robot] % count_);
-            else if (const int before = last_of_these(last[robot]); before >= 0 && !alternating_[duty])
-                memory[robot] += count_ * (2 + before);
-        }
-    }
-
-    // The commands in d: of each robot one at most, since when one of some bounds holds.
-    std::vector<Order> decided(const Discrete& d, const std::vector<int>& enabled, const std::vector<int>& memory) {
+    std::vector<Order> decided(const Discrete& d, const std::vector<int>& enabled, const std::vector<int>& memory) override {
         const std::vector<int>& robots = duties_.robots();
         std::vector<int> wanted;
         std::vector<std::set<int>> ways;
@@ -121,6 +89,30 @@ class Dispatch : private Steps {
     }
 
   private:
+    // The same in a state that is entered with this memory; before it was `last`.
+    void remember(const Discrete& d, std::vector<int>& memory, const std::vector<int>& last) {
+        for (std::size_t r = 0; r < memory.size(); ++r) {
+            int& duty = memory[r];
+            const bool again = guess_.next == Next::soonest_due && !charges(d, duty);
+            if (duty >= 0 && (again || !duties_.is_open(d, duty % count_))) duty = -1;
+            if (guess_.charging == Charging::until_called && charges(d, duty) && is_asked(d, r, memory)) duty = -1;
+            if (tasks_.guarded(r, d) >= 0) duty = -1;
+            if (is_waiting(duty) && is_called(d, r, memory)) duty = guess_.visits_first ? duty - count_ : -1;
+        }
+        for (;;) {
+            std::tuple<std::int64_t, std::size_t, int> best{Duties::NEVER, 0, -1};
+            for (std::size_t r = 0; r < memory.size(); ++r)
+                if (memory[r] < 0 && tasks_.guarded(r, d) < 0) best = std::min(best, next_duty(d, r, memory, last[r]));
+            const auto [place, robot, duty] = best;
+            if (duty < 0) return;
+            memory[robot] = duty;
+            if (is_put_off(d, robot, duty, memory, last[robot])) memory[robot] += count_;
+            else if (is_waiting(last[robot]) && !is_patrol(duty)) memory[robot] += count_ * (2 + last[robot] % count_);
+            else if (const int before = last_of_these(last[robot]); before >= 0 && !alternating_[duty])
+                memory[robot] += count_ * (2 + before);
+        }
+    }
+
     // The next duty for a robot after its last one that no robot is at, behind a number: less is better.
     std::tuple<std::int64_t, std::size_t, int> next_duty(const Discrete& d, std::size_t robot, const std::vector<int>& memory,
                                                          int last) {
@@ -219,38 +211,6 @@ class Dispatch : private Steps {
         return is_patrol(duty) && !begins && !is_called(d, r, memory);
     }
 
-    // From when on a robot goes round its patrols, `first` to begin with: when one of them has no more time than the way
-    // there, those before it included, and the reserve.
-    std::vector<Bound> due(const Discrete& d, std::size_t r, int first) {
-        const int robot = duties_.robots()[r];
-        std::vector<int> round, enabled;
-        for (const int a : duties_.watching())
-            if (tasks_.is_for(r, a) && is_patrol(a) && duties_.is_open(d, a)) round.push_back(a);
-        std::rotate(round.begin(), std::find(round.begin(), round.end(), first), round.end());
-        std::vector<Bound> out;
-        Discrete now = d;
-        std::int64_t time = 0;
-        while (!round.empty()) {
-            const int a = round.front();
-            for (int step = 0; step < STEPS_AHEAD && duties_.is_open(now, a); ++step) {
-                std::set<int> way;
-                joints_.enabled(now, enabled);
-                const int next = wants(now, enabled, r, a, way);
-                if (next < 0) return out;
-                duties_.look(now, robot);  // a robot with a battery has looked ahead
-                now = ended(joints_[next].target(now), robot);
-                time += duties_.cost(duties_.at_location(robot, now[robot])) % Duties::DETOUR + 1;
-                round.erase(std::remove_if(round.begin() + 1, round.end(), [&](int b) { return !duties_.is_open(now, b); }), round.end());
-            }
-            if (duties_.is_open(now, a)) return out;
-            const Bound& deadline = game_.automata[a].invariants[d[a]].front();
-            const std::int64_t period = deadline.raw >> 1, latest = period - period * guess_.reserve / 100 - time;
-            out.push_back({0, deadline.i, static_cast<wide_t>(2 * -std::max<std::int64_t>(latest, 0) + 1)});
-            round.erase(round.begin());
-        }
-        return out;
-    }
-
     // Whether a command takes robot q to where one that has more to do may want to be before q has left again. `way`: q's.
     bool is_in_the_way(const Discrete& d, std::size_t q, int command, const std::vector<int>& memory, const std::set<int>& way) {
         const int robot = duties_.robots()[q];
@@ -328,7 +288,7 @@ class Dispatch : private Steps {
         return command(d, enabled, robot, duties_.first(nearest));
     }
 
-    std::vector<bool> patrols_, alternating_;  // by automaton; the second is empty where nothing alternates
+    std::vector<bool> alternating_;  // by automaton, empty where nothing alternates
 };
 
 }  // namespace pursue

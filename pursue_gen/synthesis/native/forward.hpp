@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "dispatch.hpp"
+#include "excursions.hpp"
 #include "limits.hpp"
 #include "zone_graph.hpp"
 
@@ -19,17 +20,16 @@ class Forward {
     using R = typename Z::raw_t;
 
     Forward(const Game& game, LimitMonitor& monitor, Joints& joints, Duties& duties, const Guess& guess)
-        : game_(game), monitor_(monitor), guess_(guess), joints_(joints), dispatch_(game, joints_, duties, guess),
-          width_(game.automata.size() + game.variables.size()), states_(width_ + dispatch_.robots()) {
+        : game_(game), monitor_(monitor), guess_(guess), joints_(joints), decider_(decider(game, joints, duties, guess)),
+          width_(game.automata.size() + game.variables.size()), start_(decider_->remembered(initial(game))),
+          states_(width_ + start_.size()) {
         bounds_of_clocks();
     }
 
     // Whether the policy keeps from all that is to be avoided. False says nothing of the game.
     bool wins() {
         const Discrete d = initial(game_);
-        if (dispatch_.robots() == 0 || at_bad(game_, d)) return false;
-        std::vector<int> memory(dispatch_.robots(), -1);
-        dispatch_.remember(d, memory, std::vector<int>(memory));
+        if (robots() == 0 || at_bad(game_, d)) return false;
         Z z = universe<Z>();
         if (game_.start.empty()) z = origin<Z>(game_.clocks);
         for (const Bound& b : game_.start)
@@ -39,7 +39,7 @@ class Forward {
             for (int other = 0; other < Z::size; ++other)
                 if (other != x) z.at(x, other) = z.at(other, x) = INF<R>;
         const Z start = z;
-        const int first = spot(d, memory);
+        const int first = spot(d, start_);
         if (!invariant(first, z) || !includes(z, start)) return false;
         enter(first, -1, z);
         while (!queue_.empty()) {
@@ -83,9 +83,10 @@ class Forward {
         return out;
     }
 
-    std::size_t robots() const { return dispatch_.robots(); }
-    bool alternates() const { return dispatch_.alternates(); }
-    bool has_guards() const { return dispatch_.has_guards(); }
+    std::size_t robots() const { return decider_->robots(); }
+    bool alternates() const { return decider_->alternates(); }
+    bool applies() const { return decider_->applies(); }
+    const Tasks& tasks() const { return decider_->tasks(); }
     const Joint& joint(int k) const { return joints_[k]; }
     std::size_t followed() const { return followed_; }
 
@@ -106,6 +107,11 @@ class Forward {
         Federation<Z> flights;       // of the commands, until they take effect
     };
 
+    static std::unique_ptr<Decider> decider(const Game& game, Joints& joints, Duties& duties, const Guess& guess) {
+        if (guess.trips != Trips::none) return std::make_unique<Excursions>(game, joints, duties, guess);
+        return std::make_unique<Dispatch>(game, joints, duties, guess);
+    }
+
     Discrete place(int k) const {
         Discrete d = states_[k];
         d.resize(width_);
@@ -123,7 +129,7 @@ class Forward {
         joints_.enabled(d, enabled);
         for (const int j : enabled)
             if (!joints_[j].controllable && !joints_[j].changes_nothing(d, game_)) s.others.push_back(j);
-        s.commands = dispatch_.decided(d, enabled, memory);
+        s.commands = decider_->decided(d, enabled, memory);
         for (std::size_t a = 0; a < game_.automata.size(); ++a)
             for (const Bound& b : game_.automata[a].invariants[d[a]]) {
                 s.limits.push_back(b);
@@ -269,7 +275,7 @@ class Forward {
         if (at_bad(game_, target)) return -1;
         const Discrete key = states_[k];
         std::vector<int> memory(key.begin() + static_cast<std::ptrdiff_t>(width_), key.end());
-        dispatch_.remember(d, joint, memory);
+        decider_->remember(d, joint, memory);
         return spot(target, memory);
     }
 
@@ -335,11 +341,11 @@ class Forward {
                 table[a][location][x] = std::max(table[a][location][x], bound);
             };
             const bool duty = watches(game_, static_cast<int>(a));
-            const bool waits = duty && dispatch_.is_patrol(static_cast<int>(a));
+            const bool waits = duty && decider_->is_patrol(static_cast<int>(a));
             for (int l = 0; l < static_cast<int>(places); ++l)
                 for (const Bound& b : automaton.invariants[l]) {
                     if (duty) note(lower_, l, b.i, b.raw >> 1);
-                    if (!duty || waits || dispatch_.is_charging(static_cast<int>(a), l)) note(upper_, l, b.i, b.raw >> 1);
+                    if (!duty || waits || decider_->is_charging(static_cast<int>(a), l)) note(upper_, l, b.i, b.raw >> 1);
                 }
             for (const Edge& edge : automaton.edges)
                 for (const Bound& b : edge.guard) {
@@ -368,8 +374,9 @@ class Forward {
     LimitMonitor& monitor_;
     const Guess guess_;
     Joints& joints_;
-    Dispatch dispatch_;
+    const std::unique_ptr<Decider> decider_;
     const std::size_t width_;
+    const std::vector<int> start_;  // what is remembered at first
     States states_;
     std::deque<Spot> spots_;
     std::multimap<std::pair<int, wide_t>, std::pair<int, Z>> queue_;  // by `rank`

@@ -5,10 +5,17 @@
 
 namespace pursue {
 
+inline Guess excursions(Trips trips) {
+    Guess out;
+    out.trips = trips;
+    return out;
+}
+
 // One after the other.
 inline const std::vector<Guess> GUESSES = {
     {Next::in_turn, true, Idle::stays, 1, false}, {Next::in_turn, true, Idle::stays, 1, true, true}, {Next::in_turn, true},
-    {Next::in_turn, true, Idle::goes_home},       {Next::in_turn, true, Idle::goes_to_post},
+    {Next::in_turn, true, Idle::goes_home},       excursions(Trips::several),
+    excursions(Trips::one),                       {Next::in_turn, true, Idle::goes_to_post},
     {Next::nearest, true, Idle::stays, 4, true, false, {}, 0, false, true},
     {Next::in_turn, false},                       {Next::in_turn, false, Idle::goes_home},
     {Next::soonest_due, true},                    {Next::soonest_due, true, Idle::goes_home},
@@ -54,8 +61,11 @@ std::unique_ptr<Forward<Z>> winning_guess(const Game& game, LimitMonitor& monito
                 each.charging = charging;
                 if (charging != Charging::in_turn) each.zones = ZONES_OF_CALLS;
                 auto forward = std::make_unique<Forward<Z>>(game, monitor, joints, duties, each);
-                if (!each.shared_out && forward->robots() < 2) continue;  // the same as one that was tried
-                if (each.relieved && !forward->has_guards()) continue;    // likewise
+                const bool alone = forward->robots() < 2 || (each.next == Next::in_turn && !forward->tasks().has_choice());
+                if (!each.shared_out && alone) continue;  // the same as one that was tried
+                if (each.needs_several() && !forward->tasks().has_several()) continue;  // likewise
+                if (!forward->applies()) continue;
+                if (each.relieved && !forward->tasks().has_guards()) continue;  // likewise
                 if (each.alternates == Alternates::long_limits && !forward->alternates()) continue;
                 if (each.visits_first && each.patrols.size() == duties.watching().size()) continue;  // nobody calls
                 if (forward->wins()) return forward;

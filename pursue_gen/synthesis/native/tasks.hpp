@@ -19,6 +19,9 @@ enum class Alternates { nothing, visits, long_limits };
 // is called; or when it has nothing else to do, until it has.
 enum class Charging { in_turn, until_called, when_idle };
 
+// Whether robots whose ways cross leave home one at a time: for one duty each, or for several in turn.
+enum class Trips { none, one, several };
+
 struct Guess {
     Next next = Next::in_turn;
     bool shared_out = true;  // each duty is one robot's: who has least to do
@@ -33,7 +36,14 @@ struct Guess {
     Alternates alternates = Alternates::nothing;  // after each of these something else, if it is asked for
     int charge = 0;          // a robot that charges goes on until its battery has so many hundredths
     Charging charging = Charging::in_turn;
+    Trips trips = Trips::none;
     bool visits_first = false;  // who is called while it waits for a patrol sees to that first, though it is not due
+
+    // Whether another one is the same where no robot has several duties.
+    bool needs_several() const {
+        const bool of_several = next != Next::in_turn || alternates != Alternates::nothing || trips == Trips::one;
+        return of_several && !by_time && !relieved;
+    }
 };
 
 inline constexpr std::size_t BOUNDS_OF_A_STATE = 1024;  // a look at one takes about as long as at so many bounds
@@ -65,6 +75,18 @@ class Tasks {
 
     // The fact that a robot is where it goes when it owes nothing; -1: it stays.
     int home(std::size_t r) const { return homes_[r]; }
+
+    // Whether several robots may see to one duty.
+    bool has_choice() const {
+        return std::any_of(duties_.watching().begin(), duties_.watching().end(), [&](int a) {
+            return std::count_if(for_.begin(), for_.end(), [&](const auto& own) { return own[a]; }) > 1;
+        });
+    }
+
+    // Whether a robot may have several duties.
+    bool has_several() const {
+        return std::any_of(for_.begin(), for_.end(), [](const auto& own) { return std::count(own.begin(), own.end(), true) > 1; });
+    }
 
     // Whether some robot is relieved by another.
     bool has_guards() const { return !guards_.empty(); }

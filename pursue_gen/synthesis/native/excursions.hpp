@@ -1,0 +1,257 @@
+// A policy for robots that are in each other's way: each has a home where it is in nobody's way, and of those whose ways
+// cross, one at a time leaves home for a duty, or for several, and comes back before another one leaves.
+#pragma once
+
+#include "decider.hpp"
+
+namespace pursue {
+
+class Excursions : public Decider {
+  public:
+    Excursions(const Game& game, Joints& joints, Duties& duties, const Guess& guess)
+        : Decider(game, joints, duties, guess), start_(initial(game)) {
+        if (robots() > 1 && !duties.has_batteries()) find_homes();
+    }
+
+    // Whether there are such homes, and some ways cross.
+    bool applies() const override {
+        const auto any = [](const std::vector<bool>& some) { return std::find(some.begin(), some.end(), true) != some.end(); };
+        return std::any_of(cross_.begin(), cross_.end(), any);
+    }
+
+    // Per robot its duty, -1: none, below: on its way home from the one of that number; then who was the last to leave home.
+    std::vector<int> remembered(const Discrete& d) override {
+        std::vector<int> memory(robots(), -1);
+        memory.push_back(static_cast<int>(robots()) - 1);
+        if (applies()) assign(d, memory);
+        return memory;
+    }
+
+    void remember(const Discrete& d, const Joint& joint, std::vector<int>& memory) override {
+        const Discrete target = joint.target(d);
+        for (std::size_t r = 0; r < robots(); ++r) {
+            const int duty = memory[r];
+            if (duty >= 0 && (duties_.touches(d, joint, duty) || !duties_.is_open(target, duty))) memory[r] = after(target, r, memory);
+            if (joint.controllable && joint.owner == robot(r) && is_home(d, r) && !is_home(target, r)) memory.back() = static_cast<int>(r);
+        }
+        assign(target, memory);
+    }
+
+    std::vector<Order> decided(const Discrete& d, const std::vector<int>& enabled, const std::vector<int>& memory) override {
+        std::vector<int> wanted;
+        std::vector<bool> leaves;  // or wants to
+        for (std::size_t r = 0; r < robots(); ++r) {
+            std::set<int> way;
+            wanted.push_back(memory[r] < 0 ? begins(d, enabled, robot(r), home(r), way) : wants(d, enabled, r, memory[r], way));
+            way.erase(homes_[r]);
+            leaves.push_back(is_home(d, r) && wanted[r] >= 0 && !way.empty());
+        }
+        std::vector<Order> orders;
+        for (std::size_t r = 0; r < robots(); ++r) {
+            if (wanted[r] < 0 || leads_to_loss(joints_[wanted[r]].target(d))) continue;
+            if (leaves[r] ? !may_leave(d, r, leaves, memory) : !is_home(d, r) && memory[r] < 0 && !may_return(d, r, memory)) continue;
+            if (!leaves[r] || !is_patrol(memory[r]) || is_awaited(r, leaves, memory)) orders.push_back({wanted[r]});
+            else for (const Bound& since : due(d, r, memory[r])) orders.push_back({wanted[r], since});
+        }
+        return orders;
+    }
+
+  private:
+    int robot(std::size_t r) const { return duties_.robots()[r]; }
+    int home(std::size_t r) const { return duties_.at_location(robot(r), homes_[r]); }
+    bool is_home(const Discrete& d, std::size_t r) const { return d[robot(r)] == homes_[r]; }
+
+    // What a robot is at after a duty: the next one of the same trip, if there is one, or its way home.
+    int after(const Discrete& d, std::size_t r, const std::vector<int>& memory) const {
+        const int duty = memory[r];
+        int next = -1;
+        for (const int a : duties_.watching())
+            if (guess_.trips == Trips::several && is_next(d, r, a, memory) && duties_.turn(a) > duties_.turn(duty) &&
+                (next < 0 || duties_.turn(a) < duties_.turn(next)))
+                next = a;
+        return next >= 0 ? next : -2 - duty;
+    }
+
+    // Whether a duty is open, for robot r, and no robot is at it.
+    bool is_next(const Discrete& d, std::size_t r, int a, const std::vector<int>& memory) const {
+        return tasks_.is_for(r, a) && duties_.is_open(d, a) && std::find(memory.begin(), memory.end() - 1, a) == memory.end() - 1;
+    }
+
+    // Gives each robot that is at home without a duty its next one: calls first where patrols wait, else one after the other.
+    void assign(const Discrete& d, std::vector<int>& memory) {
+        for (std::size_t r = 0; r < robots(); ++r) {
+            if (!is_home(d, r) || (memory[r] >= 0 && !is_patrol(memory[r]))) continue;
+            const int last = memory[r] < -1 ? duties_.turn(-2 - memory[r]) : -1, before = memory[r];
+            std::tuple<bool, int, int> best{true, 2 * count_, -1};
+            for (const int a : duties_.watching()) {
+                if (a != before && !is_next(d, r, a, memory)) continue;
+                const int turn = duties_.turn(a);
+                best = std::min(best, {is_patrol(a), turn > last ? turn : turn + count_, a});
+            }
+            memory[r] = before >= 0 && is_patrol(std::get<2>(best)) ? before : std::get<2>(best);
+        }
+    }
+
+    // Whether robot r may leave home: of those whose ways cross its own nobody is away, and nobody who wants to leave has
+    // its turn first, after who was the last.
+    bool may_leave(const Discrete& d, std::size_t r, const std::vector<bool>& leaves, const std::vector<int>& memory) const {
+        const auto turn = [&](std::size_t s) { return (s + robots() - static_cast<std::size_t>(memory.back()) - 1) % robots(); };
+        for (std::size_t s = 0; s < robots(); ++s)
+            if (cross_[r][s] && (!is_home(d, s) || (leaves[s] && turn(s) < turn(r) && !waits(r, s, memory)))) return false;
+        return true;
+    }
+
+    // Whether two patrols wait, each until it is due.
+    bool waits(std::size_t r, std::size_t s, const std::vector<int>& memory) const {
+        return is_patrol(memory[r]) && is_patrol(memory[s]);
+    }
+
+    // Whether somebody who is called has to wait until robot r is back.
+    bool is_awaited(std::size_t r, const std::vector<bool>& leaves, const std::vector<int>& memory) const {
+        for (std::size_t s = 0; s < robots(); ++s)
+            if (cross_[r][s] && leaves[s] && !is_patrol(memory[s])) return true;
+        return false;
+    }
+
+    // Whether robot r may go home: who else is away, as several may be at first, is not on its way, and does not move.
+    bool may_return(const Discrete& d, std::size_t r, const std::vector<int>& memory) {
+        std::vector<int> enabled;
+        for (std::size_t s = 0; s < robots(); ++s) {
+            if (!cross_[r][s] || is_home(d, s)) continue;
+            if (memory[s] >= 0 || memory[s] < -1) return true;  // it has been away alone
+            if (duties_.is_timed(robot(s), d[robot(s)]) || (s < r && is_free(d, s))) return false;
+        }
+        return is_free(d, r);
+    }
+
+    // Whether nobody is on the way of robot r to its home.
+    bool is_free(const Discrete& d, std::size_t r) {
+        duties_.look(d, robot(r));
+        if (duties_.cost(home(r)) == Duties::NEVER) return false;
+        for (const int location : duties_.way(home(r), robot(r)))
+            if (location != d[robot(r)] && leads_to_loss(duties_.placed(d, robot(r), location))) return false;
+        return true;
+    }
+
+    // A home, where a robot is on its trips from there, and how long these take, the way there at first included.
+    struct Round {
+        int home;
+        std::set<int> locations;
+        std::int64_t time = 0;
+    };
+
+    // The first homes, short trips first, at which no robot is in another's way.
+    void find_homes() {
+        std::vector<std::vector<Round>> all;
+        for (std::size_t r = 0; r < robots(); ++r) {
+            auto& own = all.emplace_back();
+            for (const int location : duties_.rests(robot(r)))
+                if (Round round{location, {location}}; takes(r, round)) own.push_back(std::move(round));
+            std::stable_sort(own.begin(), own.end(), [](const Round& x, const Round& y) { return x.time < y.time; });
+        }
+        std::vector<const Round*> chosen;
+        if (!choose(all, chosen)) return;
+        for (const Round* each : chosen) homes_.push_back(each->home);
+        for (std::size_t r = 0; r < robots(); ++r) {
+            auto& crossed = cross_.emplace_back(robots());
+            for (std::size_t s = 0; s < robots(); ++s) crossed[s] = s != r && cross(r, chosen[r]->locations, s, chosen[s]->locations);
+        }
+    }
+
+    // Chooses a home for each further robot, depth first.
+    bool choose(const std::vector<std::vector<Round>>& all, std::vector<const Round*>& chosen) {
+        const std::size_t r = chosen.size();
+        if (r == all.size()) return true;
+        if (++choices_ > MOST_CHOICES) return false;
+        for (const Round& round : all[r]) {
+            bool fits = true;
+            for (std::size_t s = 0; s < r && fits; ++s)
+                fits = !cross(r, {round.home}, s, chosen[s]->locations) && !cross(s, {chosen[s]->home}, r, round.locations);
+            if (!fits) continue;
+            chosen.push_back(&round);
+            if (choose(all, chosen)) return true;
+            chosen.pop_back();
+        }
+        return false;
+    }
+
+    // Whether two robots must not be at two of these locations.
+    bool cross(std::size_t r, const std::set<int>& mine, std::size_t s, const std::set<int>& others) {
+        for (const int one : mine)
+            for (const int other : others) {
+                const auto [known, fresh] = crossing_.try_emplace({r, one, s, other}, false);
+                if (fresh) known->second = leads_to_loss(apart(r, one, s, other));
+                if (known->second) return true;
+            }
+        return false;
+    }
+
+    // The start, with two robots at locations and the others nowhere.
+    Discrete apart(std::size_t r, int one, std::size_t s, int other) const {
+        Discrete d = start_;
+        for (std::size_t t = 0; t < robots(); ++t) {
+            if (t == r || t == s) continue;
+            d[robot(t)] = duties_.rests(robot(t)).front();
+            for (const Edge& edge : game_.automata[robot(t)].edges)
+                for (const auto& set : edge.assign) d[game_.automata.size() + set.variable] = -1;
+        }
+        return duties_.placed(duties_.placed(d, robot(r), one), robot(s), other);
+    }
+
+    // Looks at all trips of a robot from its home and back. False: there is one that it cannot make.
+    bool takes(std::size_t r, Round& round) {
+        duties_.look(start_, robot(r));
+        const std::int64_t first = duties_.cost(duties_.at_location(robot(r), round.home));
+        if (first == Duties::NEVER) return false;
+        round.time = first % Duties::DETOUR;
+        std::set<int> met{round.home};
+        std::vector<int> open{round.home};
+        while (!open.empty()) {
+            const int from = open.back();
+            open.pop_back();
+            for (const int a : duties_.watching()) {
+                if (!tasks_.is_for(r, a)) continue;
+                const int end = trip(r, a, from, round);
+                if (end < 0) return false;
+                if (guess_.trips == Trips::several && met.insert(end).second) open.push_back(end);
+            }
+        }
+        return true;
+    }
+
+    // A trip for the duty of automaton a, and home; where the duty ends, -1: it cannot be made.
+    int trip(std::size_t r, int a, int from, Round& round) {
+        Discrete d = duties_.placed(start_, robot(r), from);
+        for (int l = static_cast<int>(game_.automata[a].invariants.size()) - 1; l >= 0; --l)
+            if (duties_.is_timed(a, l)) d[a] = l;
+        std::vector<int> enabled;
+        for (int step = 0; step < STEPS_AHEAD && duties_.is_open(d, a); ++step) {
+            std::set<int> way;
+            joints_.enabled(d, enabled);
+            const int next = begins(d, enabled, robot(r), duties_.done(a), way);
+            if (step == 0 && duties_.cost(duties_.done(a)) == Duties::NEVER) return -1;
+            round.locations.insert(way.begin(), way.end());
+            if (step == 0) round.time += duties_.cost(duties_.done(a)) % Duties::DETOUR;
+            if (next < 0) break;  // what somebody else ends comes first
+            d = ended(joints_[next].target(d), robot(r));
+        }
+        const int end = d[robot(r)];
+        duties_.look(d, robot(r));
+        const int back = duties_.at_location(robot(r), round.home);
+        if (duties_.cost(back) == Duties::NEVER) return -1;
+        const std::set<int> way = duties_.way(back, robot(r));
+        round.locations.insert(way.begin(), way.end());
+        round.time += duties_.cost(back) % Duties::DETOUR;
+        return end;
+    }
+
+    static constexpr int MOST_CHOICES = 10'000;  // of homes
+
+    const Discrete start_;
+    int choices_ = 0;
+    std::vector<int> homes_;                 // per robot, none: there are none
+    std::vector<std::vector<bool>> cross_;   // whether the trips of two robots do
+    std::map<std::tuple<std::size_t, int, std::size_t, int>, bool> crossing_;  // per robot and location, twice
+};
+
+}  // namespace pursue
