@@ -8,7 +8,7 @@ from typing import Any, Dict, Iterator, List, Sequence
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.numbers import Number, tenths_above
-from pursue_gen.language.scenario import Request, Safety, Scenario, StatedObjective
+from pursue_gen.language.scenario import Safety, Scenario, StatedObjective
 from pursue_gen.language.times import like, written_time
 from pursue_gen.proof.worst_case import answer_times
 from pursue_gen.solving.solution import Solution
@@ -47,21 +47,13 @@ def answers(scenario: Scenario, won: Solution, limits: Limits = NO_LIMITS, state
     took = answer_times(won.network, won.objective, won.strategy, won.reaction, states, limits)
     named = [(names.safety_objective(k), each) for k, each in enumerate(scenario.safety)]
     found = [Answer(each, took[name]) for name, each in named if name in took and each.limit is not None]
-    return list(_of_requests(found))
+    return list(_of_all(found, scenario))
 
 
-def _of_requests(found: Sequence[Answer]) -> Iterator[Answer]:
-    """The same with one answer for a statement of requests: the latest of those that may be open; none where not all
-    of them are known."""
+def _of_all(found: Sequence[Answer], scenario: Scenario) -> Iterator[Answer]:
+    """The same with one answer for those that are told together, the latest; none where not all of them are known."""
+    known = {id(each.promise): each.worst for each in found}
     for answer in found:
-        promise = answer.promise
-        if not isinstance(promise, Request):
-            yield answer
-        elif promise.number == 0:
-            times = [
-                each.worst
-                for each in found
-                if isinstance(each.promise, Request) and each.promise.span == promise.span
-            ]
-            if len(times) == promise.most:
-                yield Answer(promise, max(times))
+        whole = [id(each) for each in answer.promise.told_with(scenario.safety)]
+        if whole[0] == id(answer.promise) and known.keys() >= set(whole):
+            yield Answer(answer.promise, max(known[each] for each in whole))

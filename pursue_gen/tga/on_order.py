@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.language import network_names as names
+from pursue_gen.language.objectives.request import requests_in
 from pursue_gen.language.scenario import Event, MostOpen, Scenario
 from pursue_gen.tga.network import Automaton, Clause, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.requests import fewer_open
@@ -37,5 +38,5 @@ def _order(event: Event, scenario: Scenario, in_turn: Sequence[Tuple[str, Turns]
 
 def _free(event: Event, scenario: Scenario) -> Iterator[Clause]:
     """That an objective has room for one more of it."""
-    limits = (each for each in scenario.assumed if isinstance(each, MostOpen) and each.event.name == event.name)
-    yield from (fewer_open(each, scenario) for each in limits)
+    named = (each for _, each in requests_in(scenario.safety) if each.called_by == event.name)
+    yield from (fewer_open(MostOpen.of(each), scenario) for each in named)

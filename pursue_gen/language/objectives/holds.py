@@ -9,7 +9,7 @@ from typing import Any, Callable, ClassVar, Iterator, Sequence, Tuple, cast
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed
 from pursue_gen.language.conditions import AllOf, At, AtMostOf, Atom, Not, OnWay, Who, some_text
-from pursue_gen.language.objectives.base import Breaks, Safety
+from pursue_gen.language.objectives.base import Breaks, Counted, Easier, Safety, StatedObjective
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.template import Template
 from pursue_gen.language.word import Form, Word
@@ -26,6 +26,11 @@ class Holds(Safety):
     def where(self) -> str:
         """Where there is room, in English."""
         raise NotImplementedError
+
+    @property
+    def in_one(self) -> str:
+        """The same of one of the rooms alone, where they have no names."""
+        return self.where
 
     def there(self, who: Who) -> Sequence[Atom]:
         """That somebody is there."""
@@ -46,9 +51,13 @@ class Holds(Safety):
         rooms = self.rooms
         return Breaks(condition=Not(rooms[0] if len(rooms) == 1 else AllOf(rooms)))
 
-    def with_room(self, most: int) -> Holds:
-        """The same with room for another number."""
-        return replace(cast(Any, self), most=most)  # type: ignore[no-any-return]
+    def easier(self, counted: Counted) -> Iterator[Easier]:
+        most = max((len(counted(room)) for room in self.rooms), default=0)
+        yield Easier(
+            "room", self.where, f"more room {self.where}", self.most, range(self.most + 1, most + 1),
+            lambda each, k: replace(each, most=k),
+            lambda k: f"room for {replace(cast(Any, self), most=k).some} {self.where} instead of {self.some}",
+        )  # fmt: skip
 
     def sentence(self, shown: Callable[[str], str]) -> str:
         return f"There is room for {self.some} {self.where}."
@@ -168,8 +177,12 @@ class LiftHolds(Holds):
 class EveryHolds(Holds):
     """There is room for so many in each of several rooms, which are those of the building (`in_building`)."""
 
-    in_one: ClassVar[str]
+    each_room: ClassVar[str]
     """In one of the rooms, in English."""
+
+    @property
+    def in_one(self) -> str:
+        return self.each_room
 
     def atoms(self) -> Iterator[Sequence[Atom]]:
         """For each room that somebody is in it."""
@@ -181,7 +194,7 @@ class EveryHolds(Holds):
 
     @property
     def where(self) -> str:
-        return self.in_one.replace(" one ", " every ")
+        return self.each_room.replace(" one ", " every ")
 
     def broken(self, beside: Callable[[str], str]) -> str:
         return super().broken(beside).replace(self.where, self.in_one)
@@ -199,7 +212,7 @@ class EveryPlaceHolds(EveryHolds):
 
     template: ClassVar[Template] = Template("every place holds {most,who:some=1 robot}")
     forms: ClassVar[Tuple[Form, ...]] = (Form("what every place holds", "every place holds {=1} robot"),)
-    in_one: ClassVar[str] = "at one place"
+    each_room: ClassVar[str] = "at one place"
 
     def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref]]) -> EveryPlaceHolds:
         return replace(self, building=tuple(places))
@@ -229,10 +242,20 @@ class EveryWayHolds(EveryHolds):
 
     template: ClassVar[Template] = Template("every way holds {most,who:some=1 robot}")
     forms: ClassVar[Tuple[Form, ...]] = (Form("what every way holds", "every way holds {=1} robot"),)
-    in_one: ClassVar[str] = "on one way"
+    each_room: ClassVar[str] = "on one way"
 
     def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref]]) -> EveryWayHolds:
         return replace(self, building=tuple({frozenset((a.name, b.name)): (a, b) for a, b in ways}.values()))
 
     def atoms(self) -> Iterator[Sequence[Atom]]:
         return ([OnWay(who, a, b, True) for who in self.who] for a, b in self.building)
+
+
+def rooms_in(objectives: Sequence[StatedObjective]) -> Iterator[Holds]:
+    """Those of these objectives that say for how many there is room."""
+    return (each for each in objectives if isinstance(each, Holds))
+
+
+def lifts_in(objectives: Sequence[StatedObjective]) -> Iterator[Tuple[int, LiftHolds]]:
+    """Those of them that say what a lift holds, each behind its number among them."""
+    return ((k, each) for k, each in enumerate(objectives) if isinstance(each, LiftHolds))

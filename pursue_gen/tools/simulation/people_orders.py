@@ -6,8 +6,6 @@ from __future__ import annotations
 import random
 from typing import Callable, Dict
 
-from pursue_gen.language.refs import Ref
-from pursue_gen.language.scenario import Request, Respond
 from pursue_gen.tools.simulation.event_queue import EventQueue
 from pursue_gen.tools.simulation.stage import Stage
 
@@ -29,11 +27,9 @@ class PeopleOrders:
     def __init__(self, stage: Stage, events: EventQueue, seed: str, order: Callable[[str], None]) -> None:
         self._menu = tuple(event.name for event in stage.scenario.orders)
         self._deadlines: Dict[str, float] = {}
-        duties = (each for each in stage.scenario.safety if isinstance(each, (Respond, Request)))
-        timed = ((each.trigger.name, float(each.deadline)) for each in duties if isinstance(each.trigger, Ref))
-        for event, longest in timed:
-            if event in self._menu:
-                self._deadlines[event] = min(longest, self._deadlines.get(event, longest))
+        for each in (each for each in stage.scenario.safety if each.called_by in self._menu):
+            longest = float(each.known_limit)
+            self._deadlines[each.called_by] = min(longest, self._deadlines.get(each.called_by, longest))
         self._events, self._order, self._robots = events, order, stage.robots
         self._draw, self._mood = random.Random(f"{seed}/orders"), random.Random(f"{seed}/mood")
         self._service = random.Random(f"{seed}/service")
