@@ -81,7 +81,7 @@ def _room(scenario: Scenario, safety: Room, domains: Domains) -> Iterator[Diagno
     """An objective on how many are somewhere: where nobody ever is, or no more, and one that is too large."""
     rooms = [(room, domains.counted(room)) for room in safety.rooms]
     said = is_said(scenario, safety)
-    if said and safety.in_one == safety.where:  # the room has a name
+    if said and not safety.in_one:
         impossible = [each for room, counted in rooms for each in _nobody(scenario, domains, room, counted, safety)]
         if impossible:
             yield from impossible
@@ -91,7 +91,7 @@ def _room(scenario: Scenario, safety: Room, domains: Domains) -> Iterator[Diagno
     if largest <= most and not said:
         return
     if largest <= most:
-        message = f"this changes nothing: never are more than {largest} {safety.in_one}"
+        message = f"this changes nothing: never are more than {largest} {safety.in_one or safety.where}"
         yield warning("PML232", message, safety.span, "write a smaller number, or delete it")
     elif max(sizes) > MOST_ROOM or sum(sizes) > MOST_ROOMS:
         ways = f"{MOST_ROOM} ways" if max(sizes) > MOST_ROOM else f"{MOST_ROOMS:,} ways in all"

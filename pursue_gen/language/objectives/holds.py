@@ -20,17 +20,13 @@ class Holds(Safety):
 
     most: int
     who: Tuple[Who, ...]
-    ends: ClassVar[Tuple[str, ...]] = ()
+    in_one: ClassVar[str] = ""
+    """In one of several rooms that have no names, in English; "": the room has one."""
 
     @property
     def where(self) -> str:
         """Where there is room, in English."""
         raise NotImplementedError
-
-    @property
-    def in_one(self) -> str:
-        """The same of one of the rooms alone, where they have no names."""
-        return self.where
 
     def there(self, who: Who) -> Sequence[Atom]:
         """That somebody is there."""
@@ -177,13 +173,6 @@ class LiftHolds(Holds):
 class EveryHolds(Holds):
     """There is room for so many in each of several rooms, which are those of the building (`in_building`)."""
 
-    each_room: ClassVar[str]
-    """In one of the rooms, in English."""
-
-    @property
-    def in_one(self) -> str:
-        return self.each_room
-
     def atoms(self) -> Iterator[Sequence[Atom]]:
         """For each room that somebody is in it."""
         raise NotImplementedError
@@ -194,7 +183,7 @@ class EveryHolds(Holds):
 
     @property
     def where(self) -> str:
-        return self.each_room.replace(" one ", " every ")
+        return self.in_one.replace(" one ", " every ")
 
     def broken(self, beside: Callable[[str], str]) -> str:
         return super().broken(beside).replace(self.where, self.in_one)
@@ -212,7 +201,7 @@ class EveryPlaceHolds(EveryHolds):
 
     template: ClassVar[Template] = Template("every place holds {most,who:some=1 robot}")
     forms: ClassVar[Tuple[Form, ...]] = (Form("what every place holds", "every place holds {=1} robot"),)
-    each_room: ClassVar[str] = "at one place"
+    in_one: ClassVar[str] = "at one place"
 
     def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref]]) -> EveryPlaceHolds:
         return replace(self, building=tuple(places))
@@ -242,7 +231,7 @@ class EveryWayHolds(EveryHolds):
 
     template: ClassVar[Template] = Template("every way holds {most,who:some=1 robot}")
     forms: ClassVar[Tuple[Form, ...]] = (Form("what every way holds", "every way holds {=1} robot"),)
-    each_room: ClassVar[str] = "on one way"
+    in_one: ClassVar[str] = "on one way"
 
     def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref]]) -> EveryWayHolds:
         return replace(self, building=tuple({frozenset((a.name, b.name)): (a, b) for a, b in ways}.values()))

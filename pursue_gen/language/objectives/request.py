@@ -145,8 +145,3 @@ class Request(Safety):
 def requests_in(objectives: Sequence[StatedObjective]) -> Iterator[Tuple[int, Request]]:
     """The first objective of each such statement, behind its number among these objectives."""
     return ((k, each) for k, each in enumerate(objectives) if isinstance(each, Request) and each.number == 0)
-
-
-def is_further(objective: StatedObjective) -> bool:
-    """True for an objective of such a statement that is not its first."""
-    return isinstance(objective, Request) and objective.number > 0

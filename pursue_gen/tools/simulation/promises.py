@@ -14,7 +14,6 @@ from pursue_gen.language.conditions import EventOrCondition
 from pursue_gen.language.network_names import going, has_happened
 from pursue_gen.language.objectives.base import Breaks
 from pursue_gen.language.objectives.endurance import batteries_in
-from pursue_gen.language.objectives.request import is_further
 from pursue_gen.language.scenario import Ref, Safety, Scenario
 from pursue_gen.tools.simulation.charges import Charges
 from pursue_gen.tools.simulation.meaning import holds
@@ -28,8 +27,8 @@ from pursue_runtime.state import LOST, WON, SystemState
 def duties_of(scenario: Scenario) -> Tuple[Tuple[int, Safety], ...]:
     """The objectives that are called upon, each time with a limit for the answer, with their numbers; of requests the
     first of their statement."""
-    numbered = enumerate(scenario.safety)
-    return tuple((k, each) for k, each in numbered if each.limit is not None and not is_further(each))
+    limited = ((k, each) for k, each in enumerate(scenario.safety) if each.limit is not None)
+    return tuple((k, each) for k, each in limited if each.told_with(scenario.safety)[0] is each)
 
 
 class Promises:
