@@ -1,5 +1,5 @@
-"""People who order in a simulated mission: at any time, what the scenario lets them, as soon as they like, and who
-change their minds; who take robots out of service, and bring them back."""
+"""People who order in a simulated mission: at any time, what the scenario lets them, as soon as they like, or what they
+write, and who change their minds; who take robots out of service, and bring them back."""
 
 from __future__ import annotations
 
@@ -15,6 +15,9 @@ USUAL = 60.0
 CANCELLED, URGENT = 0.2, 0.1
 """The shares of orders that are cancelled some time later, and that are urgent. Not measured."""
 
+
+WRITTEN = 0.2
+"""The share of orders with which somebody writes one as well: a robot that is to be at a place. Not measured."""
 
 LEAVING, AWAY = 0.3, 200.0
 """The share of orders with which a robot is taken out of service as well, and the time units until it is brought back
@@ -32,7 +35,8 @@ class PeopleOrders:
             self._deadlines[each.called_by] = min(longest, self._deadlines.get(each.called_by, longest))
         self._events, self._order, self._robots = events, order, stage.robots
         self._draw, self._mood = random.Random(f"{seed}/orders"), random.Random(f"{seed}/mood")
-        self._service = random.Random(f"{seed}/service")
+        self._service, self._writer = random.Random(f"{seed}/service"), random.Random(f"{seed}/written")
+        self._places = [poi.name for poi in stage.scenario.pois]
 
     def begin(self) -> None:
         """Order from now on, where there is something to order."""
@@ -49,6 +53,9 @@ class PeopleOrders:
         if self._mood.random() < CANCELLED:
             later = self._events.now + self._mood.uniform(0, 0.5) * (deadline or USUAL)
             self._events.schedule(later, lambda: self._order(f"cancel {event}"))
+        if self._writer.random() < WRITTEN:
+            where = f"{self._writer.choice(self._robots)} at {self._writer.choice(self._places)}"
+            self._order(f"{where} within {self._writer.uniform(0.5, 2.0) * (deadline or USUAL):.1f}")
         if self._service.random() < LEAVING:
             robot = self._service.choice(self._robots)
             self._order(f"leave {robot}")
