@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Dict, Iterator, List, Sequence
+from typing import Any, Dict, List
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.numbers import Number, tenths_above
@@ -43,17 +43,11 @@ class Answer:
 
 
 def answers(scenario: Scenario, won: Solution, limits: Limits = NO_LIMITS, states: int = STATES) -> List[Answer]:
-    """The worst-case times of promises with a deadline, in order, as far as a fixed amount of work finds them."""
+    """The worst-case times of promises with a deadline, in order, as far as a fixed amount of work finds them; of those
+    that are told together the latest, where all are known."""
     took = answer_times(won.network, won.objective, won.strategy, won.reaction, states, limits)
-    named = [(names.safety_objective(k), each) for k, each in enumerate(scenario.safety)]
-    found = [Answer(each, took[name]) for name, each in named if name in took and each.limit is not None]
-    return list(_of_all(found, scenario))
-
-
-def _of_all(found: Sequence[Answer], scenario: Scenario) -> Iterator[Answer]:
-    """The same with one answer for those that are told together, the latest; none where not all of them are known."""
-    known = {id(each.promise): each.worst for each in found}
-    for answer in found:
-        whole = [id(each) for each in answer.promise.told_with(scenario.safety)]
-        if whole[0] == id(answer.promise) and known.keys() >= set(whole):
-            yield Answer(answer.promise, max(known[each] for each in whole))
+    stated = scenario.safety
+    whole = [(names.safety_objective(k), each, each.told_with(stated)) for k, each in enumerate(stated)]
+    worst = {id(each): took[name] for name, each, _ in whole if name in took and each.limit is not None}
+    firsts = ((each, {id(one) for one in told}) for _, each, told in whole if told[0] is each)
+    return [Answer(each, max(worst[one] for one in told)) for each, told in firsts if worst.keys() >= told]
