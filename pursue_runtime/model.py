@@ -14,6 +14,9 @@ from pursue_runtime.zones import EPSILON, Zone, holds, parse_zone
 ORDER_DESK = "orders"
 """The kind of the automaton of what people order."""
 
+ACTING = ("robot", "human", "agent")
+"""The kinds of agents."""
+
 
 class Edge(NamedTuple):
     """An edge: from `source` to `target` on `word`; `sync` is send, receive or own (a step without partners)."""
@@ -59,6 +62,21 @@ class Automaton(NamedTuple):
     by_source: Dict[str, Tuple[Edge, ...]]
     reacts_to: FrozenSet[str] = frozenset()
     """The collaborative events of others in which a robot takes part."""
+
+    @property
+    def acts(self) -> bool:
+        """True for an agent: a robot, a person or another one."""
+        return self.kind in ACTING
+
+    @property
+    def is_robot(self) -> bool:
+        """True for a robot."""
+        return self.kind == "robot"
+
+    @property
+    def is_person(self) -> bool:
+        """True for somebody who follows instructions."""
+        return self.kind == "human"
 
     def edges_from(self, location: str) -> Tuple[Edge, ...]:
         """Its edges there, in order."""
@@ -211,6 +229,11 @@ class Model:
     def shown(self, name: str) -> str:
         """What people read for a name: its label, or the name itself."""
         return self.labels.get(name, name)
+
+    @property
+    def acting(self) -> List[Automaton]:
+        """The agents, in system order."""
+        return self.of_kind(*ACTING)
 
     def of_kind(self, *kinds: str) -> List[Automaton]:
         """The automata of these kinds, in system order."""

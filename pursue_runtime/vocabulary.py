@@ -9,7 +9,6 @@ from pursue_runtime.event_words import CANCELLED, JOINS, LEAVES, START
 from pursue_runtime.locations import FINDING_OUT, SOMEWHERE, action_of, is_action, is_end, is_movement, is_under_way
 from pursue_runtime.model import ORDER_DESK, Automaton, Edge, Model
 from pursue_runtime.sentences import Names
-from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import SystemState
 
 
@@ -78,11 +77,11 @@ def sentence(model: Model, state: SystemState, last: Optional[SystemState]) -> s
     here = state.locations.get(state.agent, "")
     if state.event in (LEAVES, JOINS):
         return f"{model.shown(state.agent)} is {'out of service' if state.event == LEAVES else 'in service again'}"
-    if automaton.kind == ORDER_DESK and state.event not in model.orders and state.event.endswith(CANCELLED):
-        return f"{model.shown(state.event[: -len(CANCELLED)])} is cancelled"
-    if automaton.kind == ORDER_DESK:
+    if automaton in model.of_kind(ORDER_DESK):
+        if state.event not in model.orders and state.event.endswith(CANCELLED):
+            return f"{model.shown(state.event[: -len(CANCELLED)])} is cancelled"
         return f"{model.shown(state.event)} is ordered, and accepted"
-    if automaton.kind not in ACTING:
+    if not automaton.acts:
         goals = dict(model.goal)
         counts = goals.get(state.agent, here) != here and (state.agent, here) not in model.bad
         what = model.says.get(state.agent, "the goal" if counts else state.agent)

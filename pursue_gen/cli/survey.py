@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Iterable, List, Optional, Sequence, Tuple
 import typer
 
 from pursue_gen.cli.console import ended, guarded, info, show, suggest
-from pursue_gen.cli.options import ROBOT, SCENARIO, speeds_of
+from pursue_gen.cli.options import JSON, ROBOT, SCENARIO, speeds_of
 from pursue_gen.diagnostics import as_json, error, usage_error
 from pursue_gen.files import check_new, shell_quoted, write_bytes
 from pursue_gen.outcomes import Invalid, Unavailable
@@ -20,6 +20,17 @@ if TYPE_CHECKING:
     from pursue_gen.survey.make import Options, Survey
     from pursue_gen.workspace.levels import Level
     from pursue_gen.workspace.robot_size import Told
+
+
+_RADIUS = typer.Option(
+    None, metavar="METRES", help="The radius of all robots in this survey, whatever their size; is not written."
+)
+_CLEARANCE = typer.Option(
+    None, metavar="METRES", help="How far two robots that stand stay from each other: twice their goal tolerance."
+)
+_SPEED = typer.Option(
+    [], metavar="[ROBOT=]M/S", help="The speed of all robots, or of this one: gives it travel times; repeatable."
+)
 
 
 @dataclass(frozen=True)
@@ -39,15 +50,9 @@ def survey(
     floor: Path = typer.Argument(..., metavar="MAP.yaml", help="A map of map_server, or the file of levels."),
     scenario: Path = SCENARIO,
     robot: List[str] = ROBOT,
-    radius: Optional[float] = typer.Option(
-        None, metavar="METRES", help="The radius of all robots in this survey, whatever their size; is not written."
-    ),
-    clearance: Optional[float] = typer.Option(
-        None, metavar="METRES", help="How far two robots that stand stay from each other: twice their goal tolerance."
-    ),
-    speed: List[str] = typer.Option(
-        [], metavar="[ROBOT=]M/S", help="The speed of all robots, or of this one: gives it travel times; repeatable."
-    ),
+    radius: Optional[float] = _RADIUS,
+    clearance: Optional[float] = _CLEARANCE,
+    speed: List[str] = _SPEED,
     time_unit: Optional[float] = typer.Option(None, metavar="SECONDS", help="A time unit: the scenario's, or 1."),
     turning: float = typer.Option(0.5, metavar="RAD/S", help="How fast robots turn on the spot."),
     acceleration: float = typer.Option(0.5, metavar="M/S^2", help="How fast robots start and stop."),
@@ -67,7 +72,7 @@ def survey(
     ),
     force: bool = typer.Option(False, "--force", help="Replace a file that is there already."),
     dry_run: bool = typer.Option(False, "--dry-run", help="Write no copy."),
-    as_json_: bool = typer.Option(False, "--json", help="Print JSON on stdout."),
+    as_json_: bool = JSON,
 ) -> None:
     """Measure a scenario's ways on a map of the building, and write them into a copy of the scenario.
 

@@ -11,12 +11,9 @@ from pursue_gen.language.conditions import condition_text, names_in
 from pursue_gen.language.scenario import (
     Agent,
     Assumption,
-    Both,
-    Choice,
     Ref,
     RuleBody,
     Scenario,
-    Sequence,
     StatedObjective,
 )
 
@@ -82,7 +79,7 @@ def without_agent(scenario: Scenario, name: str) -> Optional[Scenario]:
     return replace(
         scenario,
         events=tuple(event for event in scenario.events if event.name not in gone),
-        rules=tuple(replace(rule, body=body) for rule, body in bodies if isinstance(body, (Sequence, Choice, Both))),
+        rules=tuple(replace(rule, body=body) for rule, body in bodies if body and not isinstance(body, Ref)),
         states=tuple(state for state in states if state.name in kept),
         dependencies=tuple(d for d in scenario.dependencies if d.event.name not in gone and d.state.name in kept),
         agents=tuple(
@@ -105,7 +102,7 @@ def without_conditions(scenario: Scenario) -> Iterator[Tuple[str, str, Callable[
     for way in scenario.connections:
         if way.only_if is not None:
             free = _smaller("connections", way, "a b only_for not_for", "only_if")
-            yield f"the way between {way.a} and {way.b}", condition_text(way.only_if), free
+            yield way.what, condition_text(way.only_if), free
     for event in scenario.events:
         if event.only_if is not None:
             yield event.name, condition_text(event.only_if), _smaller("events", event, "name", "only_if")

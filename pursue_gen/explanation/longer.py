@@ -10,15 +10,15 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from math import ceil
-from typing import Dict, Iterator, Mapping, Optional, Sequence, Tuple
+from typing import Dict, Iterator, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import Span
 from pursue_gen.language.document import Document, statement_text, written
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.scenario import Request, Scenario, StatedObjective
+from pursue_gen.language.scenario import Scenario, StatedObjective
 from pursue_gen.language.times import like, written_time
 from pursue_gen.outcomes import LimitHit, Lost, NotProven
-from pursue_gen.solving.answers import Answer, answers
+from pursue_gen.solving.answers import answers
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.rules import Rules
 from pursue_gen.solving.solution import Solution, solution
@@ -67,7 +67,7 @@ def longer(scenario: Scenario, rules: Rules, limits: Limits, progress: Optional[
         late: Dict[int, Number] = {}
         with suppress(LimitHit):
             for each in answers(more, found, limits.since(start), _STATES):
-                late.update((id(one), each.worst) for one in _answered(each, more))
+                late.update((id(one), each.worst) for one in each.promise.told_with(more.objectives))
         enough = _enough(scenario, more, late)
         # Who writes these limits is to find what is told, and where they are tight it may be too much work.
         with suppress(LimitHit, Lost, NotProven):
@@ -75,12 +75,6 @@ def longer(scenario: Scenario, rules: Rules, limits: Limits, progress: Optional[
             return tuple(_statements(scenario, enough))
         return tuple(_statements(scenario, {id(each): factor * (each.limit or 0) for each in scenario.objectives}))
     return ()
-
-
-def _answered(answer: Answer, scenario: Scenario) -> Sequence[StatedObjective]:
-    """The objectives that an answer is about: all of a statement of requests."""
-    promise = answer.promise
-    return promise.statement(scenario.objectives).objectives if isinstance(promise, Request) else (promise,)
 
 
 def _times(factor: int, each: StatedObjective) -> StatedObjective:

@@ -7,15 +7,11 @@ from math import ceil, floor
 from typing import Any, Callable, Iterator, Optional, Sequence, Union
 
 from pursue_gen.diagnostics import Span
-from pursue_gen.language.clauses import Domains
 from pursue_gen.language.loads import MOST_LOADS, Carrier
 from pursue_gen.language.numbers import Number, Window, whole_above, whole_below
-from pursue_gen.language.objectives.endurance import MOST_BATTERY_PARTS
-from pursue_gen.language.objectives.holds import Holds
-from pursue_gen.language.objectives.request import with_fewer
-from pursue_gen.language.scenario import Battery, Endurance, Event, Pause, Reach, Request, Scenario, Travel
+from pursue_gen.language.scenario import Battery, Event, Scenario, Travel
 from pursue_gen.language.statements.event import MOST_TIMES
-from pursue_gen.language.times import instead, like, window_text
+from pursue_gen.language.times import like, window_text
 from pursue_gen.solving.rules import Rules
 
 SLOWER = 32
@@ -116,77 +112,6 @@ def battery_changes(scenario: Scenario, battery: Battery) -> Iterator[Repair]:
             "recharges", name, f"a battery of {name} that is recharged faster", rate, whole_above(rate, 4 * rate + 1),
             lambda k: scenario.with_instead(battery, replace(battery, recharges=k)),
             lambda k: f"a battery of {name} that recharges {k} instead of {rate} per unit", span,
-        )  # fmt: skip
-
-
-def charge_changes(scenario: Scenario, endurance: Endurance) -> Iterator[Repair]:
-    """A battery by time that is full sooner, or of which smaller parts of a charge count."""
-    name, before, parts = endurance.agent.name, endurance.charge, endurance.parts
-    yield Repair(
-        "charges", name, f"a battery of {name} that is full sooner", before,
-        endurance.possible_limits(whole_below(before, 1)),
-        lambda k: scenario.with_instead(endurance, replace(endurance, charge=k)),
-        lambda k: f"a battery of {name} that charges in {instead(k, before)}", endurance.span, 1,
-    )  # fmt: skip
-    possible = (n for n in (2 * parts, 4 * parts, 8 * parts) if n <= MOST_BATTERY_PARTS)
-    finer = [n for n in possible if replace(endurance, parts=n).is_even]
-    if finer:
-        yield Repair(
-            "parts", name, f"a battery of {name} that counts smaller parts of a charge", parts, finer,
-            lambda k: scenario.with_instead(endurance, replace(endurance, parts=k)),
-            lambda k: f"a battery of {name} that is charged in {k} parts instead of {parts}", endurance.span, 1,
-        )  # fmt: skip
-
-
-def room_changes(scenario: Scenario, holds: Holds) -> Iterator[Repair]:
-    """A place or a way that holds more."""
-    domains = Domains(scenario)
-    values = range(holds.most + 1, max((len(domains.counted(room)) for room in holds.rooms), default=0) + 1)
-    if values:
-        yield Repair(
-            "room", holds.where, f"more room {holds.where}", holds.most, values,
-            lambda k: scenario.with_instead(holds, holds.with_room(k)),
-            lambda k: f"room for {holds.with_room(k).some} {holds.where} instead of {holds.some}", holds.span,
-        )  # fmt: skip
-
-
-def open_changes(scenario: Scenario, request: Request) -> Iterator[Repair]:
-    """Fewer that may be open at once."""
-    event, most = request.trigger.shown, request.most
-    if request.number == 0 and most > 1:
-        yield Repair(
-            "open", event, f"fewer of {event} open", most, range(most - 1, 0, -1),
-            lambda k: replace(scenario, safety=with_fewer(scenario.safety, request, k)),
-            lambda k: f"at_most {k} of {event} open instead of {most}", request.span,
-        )  # fmt: skip
-
-
-def pause_changes(scenario: Scenario, pause: Pause) -> Iterator[Repair]:
-    """A shorter pause between events."""
-    names = " and ".join(dict.fromkeys((pause.event.shown, pause.following.shown)))
-    values = whole_below(pause.time, 1)
-    if values:
-        yield Repair(
-            "pause", names, f"a shorter pause between {names}", pause.time, values,
-            lambda k: scenario.with_instead(pause, pause.shorter(k)),
-            lambda k: f"a pause of {instead(k, pause.time)} between {names}", pause.span,
-        )  # fmt: skip
-
-
-def times_changes(scenario: Scenario, reach: Reach) -> Iterator[Repair]:
-    """What has to happen less often, or less far apart."""
-    event, before = reach.events[0].shown, reach.apart or 0
-    if reach.times > 2 or (reach.times > 1 and reach.apart is None):
-        yield Repair(
-            "times", event, f"{event} less often", reach.times, range(reach.times - 1, 1 if before else 0, -1),
-            lambda k: scenario.with_instead(reach, replace(reach, times=k)),
-            lambda k: f"{event} {replace(reach, times=k).often} instead of {reach.often}", reach.span,
-        )  # fmt: skip
-    if before > 1:
-        yield Repair(
-            "pause", event, f"{event} less far apart", before, whole_below(before, 1),
-            lambda k: scenario.with_instead(reach, replace(reach, apart=k)),
-            lambda k: f"{event} at least {instead(k, before)} apart", reach.span,
         )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any, Iterator, Sequence, Tuple, Union, cast
 
-from pursue_gen.diagnostics import Span, listed
+from pursue_gen.diagnostics import Span
 from pursue_gen.explanation.ablations import without_conditions
 from pursue_gen.explanation.as_written import as_written
 from pursue_gen.explanation.assumption_changes import assumption_changes
@@ -14,35 +14,16 @@ from pursue_gen.explanation.number_changes import (
     SLOWER,
     Repair,
     battery_changes,
-    charge_changes,
     count_changes,
     event_changes,
     load_changes,
-    open_changes,
-    pause_changes,
-    room_changes,
-    times_changes,
     travel_changes,
 )
+from pursue_gen.language.clauses import Domains
 from pursue_gen.language.loads import carriers
 from pursue_gen.language.numbers import Number, decimal_text, exact, whole_above, whole_below
-from pursue_gen.language.objectives.holds import Holds
-from pursue_gen.language.scenario import (
-    Agent,
-    Connection,
-    Door,
-    Endurance,
-    Event,
-    Lift,
-    Pause,
-    Poi,
-    Reach,
-    Ref,
-    Request,
-    Respond,
-    Scenario,
-    StatedObjective,
-)
+from pursue_gen.language.objectives.base import Easier
+from pursue_gen.language.scenario import Agent, Connection, Door, Event, Lift, Ref, Scenario, StatedObjective
 from pursue_gen.language.statements.event import MOST_EVENT_PARTS
 from pursue_gen.language.template import name_text
 from pursue_gen.language.times import instead, like
@@ -72,12 +53,12 @@ def _repairs(scenario: Scenario, rules: Rules) -> Iterator[Repair]:
     for lift in scenario.lifts:
         yield from _of_waiting(scenario, lift, "comes_within", "coming")
     controlled = [agent.name for agent in scenario.agents if agent.controllable]
-    for part in (part for part in scenario.for_some if not all(map(part.admits, controlled))):
-        if isinstance(part, Connection) and scenario.is_lane(part):
-            continue  # who may take it as well would have two ways
-        what = part.name if isinstance(part, Poi) else f"the way between {part.a} and {part.b}"
-        freer = scenario.with_instead(part, replace(part, only_for=(), not_for=()))
-        yield _switch("whom", what, f"{what} for all (without {part.whom_text})", part.whom_text, freer, part.span, 1)
+    lanes = [way for way in scenario.connections if scenario.is_lane(way)]  # who may take it as well would have two
+    for part in scenario.for_some:
+        if part not in lanes and not all(map(part.admits, controlled)):
+            label, whom = f"{part.what} for all (without {part.whom_text})", part.whom_text
+            freer = scenario.with_instead(part, replace(part, only_for=(), not_for=()))
+            yield _switch("whom", part.what, label, whom, freer, part.span, 1)
     for travel in scenario.travels:
         yield from travel_changes(scenario, travel)
     for battery in scenario.batteries:
@@ -129,21 +110,23 @@ def _of_slack(rules: Rules, agent: str, shown: str, late: int) -> Repair:
 
 
 def _of_objectives(scenario: Scenario) -> Iterator[Repair]:
+    domains = Domains(scenario)
     for safety in scenario.safety:
         yield from _of_limit(scenario, safety)
-        if isinstance(safety, Holds):
-            yield from room_changes(scenario, safety)
-        elif isinstance(safety, Endurance):
-            yield from charge_changes(scenario, safety)
-        elif isinstance(safety, Pause):
-            yield from pause_changes(scenario, safety)
-        elif isinstance(safety, Request):
-            yield from open_changes(scenario, safety)
+        yield from (_easier(scenario, safety, each) for each in safety.easier(domains.counted) if each.values)
     for reach in scenario.reach:
-        if reach.after > 0:
-            yield _earlier(scenario, reach)
-        yield from times_changes(scenario, reach)
+        yield from (_easier(scenario, reach, each) for each in reach.easier(domains.counted) if each.values)
         yield from _of_limit(scenario, reach)
+
+
+def _easier(scenario: Scenario, objective: StatedObjective, each: Easier) -> Repair:
+    """Another number of an objective, or of all that are told with it."""
+    whole = objective.told_with(scenario.objectives)
+    return Repair(
+        each.change, each.about, each.label, each.before, each.values,
+        lambda k: scenario.with_each(lambda other: each.make(other, k) if other in whole else other),
+        each.say, objective.span, each.helps,
+    )  # fmt: skip
 
 
 def _of_limit(scenario: Scenario, objective: StatedObjective) -> Iterator[Repair]:
@@ -157,15 +140,6 @@ def _of_limit(scenario: Scenario, objective: StatedObjective) -> Iterator[Repair
         change, about, label, before, objective.possible_limits(longer),
         lambda k: scenario.with_each(lambda each: each.with_limit(k) if each in together else each),
         lambda k: f"{begins} {instead(k, before)}{ends}", objective.span, 1,
-    )  # fmt: skip
-
-
-def _earlier(scenario: Scenario, reach: Reach) -> Repair:
-    due, names, before = reach.words.due, listed(ref.name for ref in reach.events), reach.after
-    return Repair(
-        "after", names, f"an earlier {due}", before, whole_below(before, 0),
-        lambda k: scenario.with_instead(reach, replace(reach, after=like(k, before))),
-        lambda k: f"{due} after {instead(k, before)}", reach.span, 1,
     )  # fmt: skip
 
 
@@ -222,11 +196,11 @@ def _of_duration(scenario: Scenario, event: Event) -> Iterator[Repair]:
 
 def _of_breaking_off(scenario: Scenario) -> Iterator[Repair]:
     """What may be broken off, or is done in parts, of what takes longer than something else may wait for its answer."""
-    due = [(each, each.deadline) for each in scenario.safety if isinstance(each, Respond)]
+    due = [(each.breaks.ends, each.known_limit) for each in scenario.safety if each.is_answered and each.breaks.ends]
     for event in scenario.events:
         doers = scenario.doers(event.name)
-        long = [each for each, deadline in due if event.window is not None and event.window[1] > deadline]
-        others = any(not isinstance(each.response, Ref) or each.response.name != event.name for each in long)
+        long = [ends for ends, deadline in due if event.window is not None and event.window[1] > deadline]
+        others = any(not isinstance(ends, Ref) or ends.name != event.name for ends in long)
         if not others or event.collaborative or not any(agent.controllable for agent in doers):
             continue
         if not event.may_stop:

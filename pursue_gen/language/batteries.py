@@ -13,6 +13,7 @@ from typing import Dict, Iterator, List, Mapping, Tuple, Union
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
 from pursue_gen.language.numbers import decimal_text, exact
+from pursue_gen.language.objectives.endurance import batteries_in
 from pursue_gen.language.scenario import Agent, Battery, Endurance, Event, Scenario
 from pursue_gen.language.times import like, written_time
 
@@ -121,22 +122,27 @@ def check_batteries(scenario: Scenario) -> Iterator[Diagnostic]:
             message = f"{seen[agent.name].in_words} gives {agent.name} a battery already"
             yield error("PML311", message, battery.span, "delete one of the two")
         seen.setdefault(agent.name, battery.span)
-        problems = [*_of(agent, battery, scenario)]
-        if isinstance(battery, Endurance):
-            yield from problems or _too_long(agent, battery, scenario)
-            continue
-        problems += battery.check()
-        yield from problems or _levels(scenario, battery)
+    for by_level in (each for each in scenario.batteries if each.agent.name in agents):
+        agent = agents[by_level.agent.name]
+        problems = [*_of(agent, by_level), *_shared(agent, scenario), *by_level.check()]
+        yield from problems or _levels(scenario, by_level)
+    for _, by_time in batteries_in(scenario.safety):
+        for agent in (agents[name] for name in (by_time.agent.name,) if name in agents):
+            yield from [*_of(agent, by_time)] or _too_long(agent, by_time, scenario)
 
 
-def _of(agent: Agent, battery: Union[Battery, Endurance], scenario: Scenario) -> Iterator[Diagnostic]:
-    name = agent.name
+def _of(agent: Agent, battery: Union[Battery, Endurance]) -> Iterator[Diagnostic]:
     if not agent.is_robot:
+        name = agent.name
         message = f"{name} is no robot: a strategy sees to the batteries of robots"
         hint = f"write controllable behind {name} (and no human), or delete this line"
         yield error("PML310", message, battery.agent.span, hint)
-    events = {event.name: event for event in scenario.events}
-    for ref in agent.reacts_to if isinstance(battery, Battery) else ():
+
+
+def _shared(agent: Agent, scenario: Scenario) -> Iterator[Diagnostic]:
+    """What a robot that may run empty takes part in, and others end."""
+    name, events = agent.name, {event.name: event for event in scenario.events}
+    for ref in agent.reacts_to:
         if events[ref.name].is_shared:
             message = f"{name} takes part in {ref.name} until it ends, and others decide when: it could run empty"
             hint = f"let {name} be the one that can_do {ref.name}, or delete together"

@@ -20,7 +20,7 @@ from pursue_gen.language.names import check_names, check_references, events_used
 from pursue_gen.language.numbers import MOST_DIGITS, exact, is_fine
 from pursue_gen.language.parser import Reading, read, read_text, without_errors
 from pursue_gen.language.pose_checks import check_poses
-from pursue_gen.language.scenario import Agent, Connection, Poi, Scenario
+from pursue_gen.language.scenario import Agent, Connection, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
 from pursue_gen.language.times import in_units, written_time
 from pursue_gen.language.tokens import shown
@@ -152,7 +152,7 @@ def _starts(scenario: Scenario) -> Iterator[Diagnostic]:
             message = f"{agent.name} is on patrol, and starts at {agent.starts_text}: nobody knows what it has visited"
             yield error("PML441", message, patrol.span, f"let {agent.name} start at one place, or let others patrol")
     for agent in scenario.agents:
-        closed = {part.name for part in scenario.closed_to(agent.name) if isinstance(part, Poi)}
+        closed = scenario.closed_places(agent.name)
         for start in (ref for ref in agent.starts if ref.name in closed):
             message = f"{agent.name} starts in {start.name}, which is not for {agent.name}"
             hint = f"let it start somewhere else, or let poi {start.name} be for {agent.name}, too"

@@ -8,7 +8,8 @@ from typing import Dict, Iterator, Sequence, Tuple
 from pursue_gen.diagnostics import Diagnostic, Span, error
 from pursue_gen.language import network_names as names
 from pursue_gen.language.loads import carriers
-from pursue_gen.language.scenario import Endurance, Scenario
+from pursue_gen.language.objectives.endurance import batteries_in
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, Symbol
 
 _Stated = Tuple[Span, Sequence[Symbol]]
@@ -65,10 +66,11 @@ def _in_network(scenario: Scenario) -> Iterator[_Stated]:
 
 def _numbered(scenario: Scenario) -> Iterator[_Stated]:
     """What is made for objectives and assumptions, which have numbers and no names."""
+    charged = dict(batteries_in(scenario.safety))
     for number, safety in enumerate(scenario.safety):
         automaton = names.safety_objective(number)
         turn = [names.safety_turn(number), names.safety_oldest(number)] if safety.order else []
-        charge = [names.charge_clock(number)] if isinstance(safety, Endurance) else []
+        charge = [names.charge_clock(number)] if number in charged else []
         made = [automaton, names.safety_clock(number), names.safety_pause(number), *turn, *charge]
         yield safety.span, made
     for number, reach in enumerate(scenario.reach):

@@ -22,8 +22,8 @@ from pursue_gen.language.conditions import (
     predicate_words,
 )
 from pursue_gen.language.lifts import is_said
-from pursue_gen.language.objectives.holds import EveryHolds
 from pursue_gen.language.objectives.holds import Holds as Room
+from pursue_gen.language.objectives.holds import rooms_in
 from pursue_gen.language.scenario import Safety, Scenario
 
 MOST_ROOM = 1_000
@@ -47,7 +47,7 @@ def check_conditions(scenario: Scenario) -> Iterator[Diagnostic]:
         if safety.breaks.condition is None:
             yield from _heard(scenario, safety, domains)
         elif not safety.conditions:
-            yield from _room(scenario, safety, domains)
+            yield from (found for room in rooms_in([safety]) for found in _room(scenario, room, domains))
         for stands in safety.breaks.stands:
             yield from _impossible(scenario, domains, stands, safety.span)
 
@@ -77,12 +77,11 @@ def _heard(scenario: Scenario, safety: Safety, domains: Domains) -> Iterator[Dia
         yield error("PML233", message, safety.span, hint)
 
 
-def _room(scenario: Scenario, safety: Safety, domains: Domains) -> Iterator[Diagnostic]:
+def _room(scenario: Scenario, safety: Room, domains: Domains) -> Iterator[Diagnostic]:
     """An objective on how many are somewhere: where nobody ever is, or no more, and one that is too large."""
-    assert isinstance(safety, Room), "there are no other ones"
     rooms = [(room, domains.counted(room)) for room in safety.rooms]
     said = is_said(scenario, safety)
-    if said and not isinstance(safety, EveryHolds):
+    if said and not safety.in_one:
         impossible = [each for room, counted in rooms for each in _nobody(scenario, domains, room, counted, safety)]
         if impossible:
             yield from impossible
@@ -92,8 +91,7 @@ def _room(scenario: Scenario, safety: Safety, domains: Domains) -> Iterator[Diag
     if largest <= most and not said:
         return
     if largest <= most:
-        where = safety.in_one if isinstance(safety, EveryHolds) else safety.where
-        message = f"this changes nothing: never are more than {largest} {where}"
+        message = f"this changes nothing: never are more than {largest} {safety.in_one or safety.where}"
         yield warning("PML232", message, safety.span, "write a smaller number, or delete it")
     elif max(sizes) > MOST_ROOM or sum(sizes) > MOST_ROOMS:
         ways = f"{MOST_ROOM} ways" if max(sizes) > MOST_ROOM else f"{MOST_ROOMS:,} ways in all"

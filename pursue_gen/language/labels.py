@@ -9,9 +9,8 @@ from typing import Dict, Iterator, Tuple
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
 from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.scenario import Scenario
-from pursue_gen.language.statements.base import Labelled
 
-LABELLED = {kind.declares: kind.listed_in for kind in STATEMENTS.values() if issubclass(kind, Labelled)}
+LABELLED = {kind.declares: kind.listed_in for kind in STATEMENTS.values() if kind.labelled}
 """The kinds of things that may have a label, and the field of a scenario that has them."""
 
 _SIGNS = re.compile(r"[!-/:-@\[-`{-~]")

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import hypot
-from typing import Dict, Iterator, Tuple
+from typing import Dict, Iterator, List, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, error, listed, warning
 from pursue_gen.language.conditions import Who
 from pursue_gen.language.numbers import Window
-from pursue_gen.language.objectives.holds import LiftHolds
+from pursue_gen.language.objectives.holds import LiftHolds, lifts_in
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.scenario import Agent, Connection, Lift, Safety, Scenario, StatedObjective
 
@@ -39,18 +39,20 @@ def driven(scenario: Scenario, agent: Agent) -> Dict[Way, Window]:
 def with_room_in_lifts(scenario: Scenario) -> Scenario:
     """The scenario in which each lift holds one robot, unless an objective says what it holds, each of these with the
     ways by the lift: how long a lift takes would not be true otherwise."""
-    said = {each.lift.name for each in scenario.safety if isinstance(each, LiftHolds)}
+    said = {each.lift.name for _, each in lifts_in(scenario.safety)}
     more = [lift for lift in scenario.lifts if lift.name not in said and _is_shared(scenario, lift)]
     if not said and not more:
         return scenario
     ones = (LiftHolds(Ref(lift.name, lift.span, lift.label or ""), 1, (Who(None, True),), lift.span) for lift in more)
-    safety = (_with_ways(scenario, each) for each in (*scenario.safety, *ones))
+    safety: List[Safety] = [*scenario.safety, *ones]
+    for number, each in lifts_in(safety):
+        safety[number] = _with_ways(scenario, each)
     return replace(scenario, safety=tuple(sorted(safety, key=lambda each: each.last)))
 
 
 def is_said(scenario: Scenario, objective: StatedObjective) -> bool:
     """False for what `with_room_in_lifts` has added."""
-    return not (isinstance(objective, LiftHolds) and any(lift.span == objective.span for lift in scenario.lifts))
+    return not any(lift.span == each.span for _, each in lifts_in([objective]) for lift in scenario.lifts)
 
 
 def _is_shared(scenario: Scenario, lift: Lift) -> bool:
@@ -58,9 +60,7 @@ def _is_shared(scenario: Scenario, lift: Lift) -> bool:
     return sum(lift in rides_of(scenario, agent).values() for agent in scenario.agents) > 1
 
 
-def _with_ways(scenario: Scenario, objective: Safety) -> Safety:
-    if not isinstance(objective, LiftHolds):
-        return objective
+def _with_ways(scenario: Scenario, objective: LiftHolds) -> Safety:
     places = {poi.name: Ref(poi.name, poi.span, poi.label or "") for poi in scenario.pois}
     ways = [way for way in scenario.connections if way.by is not None and way.by.name == objective.lift.name]
     ends = {frozenset((way.a, way.b)): (way.a, way.b) for way in ways if places.keys() >= {way.a, way.b}}

@@ -15,7 +15,6 @@ from pursue_gen.language.document import Document
 from pursue_gen.language.kinds import BY_RULE
 from pursue_gen.language.lifts import with_room_in_lifts
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.statements.base import Labelled
 from pursue_gen.language.statements.unit import Unit, seconds_in
 from pursue_gen.language.syntax import MOST_LETTERS, too_large
 from pursue_gen.language.tokens import bare
@@ -154,7 +153,7 @@ def _unit(document: Document) -> Optional[Number]:
 def _labels(trees: Iterable[Tree[Token]]) -> Iterator[Tuple[str, str]]:
     """Names with their labels, where they have one; the first declaration counts."""
     for tree in reversed(list(trees)):
-        if isinstance(tree, Tree) and issubclass(BY_RULE[tree.data], Labelled):
+        if isinstance(tree, Tree) and BY_RULE[tree.data].labelled:
             name, label, *_ = tree.children
             if isinstance(name, Token) and isinstance(label, Token):
                 yield bare(name), bare(label)

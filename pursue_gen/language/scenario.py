@@ -18,6 +18,7 @@ from pursue_gen.language.lengths import Length
 from pursue_gen.language.numbers import Number, Window, exact
 from pursue_gen.language.objectives import *
 from pursue_gen.language.objectives import Endurance, GivenUp, Patrol, Reach, Safety, StatedObjective, WhyGivenUp
+from pursue_gen.language.objectives.endurance import batteries_in
 from pursue_gen.language.objectives.patrol import patrols_in
 from pursue_gen.language.objectives.request import requests_in
 from pursue_gen.language.poses import Pose, Spot
@@ -176,8 +177,7 @@ class Scenario:
     @property
     def powered(self) -> Tuple[Union[Battery, Endurance], ...]:
         """The batteries of robots, by levels and by time."""
-        by_time = (each for each in self.safety if isinstance(each, Endurance))
-        return (*self.batteries, *by_time)
+        return (*self.batteries, *(each for _, each in batteries_in(self.safety)))
 
     @property
     def statements(self) -> Tuple[Tuple[StatedObjective, ...], ...]:
@@ -205,8 +205,11 @@ class Scenario:
     @cached_property
     def for_some(self) -> Tuple[Union[Poi, Connection], ...]:
         """The places and ways that are not for all agents."""
-        parts: Tuple[Union[Poi, Connection], ...] = (*self.pois, *self.connections)
-        return tuple(part for part in parts if part.only_for or part.not_for)
+        return (*self._places_for_some, *(way for way in self.connections if way.only_for or way.not_for))
+
+    @cached_property
+    def _places_for_some(self) -> Tuple[Poi, ...]:
+        return tuple(poi for poi in self.pois if poi.only_for or poi.not_for)
 
     @cached_property
     def _several(self) -> FrozenSet[Tuple[str, str]]:
@@ -222,9 +225,13 @@ class Scenario:
         """The places and ways that are not for the agent of this name."""
         return tuple(part for part in self.for_some if not part.admits(agent))
 
+    def closed_places(self, agent: str) -> FrozenSet[str]:
+        """The names of those of them that are places."""
+        return frozenset(poi.name for poi in self._places_for_some if not poi.admits(agent))
+
     def ways_of(self, agent: str) -> Tuple[Connection, ...]:
         """The ways that the agent of this name may take: those that are for it and have both ends where it may be."""
-        closed = {part.name for part in self.closed_to(agent) if isinstance(part, Poi)}
+        closed = self.closed_places(agent)
         return tuple(way for way in self.connections if way.admits(agent) and not closed & {way.a, way.b})
 
     def movements(self, agent: Agent) -> Dict[Tuple[str, str], Window]:

@@ -6,7 +6,7 @@ from typing import AbstractSet, Iterator, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, warning
 from pursue_gen.language.conditions import Holds, atoms, names_in
-from pursue_gen.language.scenario import Ref, Respond, Scenario, State, StatedObjective
+from pursue_gen.language.scenario import Ref, Scenario, State, StatedObjective
 
 
 def check_unknown(scenario: Scenario) -> Iterator[Diagnostic]:
@@ -14,9 +14,10 @@ def check_unknown(scenario: Scenario) -> Iterator[Diagnostic]:
     such an objective if they never look."""
     unknown = {state.name: state for state in scenario.states if state.is_found_out}
     for each in scenario.safety if unknown else ():
-        if not isinstance(each, Respond) or isinstance(each.trigger, Ref):
+        begins = each.breaks.begins
+        if begins is None or isinstance(begins, Ref):
             continue
-        asked = dict.fromkeys(atom.state.name for atom in atoms(each.trigger) if isinstance(atom, Holds))
+        asked = dict.fromkeys(atom.state.name for atom in atoms(begins) if isinstance(atom, Holds))
         others = {name for other in scenario.objectives if other is not each for name in _named(other)}
         places = (event.location for event in scenario.events if event.name in others)
         others |= {place.name for place in places if place is not None}

@@ -15,7 +15,7 @@ from pursue_gen.language.lifts import with_room_in_lifts
 from pursue_gen.language.measures import Measured
 from pursue_gen.language.numbers import exact
 from pursue_gen.language.parser import read
-from pursue_gen.language.scenario import Patrol, Ref, Scenario
+from pursue_gen.language.scenario import Ref, Scenario
 
 
 def written(scenario: Scenario) -> Scenario:
@@ -70,17 +70,10 @@ def _meaning(value: Any) -> Any:
     if isinstance(value, Scenario):
         safety = tuple(sorted(value.safety, key=lambda each: each.last))
         value = replace(value, file="", text="", given_up=(), safety=safety)
-    elif isinstance(value, pml.Poi):
-        value = replace(value, pose=None, spots=())
-    elif isinstance(value, pml.Door):
-        value = replace(value, pose=None)
-    elif isinstance(value, pml.Lift):
-        value = replace(value, pose=None, cabins=())
-    elif isinstance(value, Patrol):
-        value = replace(value, least=None)
     elif isinstance(value, Ref):
         return value.name
-    return type(value), tuple(_meaning(getattr(value, field.name)) for field in fields(value))
+    aside = getattr(value, "aside", ())
+    return type(value), tuple(_meaning(getattr(value, each.name)) for each in fields(value) if each.name not in aside)
 
 
 def _statements(scenario: Scenario) -> Iterator[str]:

@@ -11,7 +11,6 @@ from typing import Sequence, Tuple
 from pursue_gen.diagnostics import Diagnostic, Severity, listed
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.numbers import decimal_text, exact
-from pursue_gen.language.objectives.respond import Respond
 from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import Scenario
 
@@ -54,8 +53,7 @@ def with_written(scenario: Scenario, orders: Sequence[WrittenOrder]) -> Scenario
     found = reading.partial
     events = tuple(each for each in found.events if each.name in names)
     asked = tuple(each for each in found.safety if each.span.line >= first)
-    begun = [getattr(each.trigger, "name", "") for each in asked if isinstance(each, Respond)]
-    if begun != list(names) or not len(events) == len(asked) == len(names):
+    if [each.called_by for each in asked] != list(names) or len(events) != len(names):
         raise NoOrder(CAN_BE_ORDERED)
     return replace(scenario, events=(*scenario.events, *events), safety=(*scenario.safety, *asked), text=text)
 

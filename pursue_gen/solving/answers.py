@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Dict, Iterator, List, Sequence
+from typing import Any, Dict, List
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.numbers import Number, tenths_above
-from pursue_gen.language.scenario import Request, Safety, Scenario, StatedObjective
+from pursue_gen.language.scenario import Safety, Scenario, StatedObjective
 from pursue_gen.language.times import like, written_time
 from pursue_gen.proof.worst_case import answer_times
 from pursue_gen.solving.solution import Solution
@@ -43,25 +43,11 @@ class Answer:
 
 
 def answers(scenario: Scenario, won: Solution, limits: Limits = NO_LIMITS, states: int = STATES) -> List[Answer]:
-    """The worst-case times of promises with a deadline, in order, as far as a fixed amount of work finds them."""
+    """The worst-case times of promises with a deadline, in order, as far as a fixed amount of work finds them; of those
+    that are told together the latest, where all are known."""
     took = answer_times(won.network, won.objective, won.strategy, won.reaction, states, limits)
-    named = [(names.safety_objective(k), each) for k, each in enumerate(scenario.safety)]
-    found = [Answer(each, took[name]) for name, each in named if name in took and each.limit is not None]
-    return list(_of_requests(found))
-
-
-def _of_requests(found: Sequence[Answer]) -> Iterator[Answer]:
-    """The same with one answer for a statement of requests: the latest of those that may be open; none where not all
-    of them are known."""
-    for answer in found:
-        promise = answer.promise
-        if not isinstance(promise, Request):
-            yield answer
-        elif promise.number == 0:
-            times = [
-                each.worst
-                for each in found
-                if isinstance(each.promise, Request) and each.promise.span == promise.span
-            ]
-            if len(times) == promise.most:
-                yield Answer(promise, max(times))
+    stated = scenario.safety
+    whole = [(names.safety_objective(k), each, each.told_with(stated)) for k, each in enumerate(stated)]
+    worst = {id(each): took[name] for name, each, _ in whole if name in took and each.limit is not None}
+    firsts = ((each, {id(one) for one in told}) for _, each, told in whole if told[0] is each)
+    return [Answer(each, max(worst[one] for one in told)) for each, told in firsts if worst.keys() >= told]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import astuple
 from fractions import Fraction
-from typing import FrozenSet, Iterable, List, Mapping, Optional, Sequence, Tuple
+from typing import FrozenSet, List, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import listed
 from pursue_gen.language.document import Edit, edited
@@ -19,12 +19,13 @@ SURVEY = "survey"
 """The word that begins the remarks of this command."""
 
 
-def rounded(metres: float, unit: float, speeds: Iterable[Number]) -> Number:
+def rounded(metres: float, unit: float, scenario: Scenario) -> Number:
     """A length in units of distance (`unit`: metres), to a tenth; to a whole number where a tenth is too fine.
 
-    Too fine is a distance that takes one of the agents (`speeds`: their `mobile`) a time of more than three decimals.
-    It is never 0.
+    Too fine is a distance that takes one of the agents, whose times are not rounded, a time of more than three
+    decimals. It is never 0.
     """
+    speeds = [agent.mobile for agent in scenario.agents if agent.mobile is not None and agent.speed is None]
     for step in (Fraction(1, 10), Fraction(1)):
         found = max(step, round(Fraction(metres / unit) / step) * step)
         if all(is_fine(found * Fraction(one)) for one in speeds):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Dict, FrozenSet, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import Dict, FrozenSet, Iterator, Mapping, Optional, Sequence, Set, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Severity, counted, error, in_order, usage_error
 from pursue_gen.drawing.clearance import Clearance
@@ -162,7 +162,7 @@ class _Floor:
         """A way that is missing."""
         route = self.plan.route(a, b)
         assert route is not None
-        distance = rounded(route.length, options.unit, _mobiles(scenario))
+        distance = rounded(route.length, options.unit, scenario)
         return SurveyedWay(a, b, None, route.length, distance, "", tuple(self.plan.crossed(a, b)), (), route.bends)
 
 
@@ -245,11 +245,6 @@ def _with_ways(scenario: Scenario, new: Mapping[Pair, _Floor], options: Options)
     return without_errors(reading.scenario, reading.diagnostics)
 
 
-def _mobiles(scenario: Scenario) -> List[Number]:
-    """Those of the agents whose times are not rounded."""
-    return [agent.mobile for agent in scenario.agents if agent.mobile is not None and agent.speed is None]
-
-
 def _measured(metres: float, level: Level, unit: float) -> str:
     """The remark on a distance."""
     scale = "" if unit == 1 else f", {unit:g} m per unit"
@@ -277,7 +272,7 @@ class _Work:
         metres = None if route is None else route.length
         distance = way.distance
         if metres is not None and not kept:
-            distance = rounded(metres, self.options.unit, _mobiles(self.scenario))
+            distance = rounded(metres, self.options.unit, self.scenario)
         windows = () if route is None or kept else tuple(self._windows(way))
         crossed = () if route is None else tuple(self.plan.crossed(way.a, way.b))
         line = () if route is None else route.bends

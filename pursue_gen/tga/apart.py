@@ -8,11 +8,12 @@ sees a pause end by itself would be as true, and games with it are some twenty t
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Iterable, Iterator, List, Tuple
+from typing import Iterable, List, Tuple
 
 from pursue_gen.language import network_names as names
 from pursue_gen.language.network_names import IDLE, LOSE
 from pursue_gen.language.numbers import exact
+from pursue_gen.language.objectives.pause import pauses_in
 from pursue_gen.language.scenario import Pause, Scenario
 from pursue_gen.language.symbols import Role
 from pursue_gen.tga.agents import Surroundings
@@ -21,21 +22,16 @@ from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location,
 _COUNTS, _TOO_SOON = 1, 2
 
 
-def pauses_of(scenario: Scenario) -> Iterator[Tuple[int, Pause]]:
-    """The pauses of a scenario, with the numbers of their objectives."""
-    return ((number, each) for number, each in enumerate(scenario.safety) if isinstance(each, Pause))
-
-
 def pause_variables(scenario: Scenario) -> Tuple[Tuple[str, int], ...]:
     """The variables of the pauses with their first values."""
-    return tuple((names.safety_pause(number), 0) for number, _ in pauses_of(scenario))
+    return tuple((names.safety_pause(number), 0) for number, _ in pauses_in(scenario.safety))
 
 
 def apart(automaton: Automaton, scenario: Scenario) -> Automaton:
     """The automaton of an agent that keeps the pauses of a scenario, or, where nobody controls it, may break them."""
     controlled = any(agent.controllable for agent in scenario.agents if agent.name == automaton.name)
     lasting = {event.name for event in scenario.events if event.duration is not None}
-    for number, pause in pauses_of(scenario):
+    for number, pause in pauses_in(scenario.safety):
         first = pause.event.name
         ended = names.done(first) if first in lasting else names.event(first)
         automaton = automaton.with_each(lambda edge: _kept(edge, number, pause, ended, controlled))  # noqa: B023

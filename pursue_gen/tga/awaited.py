@@ -12,6 +12,7 @@ from typing import Dict, Iterator, List, Tuple
 from pursue_gen.language import network_names as names
 from pursue_gen.language.assumption_checks import open_ways
 from pursue_gen.language.assumptions.base import SHORTEST_STAY
+from pursue_gen.language.assumptions.reaches import reaches_in
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.scenario import Agent, Reaches, Scenario
 from pursue_gen.language.symbols import Role, Symbol
@@ -22,18 +23,14 @@ from pursue_gen.tga.positions import Positions
 def ways_awaited(scenario: Scenario, codes: Positions) -> Iterator[Automaton]:
     """An automaton for each agent that is assumed to come somewhere after an event."""
     agents = {agent.name: agent for agent in scenario.agents}
-    for number, assumption in enumerate(scenario.assumptions, start=1):
-        if isinstance(assumption, Reaches):
-            yield _way(agents[assumption.agent.name], number, assumption, scenario, codes)
+    for number, assumption in reaches_in(scenario.assumptions):
+        yield _way(agents[assumption.agent.name], number, assumption, scenario, codes)
 
 
 def who_awaited(automaton: str, scenario: Scenario) -> str:
     """The agent along with whom an automaton goes; "" for other automata."""
     symbol = Symbol.of(automaton)
-    if symbol.role is not Role.AWAITED:
-        return ""
-    assumption = scenario.assumed[int(symbol.parts[0]) - 1]
-    return assumption.agent.name if isinstance(assumption, Reaches) else ""
+    return dict(reaches_in(scenario.assumed))[int(symbol.parts[0])].agent.name if symbol.role is Role.AWAITED else ""
 
 
 def latest_of(assumption: Reaches, scenario: Scenario) -> Dict[str, Number]:

@@ -7,20 +7,16 @@ from typing import Iterator, List, Tuple
 from pursue_gen.language import network_names as names
 from pursue_gen.language.network_names import AT_RISK, CHARGING, EMPTY, IDLE, LOSE
 from pursue_gen.language.numbers import exact
+from pursue_gen.language.objectives.endurance import batteries_in
 from pursue_gen.language.scenario import Agent, Endurance, Scenario
 from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.tga.agents import Surroundings
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Sync
 
 
-def batteries_by_time(scenario: Scenario) -> Iterator[Tuple[int, Endurance]]:
-    """The batteries by time, each behind its number among the safety objectives."""
-    return ((number, each) for number, each in enumerate(scenario.safety) if isinstance(each, Endurance))
-
-
 def charge_clocks(scenario: Scenario) -> Tuple[str, ...]:
     """The clocks of how long robots have been at their chargers."""
-    return tuple(names.charge_clock(number) for number, _ in batteries_by_time(scenario))
+    return tuple(names.charge_clock(number) for number, _ in batteries_in(scenario.safety))
 
 
 def endurance_automaton(endurance: Endurance, around: Surroundings, number: int) -> Automaton:

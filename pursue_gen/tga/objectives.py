@@ -16,7 +16,6 @@ from pursue_gen.language.scenario import (
     Patrol,
     Pause,
     Reach,
-    Ref,
     Request,
     Respond,
     Safety,
@@ -57,7 +56,7 @@ def _answered(scenario: Scenario) -> Iterator[Tuple[Symbol, Symbol]]:
     """Where the automata are that wait for the answers to orders when none is due."""
     orders = {event.name for event in scenario.orders}
     for k, each in enumerate(scenario.safety):
-        if isinstance(each, (Respond, Request)) and isinstance(each.trigger, Ref) and each.trigger.name in orders:
+        if each.called_by in orders:
             yield names.safety_objective(k), IDLE
 
 
@@ -142,8 +141,9 @@ def _done(events: Sequence[int], count: int) -> str:
 
 def safety_automaton(safety: Safety, around: Surroundings, number: int = 0) -> Automaton:
     """The automaton that goes to `lose` when the safety objective of the scenario is broken."""
-    if type(safety) in _WITH_CLOCK:
-        return _WITH_CLOCK[type(safety)](safety, around, number)
+    with_clock = _WITH_CLOCK.get(type(safety))
+    if with_clock is not None:
+        return with_clock(safety, around, number)
     name, breaks = names.safety_objective(number), safety.breaks
     broken = [] if breaks.condition is None else around.conditions.ways_to_hold(breaks.condition)
     edges = [Edge(IDLE, LOSE, Guard(integers=one), controllable=False) for one in (*broken, *_together(breaks, around))]

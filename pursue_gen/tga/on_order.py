@@ -6,11 +6,12 @@ order sets it to 1 for this one event, together with the plan that was proven fr
 
 from __future__ import annotations
 
-from typing import Iterator, Optional, Sequence, Tuple
+from typing import Optional, Sequence, Tuple
 
 from pursue_gen.language import network_names as names
+from pursue_gen.language.objectives.request import requests_in
 from pursue_gen.language.scenario import Event, MostOpen, Scenario
-from pursue_gen.tga.network import Automaton, Clause, Edge, Guard, Location, Sync, Test
+from pursue_gen.tga.network import Automaton, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.requests import fewer_open
 from pursue_gen.tga.rules import Turns
 
@@ -29,13 +30,9 @@ def _order(event: Event, scenario: Scenario, in_turn: Sequence[Tuple[str, Turns]
         for variable, turns in in_turn
         if event.name in turns
     )
-    clauses = ((Test(names.DESK_OPEN, 1),), *turn, *_free(event, scenario))
+    named = (each for _, each in requests_in(scenario.safety) if each.called_by == event.name)
+    free = (fewer_open(MostOpen.of(each), scenario) for each in named)
+    clauses = ((Test(names.DESK_OPEN, 1),), *turn, *free)
     happens = Sync(names.event(event.name), sends=True)
     closed = ((names.DESK_OPEN, 0),)
     return Edge(names.LISTENING, names.LISTENING, Guard(integers=clauses), happens, closed, controllable=False)
-
-
-def _free(event: Event, scenario: Scenario) -> Iterator[Clause]:
-    """That an objective has room for one more of it."""
-    limits = (each for each in scenario.assumed if isinstance(each, MostOpen) and each.event.name == event.name)
-    yield from (fewer_open(each, scenario) for each in limits)

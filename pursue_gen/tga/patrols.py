@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import Dict, FrozenSet, Iterator, List, Sequence, Tuple
 
 from pursue_gen.language import network_names as names
+from pursue_gen.language.assumptions.reaches import reaches_in
 from pursue_gen.language.clauses import Domains
 from pursue_gen.language.network_names import AT_RISK, IDLE, LOSE
 from pursue_gen.language.numbers import exact
-from pursue_gen.language.scenario import Agent, Patrol, Reaches, Scenario
+from pursue_gen.language.objectives.endurance import batteries_in
+from pursue_gen.language.scenario import Agent, Patrol, Scenario
 from pursue_gen.tga.agents import Surroundings
-from pursue_gen.tga.endurance import batteries_by_time
 from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Sync, Test
 from pursue_gen.tga.positions import Positions
 from pursue_gen.tga.responses import awaited_by
@@ -22,9 +23,9 @@ _NOTHING: Tuple[Tuple[str, int], ...] = ()
 def awaited(scenario: Scenario) -> FrozenSet[Tuple[str, str]]:
     """The agents with the POIs to whose arrival there somebody listens: these edges have a channel."""
     found = {(agent.name, each.place.name) for each in scenario.patrols for agent in scenario.on_patrol(each)}
-    followed = {each.agent.name for each in scenario.assumptions if isinstance(each, Reaches)}
+    followed = {each.agent.name for _, each in reaches_in(scenario.assumptions)}
     found |= {(name, poi.name) for name in followed for poi in scenario.pois}
-    found.update((each.agent.name, each.dock.name) for _, each in batteries_by_time(scenario))
+    found.update((each.agent.name, each.dock.name) for _, each in batteries_in(scenario.safety))
     found.update((agent.name, place) for agent, place in seen_by(scenario))
     heard = [condition for each in scenario.safety if each.breaks.condition is None for condition in each.conditions]
     if heard:

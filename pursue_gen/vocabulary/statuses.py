@@ -10,7 +10,7 @@ from typing import Iterator, List, Tuple
 from pursue_gen.language import network_names as names
 from pursue_gen.language.batteries import levels, shown_level
 from pursue_gen.language.loads import carriers, load_words
-from pursue_gen.language.scenario import Pause, Request, Scenario
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.tga.counts import counted, split
 from pursue_gen.tga.network import Automaton, Network
@@ -92,27 +92,10 @@ def _assumptions(scenario: Scenario) -> Iterator[Status]:
             yield Status(names.assumption_count(number), label, dict(done), inside=True)
 
 
-def _turns_of(request: Request, name: str) -> Iterator[Status]:
-    """What the variables of a statement say of those that may be open at once."""
-    if request.number == 0:
-        places = [each.which for each in request.each]
-        free = {str(k): f"the next one is {which}" for k, which in enumerate(places)}
-        yield Status(Role.SAFETY_TURN(name), request.text, {**free, str(len(places)): "no more may come"}, inside=True)
-        oldest = {str(k): f"next to be answered: {which}" for k, which in enumerate(places)}
-        yield Status(Role.SAFETY_OLDEST(name), request.text, oldest, inside=True)
-
-
 def _objectives(scenario: Scenario, network: Network) -> Iterator[Status]:
     variables = {name for name, _ in network.variables}
     for name, objective in stated(scenario).items():
-        if isinstance(objective, Request):
-            yield from _turns_of(objective, name)
-        elif objective.order and names.rule_turn(name) in variables:
-            following = {str(k): f"next: {scenario.shown(place)}" for k, place in enumerate(objective.order)}
-            yield Status(names.rule_turn(name), objective.text, following, inside=True)
-        if isinstance(objective, Pause):
-            begun = f"{objective.following.shown} has begun too soon"
-            said = {"0": "no pause", "1": f"since the end of {objective.event.shown}", "2": begun}
-            yield Status(Role.SAFETY_PAUSE(name), objective.text, said, inside=True)
+        own = ((role(name), said) for role, said in objective.variables(scenario.shown))
+        yield from (Status(one, objective.text, dict(said), inside=True) for one, said in own if one in variables)
         texts = {place.name: objective.status(place.name) for place in network.automaton(name).locations}
         yield Status(name, objective.text + objective.words.which, texts)

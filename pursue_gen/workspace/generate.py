@@ -31,7 +31,6 @@ from pursue_gen.workspace import context, deploy, expected, game_file, model_fil
 from pursue_gen.workspace.context import Options
 from pursue_gen.workspace.packages import (
     RECEIVING,
-    SHARED,
     TEST_DEPENDS,
     Package,
     environment,
@@ -131,7 +130,7 @@ def _with_mission(packages: Sequence[Package], scenario: Scenario) -> List[Packa
     data = {
         f"src/{package.name}/{path}": content
         for package in packages
-        if package.kind in ("controller", "observer", _UI)
+        if package.runs
         for path, content in {**package.data, f"config/{MISSION}": b""}.items()
     }
     text = mission_file(mission_of(scenario.name, data)[0].digest, scenario.name)
@@ -256,7 +255,7 @@ def _readme(
     packages: Sequence[Package],
     computed: bool,
 ) -> bytes:
-    nodes = [package.name for package in packages if package.kind not in ("bringup", *SHARED, *RECEIVING)]
+    nodes = [package.name for package in packages if package.runs]
     more = {"packages": packages, "nodes": nodes, "poses_computed": computed, "promise": _promise(scenario)}
     return jinja.get_template("workspace/README.md.j2").render({**values, **more}).encode()
 

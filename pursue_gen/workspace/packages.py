@@ -94,6 +94,11 @@ class Package:
     depends: Tuple[str, ...] = ()
     test_depends: Tuple[str, ...] = ()
 
+    @property
+    def runs(self) -> bool:
+        """True where it is a node of the mission."""
+        return self.kind not in ("bringup", *SHARED, *RECEIVING)
+
 
 def templates_dir() -> Path:
     """The templates of catkin packages: beside the installed generator, or in the checkout it runs from."""

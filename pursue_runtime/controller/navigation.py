@@ -16,14 +16,13 @@ from pursue_runtime.controller.view import Due, View
 from pursue_runtime.controller.whereabouts import Position, Whereabouts
 from pursue_runtime.doors.lifts import IS_ABOARD
 from pursue_runtime.doors.opened import NONE_OPENED
-from pursue_runtime.event_words import BACK, BLOCKED, DISPLACED, FAILED, HELD, RESUME, STUCK, RobotReport, Word
+from pursue_runtime.event_words import BACK, DISPLACED, FAILED, HELD, RESUME, RobotReport, Word
 from pursue_runtime.locations import is_action
 from pursue_runtime.orders import Order
 from pursue_runtime.sentences import in_words, marked
 
 GRACE = 2.0
 """Seconds for which the position of a robot may be missing, or the robot may move about, before that is reported."""
-
 
 Log = Callable[[str, str], None]
 """Takes a level (info, warn, err) and a sentence."""
@@ -94,7 +93,7 @@ class Navigation:
         if view.location != before.location:
             self._saw_begin = bool(before.location)
             self._enter(view, now)
-        if self._report is not None and self._is_shown(self._report.word, view):
+        if self._report is not None and view.shows(self._report.word):
             self._report.confirmed = True
         self._given = [(order, sent) for order, sent in self._given if order.seq in view.unanswered]
         trip = self._trip
@@ -395,9 +394,3 @@ class Navigation:
     def _reports(self, event: str) -> bool:
         """Return True if the present report is of this kind."""
         return self._report is not None and self._report.word.startswith(f"{self.name}:{event}")
-
-    def _is_shown(self, word: str, view: View) -> bool:
-        """Return True if the state shows what the word reports."""
-        shown = {FAILED: view.lost, STUCK: view.lost, BLOCKED: view.lost, HELD: view.held}
-        shown.update({DISPLACED: view.displaced, BACK: not view.displaced})
-        return any(shown[event] for event in shown if word.startswith(f"{self.name}:{event}"))

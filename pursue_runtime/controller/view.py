@@ -6,6 +6,7 @@ from typing import FrozenSet, NamedTuple, Optional, Tuple
 
 from pursue_runtime.controller.goal import Goal, Movement
 from pursue_runtime.controller.whereabouts import Place
+from pursue_runtime.event_words import BACK, BLOCKED, DISPLACED, FAILED, HELD, STUCK
 from pursue_runtime.locations import is_movement
 from pursue_runtime.orders import Order
 
@@ -32,6 +33,12 @@ class View(NamedTuple):
         if order.location == self.location:
             return True
         return order.at_once and is_movement(order.location) and order.location.endswith(f"_to_{self.location}")
+
+    def shows(self, word: str) -> bool:
+        """Return True where it shows what the robot reports with this word."""
+        shown = {FAILED: self.lost, STUCK: self.lost, BLOCKED: self.lost, HELD: self.held}
+        shown.update({DISPLACED: self.displaced, BACK: not self.displaced})
+        return any(shown[event] for event in shown if word.partition(":")[2].startswith(event))
 
 
 class Due(NamedTuple):

@@ -38,7 +38,7 @@ class Act(NamedTuple):
 def acts_of(robot: Automaton, model: Model, partners: Collection[str] = ()) -> Tuple[Act, ...]:
     """The actions with a duration that this robot does alone, or with the first of the `partners` that can take
     part."""
-    others = [each for each in model.of_kind("robot", "human", "agent") if each is not robot]
+    others = [each for each in model.acting if each is not robot]
     shared = {edge.word for other in others for edge in other.edges if edge.sync == "receive"}
     found = []
     for edge in robot.edges:

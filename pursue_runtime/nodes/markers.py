@@ -28,8 +28,12 @@ from pursue_runtime.ui.markers import ARROW, BALL, DISC, LINES, TEXT, Mark, Pict
 from pursue_runtime.ui.page import read_floor_plan
 from pursue_runtime.ui.strategies import strategies_in, strategies_of
 
-HEIGHTS = {LINES: 0.0, DISC: 0.01, ARROW: 0.04, BALL: 0.1, TEXT: 0.2}
-"""Metres above the map: what lies above the rest is seen from above."""
+SHAPES = {
+    LINES: (0.0, 1, 0, 0, 0.0), DISC: (0.01, 1, 1, 0, 0.01), ARROW: (0.04, 1, 2.5, 3, 0.0), BALL: (0.1, 1, 1, 1, 0.0),
+    TEXT: (0.2, 0, 0, 1, 0.0),
+}  # fmt: skip
+"""Metres above the map: what lies above the rest is seen from above; how long, wide and high it is, in its sizes, and
+how many metres higher."""
 
 
 class MarkersNode:
@@ -102,15 +106,12 @@ class MarkersNode:
         marker.header.frame_id = self.frame  # its stamp is 0: the newest transform counts
         marker.color.r, marker.color.g, marker.color.b = mark.colour
         marker.color.a = marker.pose.orientation.w = 1.0
-        height = HEIGHTS[mark.kind]
-        if mark.kind in (LINES, ARROW):
+        height, long, wide, high, more = SHAPES[mark.kind]
+        marker.scale.x, marker.scale.y, marker.scale.z = long * mark.size, wide * mark.size, high * mark.size + more
+        if len(mark.points) > 1:
             marker.points = [Point(x, y, height) for x, y in mark.points]
-            marker.scale.x = mark.size
-            marker.scale.y, marker.scale.z = (2.5 * mark.size, 3 * mark.size) if mark.kind == ARROW else (0.0, 0.0)
         else:
             (marker.pose.position.x, marker.pose.position.y), marker.pose.position.z = mark.points[0], height
-            marker.scale.x = marker.scale.y = 0.0 if mark.kind == TEXT else mark.size
-            marker.scale.z = 0.01 if mark.kind == DISC else mark.size
         return marker
 
     def report(self) -> NodeReport:

@@ -25,7 +25,7 @@ from pursue_runtime.nodes.process import lower_priority, run_to_end
 from pursue_runtime.nodes.publishing import Newcomers, listeners
 from pursue_runtime.nodes.state_message import subscribe_states
 from pursue_runtime.parameters import choice, names, whole
-from pursue_runtime.simulator.simulator import ACTING, DELAYS, Delays, Simulator
+from pursue_runtime.simulator.simulator import DELAYS, Delays, Simulator
 from pursue_runtime.state import LOST, STOPPED, WAITING, WON, SystemState
 
 
@@ -36,7 +36,7 @@ class SimulatorNode:
         self.ending = Ending()
         self.membership = Membership(package, self.ending, config)
         model, settings = self.membership.model, self.membership.source.read("ui.yaml")
-        agents = [automaton.name for automaton in model.of_kind(*ACTING)]
+        agents = [automaton.name for automaton in model.acting]
         given = rospy.get_param("~", {})
         reports = names(given, "reports", settings.get("reports", agents))
         delays = Delays(choice(given, "delays", "random", DELAYS), whole(given, "seed", 0, least=None))

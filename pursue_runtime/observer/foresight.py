@@ -11,7 +11,6 @@ from typing import Collection, Dict, Iterable, Iterator, Mapping, NamedTuple, Op
 
 from pursue_runtime.model import Model, Move, Position
 from pursue_runtime.observer.automata import Automata
-from pursue_runtime.observer.mission_state import ACTING
 from pursue_runtime.observer.planning import Spread
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Cover
@@ -132,7 +131,7 @@ class Foresight:
 
     def _ends(self, position: Position, passed: float) -> Iterator[_Event]:
         """The ends of what agents do that are known to come within a short time."""
-        for automaton in self._model.of_kind(*ACTING):
+        for automaton in self._model.acting:
             place = position.locations[automaton.name]
             bounds = self._model.bounds_of(automaton.name, place, position.values)
             if automaton.name in self._gone or not bounds:

@@ -135,14 +135,14 @@ class Mission(MissionOrders):
         begins = self.order_begins()
         if begins is not None and begins <= now:
             return self._put_plan_in_force(now)
-        has_broken = False
+        has_broken, promised = False, {each.name for each in self.model.of_kind("safety")}
         for name, delay in self._bounds(position):
             if name in self.late or delay + self._tolerance > EPSILON:
                 continue
             automaton, place = self.model.automaton(name), position.locations[name]
             own = [edge for edge in automaton.edges_from(place) if edge.sync == "own" and edge.allowed(position.values)]
             # A deadline; of an objective, or of a watcher, whose strategy has no decision then.
-            lost = [edge for edge in own if automaton.kind == "safety" or (name, edge.target) in self.model.bad]
+            lost = [edge for edge in own if name in promised or (name, edge.target) in self.model.bad]
             if lost:
                 return self._take((Move(name, lost[0]),), now, DEADLINE)
             overstays = overstayed(self.model, position, name, self._tolerance)

@@ -30,8 +30,8 @@ from pursue_runtime.observer.planning import MIN_LEAD_TIME, Ordered, PlanRequest
 from pursue_runtime.sentences import as_sentence, in_words
 from pursue_runtime.state import LIVE, RUNNING, SystemState
 
-BUSY = "what is under way changes faster than plans are found; order it again later"
-"""Why an order is refused that no plan came for in time."""
+NOT_IN_TIME = "no plan was found within {:.1f} s, and what is under way is not known for longer; order it again later"
+"""Why an order is refused that no plan came for in time: how long a search could take."""
 
 NOTHING: Mapping[str, float] = {}
 
@@ -116,7 +116,7 @@ class MissionOrders(MissionStatus):
         foreseen = self._foresee(order, excused, now, least, least + FAR / self._unit)
         if foreseen is None:
             if now > order.came + PATIENCE:
-                raise Refused(BUSY)
+                raise Refused(NOT_IN_TIME.format(least * self._unit))
             self._planning.reset()
             return  # something ends before a plan can come: then the order is looked at again
         after, ahead, spread = foreseen
@@ -130,7 +130,7 @@ class MissionOrders(MissionStatus):
         request = self._planning.request
         self.ordering.attempts += request is not None and request is not before
         if self._planning.no_plan_reason or self.ordering.attempts > ATTEMPTS:
-            raise Refused(BUSY)
+            raise Refused(self._planning.no_plan_reason or NOT_IN_TIME.format(least * self._unit))
 
     def _asked(self) -> Optional[PlanRequest]:
         """Return the request that is looked at, or whose plan goes to the controllers."""

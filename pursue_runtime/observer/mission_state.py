@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Callable, Collection, Dict, List, Optional, Set, Tuple
 
 from pursue_runtime.event_words import Word
-from pursue_runtime.model import Model, Position
+from pursue_runtime.model import ACTING, Model, Position
 from pursue_runtime.observer.automata import Automata
 from pursue_runtime.observer.beginnings import Beginnings
 from pursue_runtime.observer.ending import Ending
@@ -24,7 +24,6 @@ from pursue_runtime.strategy import Cover, Entry
 Log = Callable[[str, str], None]
 """Takes a level (debug, info, warn, err) and a sentence."""
 
-ACTING = ("robot", "human", "agent")
 COUNTED = ("taken", "stale", "held", "uncommanded", "impossible", "untimely", "unreadable", "uncovered")
 
 

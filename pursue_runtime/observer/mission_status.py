@@ -10,7 +10,7 @@ from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Model, Position
 from pursue_runtime.observer import life
 from pursue_runtime.observer.assumptions import broken_reason
-from pursue_runtime.observer.mission_state import ACTING, MissionState
+from pursue_runtime.observer.mission_state import MissionState
 from pursue_runtime.observer.planning import PlanRequest, covers, is_uncovered, without_commands
 from pursue_runtime.observer.uncovered import uncovered_position, uncovered_reason
 from pursue_runtime.sentences import as_sentence, in_words, marked
@@ -301,7 +301,7 @@ class MissionStatus(MissionState):
     def _all_wait(self, position: Position) -> bool:
         """Return True if nobody is under way but agents that are late or lost, and the plan in force has no command."""
         gone = self.late.union(self.lost)
-        others = [each.name for each in self.model.of_kind(*ACTING) if each.name not in gone]
+        others = [each.name for each in self.model.acting if each.name not in gone]
         busy = any(is_under_way(position.locations[name]) for name in others)
         return not busy and (self._cover is None or not self._has_commands(self._cover, position))
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import AbstractSet
 
 from pursue_runtime.model import Model, Position
-from pursue_runtime.observer.mission_state import ACTING
 from pursue_runtime.observer.planning import stays
 from pursue_runtime.sentences import MARKED, listed, marked
 from pursue_runtime.state import SystemState
@@ -41,7 +40,7 @@ def uncovered_position(position: Position) -> str:
 
 def _where(model: Model, cover: Cover, position: Position) -> str:
     """Where the agents are of which the plan speaks."""
-    acting = model.of_kind(*ACTING)
+    acting = model.acting
     named = [automaton for automaton in acting if automaton.name in cover.names] or acting
     shown = named[:SHOWN] if len(named) > SHOWN + 1 else named
     parts = [f"{marked(each.name)} is {_place(model, each.name, position)}" for each in shown]

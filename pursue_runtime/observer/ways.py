@@ -44,7 +44,7 @@ class Ways:
         block = (*way, name) if location else way
         if location and not is_lost:
             turn = way_back(self.model, name, location)
-            if turn and self.blocked.isdisjoint((way, block)) and self.model.automaton(name).kind == "robot":
+            if turn and self.blocked.isdisjoint((way, block)) and self.model.automaton(name).is_robot:
                 self.turns[name] = turn
             found = f"has found that {in_words(way)} is blocked" if report.event == BLOCKED else "cannot go on"
             why = f"gave up {as_sentence(report.text)}" if report.text else found

@@ -18,7 +18,6 @@ from pursue_runtime.model import Automaton, Edge, Model
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.state import LIVE, SystemState, older, rewinds
 
-ACTING = ("robot", "human", "agent")
 DELAYS = ("random", "early", "middle", "late")
 
 INSIDE = (0.1, 0.2)  # time units: how far inside its window an end stays; more where being late would break it
@@ -87,7 +86,7 @@ def end_words(automaton: Automaton, location: str) -> List[str]:
 
 def _shared_window(model: Model, ending: Edge) -> Optional[EndWindow]:
     """Return when an agent that takes part in what another one does, until this edge, should report its end."""
-    for other in model.of_kind(*ACTING):
+    for other in model.acting:
         if any(edge.word == ending.word and edge.sync == "send" for edge in other.edges_from(ending.source)):
             window = end_window(model, other, ending.source)
             return window._replace(clock=ending.resets[0]) if window is not None and ending.resets else None
@@ -109,7 +108,7 @@ def report_of(model: Model, agent: str, event: str, as_of: Optional[int] = None)
 def reports(automaton: Automaton, edge: Edge) -> bool:
     """Return True if the agent reports this edge: an event of its own or, as a robot, the end of what it does together
     with others."""
-    return edge.sync != "receive" or (automaton.kind == "robot" and edge.is_end)
+    return edge.sync != "receive" or (automaton.is_robot and edge.is_end)
 
 
 def _begins(order: str, location: str) -> bool:
@@ -160,10 +159,10 @@ class Simulator:
 
     def __init__(self, model: Model, reports: Collection[str], delays: Durations) -> None:
         """`reports`: the agents whose ends come from here."""
-        self._agents = [automaton for automaton in model.of_kind(*ACTING) if automaton.name in reports]
-        unknown = set(reports) - {automaton.name for automaton in model.of_kind(*ACTING)}
+        self._agents = [automaton for automaton in model.acting if automaton.name in reports]
+        unknown = set(reports) - {automaton.name for automaton in model.acting}
         if unknown:
-            known = ", ".join(automaton.name for automaton in model.of_kind(*ACTING))
+            known = ", ".join(automaton.name for automaton in model.acting)
             raise ValueError(f"~reports names {', '.join(sorted(unknown))}; the agents are {known}")
         self._same = {automaton.name: min(SAME, _rest(automaton) / 2) for automaton in self._agents}
         self._model = model
@@ -255,7 +254,7 @@ class Simulator:
         activity = Activity(
             location, since, report_of(self._model, name, event, state.seq), window.low * state.unit,
             since + self._delays.draw(window, name, number) * state.unit,
-            under_way=automaton.kind != "robot" or newborn,
+            under_way=not automaton.is_robot or newborn,
         )
         self._activities[name] = activity
         orders = self._orders[name]

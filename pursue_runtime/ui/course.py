@@ -9,7 +9,6 @@ from typing import Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.locations import TO_BE_SAID
 from pursue_runtime.model import Model, Position
-from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import RUNNING, SystemState
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.vocabulary import deed
@@ -60,7 +59,7 @@ def _steps(model: Model, strategies: Sequence[Strategy], here: Position, lost: "
             return
         passed += delay
         automaton = model.automaton(agent)
-        if automaton.kind in ACTING:
+        if automaton.acts:
             edge = taken[0].edge
             yield Step(passed, agent, deed(model, automaton, edge).do, commanded, edge.target)
         here = model.after(taken, here)
@@ -83,7 +82,7 @@ def _commands(strategies: Sequence[Strategy], here: Position) -> Iterator[_Move]
 
 def _ends(model: Model, here: Position, lost: "set[str]") -> Iterator[_Move]:
     """The ends of what goes on; one that is overdue comes at once."""
-    for automaton in model.of_kind(*ACTING):
+    for automaton in model.acting:
         location = here.locations[automaton.name]
         for edge in automaton.edges_from(location):
             if edge.sync == "receive" or edge.controllable or not edge.is_end:

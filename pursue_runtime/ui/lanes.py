@@ -10,7 +10,6 @@ from typing import Any, Dict, List, NamedTuple, Optional
 
 from pursue_runtime.locations import is_action, is_movement
 from pursue_runtime.model import Automaton, Model
-from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import ENDED, LIVE, SystemState
 from pursue_runtime.ui.promise import BROKEN, NOTHING, Promise, objectives_now
 from pursue_runtime.vocabulary import where
@@ -35,7 +34,7 @@ class Lanes:
     def __init__(self, model: Model, promise: Promise = NOTHING) -> None:
         """`promise`: what is to be achieved."""
         self._model, self._promise = model, promise
-        self._agents = model.of_kind(*ACTING)
+        self._agents = model.acting
         self._last: Dict[str, str] = {}
         self._lanes: Dict[str, List[Segment]] = {agent.name: [] for agent in self._agents}
         self._promised: List[List[Segment]] = [[] for _ in promise.objectives]

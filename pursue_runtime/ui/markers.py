@@ -13,7 +13,6 @@ from pursue_runtime.data import DataError, reading
 from pursue_runtime.locations import action_of, is_action, movement, place_of
 from pursue_runtime.model import Model
 from pursue_runtime.sentences import in_words
-from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import ENDED, LIVE, SystemState
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.course import Step, course, first_commands
@@ -94,7 +93,7 @@ class Picture:
         strategies = self._strategies.get(state.plan, ())
         following = first_commands(course(self._model, strategies, state)) if strategies else {}
         crowd: Dict[Point, int] = {}  # how many are shown at a point
-        for automaton in self._model.of_kind(*ACTING):
+        for automaton in self._model.acting:
             location = state.locations.get(automaton.name, "")
             step = following.get(automaton.name)
             shown += self._agent_marks(automaton.name, automaton.kind, location, state, crowd, step)

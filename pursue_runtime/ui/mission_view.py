@@ -24,7 +24,7 @@ from pursue_runtime.locations import TO_BE_SAID, is_movement
 from pursue_runtime.model import Model
 from pursue_runtime.resend import resend_timeout
 from pursue_runtime.sentences import Told, in_words
-from pursue_runtime.simulator.simulator import ACTING, report_word, reports
+from pursue_runtime.simulator.simulator import report_word, reports
 from pursue_runtime.state import ENDED, HOLDING, LIVE, LOST, RUNNING, WON, SystemState, older, rewinds
 from pursue_runtime.strategy import Entry, Plans, Strategy
 from pursue_runtime.ui.at_doors import AtDoors
@@ -87,8 +87,8 @@ def reporters(model: Model, ends: bool, settings: Mapping[str, Any]) -> List[str
     """The agents whose ends a person reports: people, and with `ends` all whose ends are reported (`settings` are
     those of ui.yaml), since nobody is simulated then."""
     reported = settings.get("reports", [automaton.name for automaton in model.automata]) if ends else ()
-    agents = [agent for agent in model.of_kind(*ACTING) if not is_fact(agent)]
-    return [agent.name for agent in agents if agent.kind == "human" or agent.name in reported]
+    agents = [agent for agent in model.acting if not is_fact(agent)]
+    return [agent.name for agent in agents if agent.is_person or agent.name in reported]
 
 
 def tasks(model: Model, state: SystemState, agents: Collection[str]) -> List[Task]:
@@ -97,7 +97,7 @@ def tasks(model: Model, state: SystemState, agents: Collection[str]) -> List[Tas
     A robot that is held has the task to resume.
     """
     found = []
-    for automaton in model.of_kind(*ACTING):
+    for automaton in model.acting:
         location = state.locations.get(automaton.name, "")
         if automaton.name not in agents:
             continue
@@ -110,9 +110,8 @@ def tasks(model: Model, state: SystemState, agents: Collection[str]) -> List[Tas
         ends = (edge for edge in automaton.edges_from(location) if edge.is_end)
         end = next((edge for edge in ends if reports(automaton, edge)), None)
         if begin is not None and end is not None:
-            is_person = automaton.kind == "human"
-            text = instruction(model, automaton, begin) if is_person else where(model, automaton, location)
-            label = "Arrived" if is_movement(location) and not is_person else "Done"
+            text = instruction(model, automaton, begin) if automaton.is_person else where(model, automaton, location)
+            label = "Arrived" if is_movement(location) and not automaton.is_person else "Done"
             word = report_word(model, automaton.name, end.word)
             found.append(Task(automaton.name, automaton.kind, text, label, word, model.shown(automaton.name)))
     return found
@@ -282,7 +281,7 @@ class MissionView:
         places = [
             f"{model.shown(automaton.name)} {where(model, automaton, at.get(automaton.name, '?'))}"
             + (f" ({waits[automaton.name]})" if automaton.name in waits else "")
-            for automaton in model.of_kind("robot", "human", "agent")
+            for automaton in model.acting
         ]
         return f"{self.elapsed(now):8.1f}  " + "  ".join(places)
 

@@ -10,10 +10,10 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 from pursue_runtime.data import reading
 from pursue_runtime.event_words import START, event_in
 from pursue_runtime.locations import FINDING_OUT, TO_BE_SAID, is_action, is_end, is_movement
-from pursue_runtime.model import Automaton, Model
+from pursue_runtime.model import ACTING, Automaton, Model
 from pursue_runtime.poses import read_poses
 from pursue_runtime.sentences import Told, in_words, listed
-from pursue_runtime.simulator.simulator import ACTING, end_window, report_word
+from pursue_runtime.simulator.simulator import end_window, report_word
 from pursue_runtime.state import HOLDING, LIVE, RUNNING, WAITING, SystemState
 from pursue_runtime.strategy import Strategy
 from pursue_runtime.ui.at_doors import AtDoors
@@ -106,7 +106,7 @@ class Page:
         self._plan = plan
         self._floor = floor
         self._reporters = reporters
-        self._acting = model.of_kind(*ACTING)
+        self._acting = model.acting
         self._last: Optional[SystemState] = None
         self._lanes = Lanes(model, promise)
         self._answers: List[Dict[str, Any]] = []

@@ -12,7 +12,7 @@ from pursue_runtime.data import DataError, reading
 from pursue_runtime.locations import breaks_off, is_end
 from pursue_runtime.model import Model
 from pursue_runtime.sentences import listed
-from pursue_runtime.simulator.simulator import ACTING, end_window
+from pursue_runtime.simulator.simulator import end_window
 from pursue_runtime.state import HOLDING, LIVE, SystemState
 from pursue_runtime.ui.statuses import Status, deadline
 
@@ -108,7 +108,7 @@ def with_written(promise: Promise, model: Model, state: SystemState) -> Promise:
 
 def _become(objective: Objective, model: Model, state: SystemState) -> str:
     """What has become of an objective."""
-    goals = {name for name, _ in model.goal if model.has(name) and model.automaton(name).kind == "reach"}
+    goals = {name for name, _ in model.goal} & {each.name for each in model.of_kind("reach")}
     there = {(name, state.locations.get(name, "")) for name in objective.of}
     if not objective.of:
         return NOT_PROMISED
@@ -214,7 +214,7 @@ class Guarantee:
 
     def _off_time(self, state: SystemState, last: Optional[SystemState]) -> str:
         """Who has ended something outside the window of its model with this event."""
-        agent = next((each for each in self._model.of_kind(*ACTING) if each.name == state.agent), None)
+        agent = next((each for each in self._model.acting if each.name == state.agent), None)
         if last is None or agent is None or last.seq != state.seq - 1 or agent.name in self._excused:
             return ""
         before, here = last.locations.get(agent.name, ""), state.locations.get(agent.name, "")

@@ -11,7 +11,6 @@ from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from pursue_runtime.locations import is_under_way
 from pursue_runtime.model import Automaton, Model
-from pursue_runtime.simulator.simulator import ACTING
 from pursue_runtime.state import SystemState
 from pursue_runtime.strategy import Command, Strategy
 from pursue_runtime.ui.statuses import Status
@@ -61,7 +60,7 @@ def reason_text(model: Model, statuses: Sequence[Status], state: SystemState, fo
 
 
 def _acts(automata: Mapping[str, Automaton], name: str) -> bool:
-    return name in automata and automata[name].kind in ACTING
+    return name in automata and automata[name].acts
 
 
 def _text(

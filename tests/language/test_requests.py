@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import List
 
 import pytest
@@ -13,7 +12,6 @@ from pursue_gen.language import check, parse
 from pursue_gen.language.checks import check_reading
 from pursue_gen.language.draft import Draft
 from pursue_gen.language.formatter import format_text
-from pursue_gen.language.objectives.request import with_fewer
 from pursue_gen.language.parser import read
 from pursue_gen.language.scenario import MostOpen, Request, Respond
 from pursue_gen.language.sentences import condition_of_promise, objective_words
@@ -64,9 +62,9 @@ def test_a_scenario_with_fewer_is_the_one_that_is_written_so(most: int, fewer: i
         parse(f"{SHOP}objective: if order then pack within 30, at_most {k} open\n", "x.pur")
         for k in (max(most, fewer), min(most, fewer))
     )
-    (first, *_) = one.safety
-    assert isinstance(first, Request)
-    changed = replace(one, safety=with_fewer(one.safety, first, min(most, fewer)))
+    (change, *_) = one.safety[0].easier(lambda _: {})
+    assert list(change.values) == list(range(max(most, fewer) - 1, 0, -1))
+    changed = one.with_each(lambda each: change.make(each, min(most, fewer)))
     assert scenario_text(changed) == scenario_text(other)
     assert len(written(changed).safety) == len(changed.safety) == min(most, fewer)
 

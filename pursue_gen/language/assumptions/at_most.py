@@ -42,6 +42,9 @@ class AtMost(AboutOne):
             return f"{name} never does {event}"
         return f"{name} does {event} at most {'once' if self.times == 1 else f'{self.times} times'}"
 
+    def allows(self, event: str, within: Number) -> bool:
+        return self.times > 1 or super().allows(event, within)
+
     def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
         if self.times > MOST_TIMES:
             message = f"at_most {self.times}: expected {MOST_TIMES} or less, as each time is counted"

@@ -96,6 +96,10 @@ class Assumption(Written):
         if kind == "agent" and self.is_about(name):
             yield f"assumed: {shown(self.clause)}"
 
+    def allows(self, event: str, within: Number) -> bool:
+        """True if it lets an event come again so many time units after it has come."""
+        return all(ref.name != event for _, ref in self.names())
+
     def binds(self, agent: Agent) -> bool:
         """True if it says of this agent that it does not do all that it could."""
         raise NotImplementedError

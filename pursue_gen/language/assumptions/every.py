@@ -44,6 +44,9 @@ class Every(Between):
     def since(self) -> str:
         return f"{self.agent.shown}'s last {self.event.shown}"
 
+    def allows(self, event: str, within: Number) -> bool:
+        return self.event.name != event or self.least < within
+
     def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
         rest = time_units(like(setting.rest, self.most))
         found = self.ill_timed("every", f"agents rest for {rest} between two steps", setting)

@@ -39,6 +39,9 @@ class InAll(Assumption):
     def _shown(self) -> str:
         return listed([ref.shown for ref in self.events])
 
+    def allows(self, event: str, within: Number) -> bool:
+        return self.times > 1 or super().allows(event, within)
+
     def binds(self, agent: Agent) -> bool:
         done = {ref.name for ref in self.events}
         return not agent.controllable and any(ref.name in done for ref in agent.can_do)

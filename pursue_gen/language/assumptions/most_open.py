@@ -7,6 +7,7 @@ from typing import ClassVar, Iterator
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import Assumption, Setting
+from pursue_gen.language.numbers import Number
 from pursue_gen.language.objectives.request import Request
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
@@ -37,6 +38,9 @@ class MostOpen(Assumption):
     def clause(self) -> str:
         few = "none waits" if self.most == 1 else f"fewer than {self.most} wait"
         return f"{self.event.shown} happens only while {few} for {self.answer.shown}"
+
+    def allows(self, event: str, within: Number) -> bool:
+        return self.event.name != event or self.most > 1
 
     def binds(self, agent: Agent) -> bool:
         return not agent.controllable and any(ref.name == self.event.name for ref in agent.can_do)

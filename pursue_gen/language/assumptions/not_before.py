@@ -29,6 +29,9 @@ class NotBefore(NotSooner):
     def clause(self) -> str:
         return f"{self.agent.shown} does {self.event.shown} only later than {units(self.time)} after the start"
 
+    def allows(self, event: str, within: Number) -> bool:
+        return True
+
     @property
     def since(self) -> str:
         return "the start"

@@ -7,7 +7,7 @@ from math import ceil
 from typing import ClassVar, Dict, Iterator, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units, warning
-from pursue_gen.language.assumptions.base import SHORTEST_STAY, AboutOne, Setting, latest_to, visited
+from pursue_gen.language.assumptions.base import SHORTEST_STAY, AboutOne, Assumption, Setting, latest_to, visited
 from pursue_gen.language.numbers import Number, exact, whole_below
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
@@ -45,6 +45,9 @@ class Reaches(AboutOne):
     @property
     def clause(self) -> str:
         return f"{self.agent.shown} reaches {self.place.shown} within {units(self.time)} after {self.event.shown}"
+
+    def allows(self, event: str, within: Number) -> bool:
+        return True
 
     @property
     def since(self) -> str:
@@ -105,3 +108,8 @@ class Reaches(AboutOne):
 
     def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
         return whole_below(self.time, max(1, ceil(shortest_stay)))
+
+
+def reaches_in(assumptions: Sequence[Assumption]) -> Iterator[Tuple[int, Reaches]]:
+    """Those of this kind, each behind its number among these assumptions, from 1."""
+    return ((k, each) for k, each in enumerate(assumptions, start=1) if isinstance(each, Reaches))

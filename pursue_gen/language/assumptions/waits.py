@@ -43,6 +43,9 @@ class Waits(NotSooner):
         between = f"a {self.event.shown} and the next {self.following.shown}"
         return f"{self.agent.shown} waits {units(self.time)} between {between}"
 
+    def allows(self, event: str, within: Number) -> bool:
+        return self.following.name != event or self.time < within
+
     def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
         return super().wrong(agent, setting) or self.never_does(agent, self.following)
 

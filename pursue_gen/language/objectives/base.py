@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any, Callable, ClassVar, Iterator, Mapping, NamedTuple, Optional, Sequence, Tuple, TypeVar, cast
 
 from pursue_gen.diagnostics import Span, listed
-from pursue_gen.language.conditions import At, Condition, EventOrCondition, condition_words
+from pursue_gen.language.conditions import At, AtMostOf, Condition, EventOrCondition, condition_words
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import Written
@@ -14,6 +14,9 @@ from pursue_gen.language.symbols import Role, role_of
 from pursue_gen.language.times import like
 
 Stated = TypeVar("Stated", bound="StatedObjective")
+
+Counted = Callable[[AtMostOf], Mapping[str, object]]
+"""The agents that may be where a condition counts them."""
 
 
 STATUSES = {
@@ -52,6 +55,21 @@ class Whole(NamedTuple):
     behind: str = ""
 
 
+class Easier(NamedTuple):
+    """Other numbers with which an objective is easier to keep, the smallest change first: the kind of change, what it
+    is about, its label, the number that it has and those that it may have. `make`: it, or one that is told with it,
+    with such a number; None: it goes."""
+
+    change: str
+    about: str
+    label: str
+    before: Number
+    values: Sequence[int]
+    make: Callable[[Any, int], Optional[StatedObjective]]
+    say: Callable[[int], str]
+    helps: int = 2
+
+
 class StatedObjective(Written):
     """An objective: a frozen dataclass. `optional`: 0 for one that has to be met; else the number behind `optional`, 1
     for what is to be kept longest. `text` is without the word that begins the statement; of a patrol in order it has
@@ -86,6 +104,23 @@ class StatedObjective(Written):
     def broken(self, beside: Callable[[str], str]) -> str:
         """What has happened where it is broken. `beside`: a clause about where an agent is, by its name."""
         raise NotImplementedError
+
+    @property
+    def called_by(self) -> str:
+        """The event with which something becomes due, each time that it happens; "": there is none."""
+        return ""
+
+    def told_with(self, objectives: Sequence[StatedObjective]) -> Sequence[StatedObjective]:
+        """Those of these objectives that answer an event in turns with it, so that one time is told of them all."""
+        return self.statement(objectives).objectives if self.called_by else (self,)
+
+    def variables(self, shown: Callable[[str], str]) -> Iterator[Tuple[Role, Mapping[str, str]]]:
+        """The roles of its automaton's variables, and what each value says. `shown`: what people read for a name."""
+        return iter(())
+
+    def easier(self, counted: Counted) -> Iterator[Easier]:
+        """Its numbers but its limit, where others would be easier to keep."""
+        return iter(())
 
     @property
     def order(self) -> Tuple[str, ...]:
@@ -165,6 +200,10 @@ class Safety(StatedObjective):
     def breaks(self) -> Breaks:
         """How it is broken."""
         raise NotImplementedError
+
+    @property
+    def called_by(self) -> str:
+        return self.breaks.begins.name if isinstance(self.breaks.begins, Ref) else ""
 
     def apart(self, one: str, other: str, place: str) -> bool:
         """True where these two agents are never both at this place as long as it is kept."""

@@ -8,12 +8,12 @@ from typing import Callable, ClassVar, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
 from pursue_gen.language.conditions import At, Not, Who
-from pursue_gen.language.numbers import Number, decimal_text, exact, is_fine
-from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective, Whole, Words
+from pursue_gen.language.numbers import Number, decimal_text, exact, is_fine, whole_below
+from pursue_gen.language.objectives.base import Breaks, Counted, Easier, Safety, StatedObjective, Whole, Words
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.language.template import Template
-from pursue_gen.language.times import written_time
+from pursue_gen.language.times import instead, written_time
 from pursue_gen.language.word import Form, Numbers, Word
 
 MOST_BATTERY_PARTS = 20
@@ -127,6 +127,21 @@ class Endurance(Safety):
     def possible_limits(self, limits: Sequence[int]) -> Sequence[int]:
         return [limit for limit in limits if is_fine(Fraction(limit) / self.parts)]
 
+    def easier(self, counted: Counted) -> Iterator[Easier]:
+        name, before, parts = self.agent.name, self.charge, self.parts
+        yield Easier(
+            "charges", name, f"a battery of {name} that is full sooner", before,
+            self.possible_limits(whole_below(before, 1)), lambda each, k: replace(each, charge=k),
+            lambda k: f"a battery of {name} that charges in {instead(k, before)}", 1,
+        )  # fmt: skip
+        possible = (n for n in (2 * parts, 4 * parts, 8 * parts) if n <= MOST_BATTERY_PARTS)
+        finer = [n for n in possible if replace(self, parts=n).is_even]
+        yield Easier(
+            "parts", name, f"a battery of {name} that counts smaller parts of a charge", parts, finer,
+            lambda each, k: replace(each, parts=k),
+            lambda k: f"a battery of {name} that is charged in {k} parts instead of {parts}", 1,
+        )  # fmt: skip
+
     def limit_in(self, location: str) -> Optional[Number]:
         symbol = Symbol.of(location)
         return exact(self.part * int(symbol.parts[0])) if symbol.role is Role.LEFT else super().limit_in(location)
@@ -173,3 +188,8 @@ class Endurance(Safety):
     def breaks(self) -> Breaks:
         there = At(Who(self.agent), self.dock)
         return Breaks(begins=Not(there), by_robots=True, stands=(there,))
+
+
+def batteries_in(objectives: Sequence[StatedObjective]) -> Iterator[Tuple[int, Endurance]]:
+    """The batteries by time, each behind its number among these objectives."""
+    return ((k, each) for k, each in enumerate(objectives) if isinstance(each, Endurance))

@@ -9,7 +9,7 @@ from typing import Any, Callable, ClassVar, Iterator, Sequence, Tuple, cast
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed
 from pursue_gen.language.conditions import AllOf, At, AtMostOf, Atom, Not, OnWay, Who, some_text
-from pursue_gen.language.objectives.base import Breaks, Safety
+from pursue_gen.language.objectives.base import Breaks, Counted, Easier, Safety, StatedObjective
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.template import Template
 from pursue_gen.language.word import Form, Word
@@ -20,7 +20,8 @@ class Holds(Safety):
 
     most: int
     who: Tuple[Who, ...]
-    ends: ClassVar[Tuple[str, ...]] = ()
+    in_one: ClassVar[str] = ""
+    """In one of several rooms that have no names, in English; "": the room has one."""
 
     @property
     def where(self) -> str:
@@ -46,9 +47,13 @@ class Holds(Safety):
         rooms = self.rooms
         return Breaks(condition=Not(rooms[0] if len(rooms) == 1 else AllOf(rooms)))
 
-    def with_room(self, most: int) -> Holds:
-        """The same with room for another number."""
-        return replace(cast(Any, self), most=most)  # type: ignore[no-any-return]
+    def easier(self, counted: Counted) -> Iterator[Easier]:
+        most = max((len(counted(room)) for room in self.rooms), default=0)
+        yield Easier(
+            "room", self.where, f"more room {self.where}", self.most, range(self.most + 1, most + 1),
+            lambda each, k: replace(each, most=k),
+            lambda k: f"room for {replace(cast(Any, self), most=k).some} {self.where} instead of {self.some}",
+        )  # fmt: skip
 
     def sentence(self, shown: Callable[[str], str]) -> str:
         return f"There is room for {self.some} {self.where}."
@@ -168,9 +173,6 @@ class LiftHolds(Holds):
 class EveryHolds(Holds):
     """There is room for so many in each of several rooms, which are those of the building (`in_building`)."""
 
-    in_one: ClassVar[str]
-    """In one of the rooms, in English."""
-
     def atoms(self) -> Iterator[Sequence[Atom]]:
         """For each room that somebody is in it."""
         raise NotImplementedError
@@ -236,3 +238,13 @@ class EveryWayHolds(EveryHolds):
 
     def atoms(self) -> Iterator[Sequence[Atom]]:
         return ([OnWay(who, a, b, True) for who in self.who] for a, b in self.building)
+
+
+def rooms_in(objectives: Sequence[StatedObjective]) -> Iterator[Holds]:
+    """Those of these objectives that say for how many there is room."""
+    return (each for each in objectives if isinstance(each, Holds))
+
+
+def lifts_in(objectives: Sequence[StatedObjective]) -> Iterator[Tuple[int, LiftHolds]]:
+    """Those of them that say what a lift holds, each behind its number among them."""
+    return ((k, each) for k, each in enumerate(objectives) if isinstance(each, LiftHolds))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Callable, ClassVar, Iterator, Optional, Sequence, Tuple
+from typing import Any, Callable, ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
 
 from lark import Token
 
@@ -56,6 +56,7 @@ class Patrol(Safety):
     least: Optional[int] = None
     optional: int = 0
     limited_by: ClassVar[str] = "every"
+    aside: ClassVar[Tuple[str, ...]] = ("least",)
 
     template: ClassVar[Template] = Template(
         "patrol {place:POIs=a, b} [in order] [every {every:time=60}] by {who:patroller=bot1}",
@@ -108,6 +109,9 @@ class Patrol(Safety):
             for names in zip(*((each.place.name, each.place.shown) for each in listing))
         )
         return Whole(listing, text, "deadline", about, "a rarer patrol", f"a patrol of {shown} every")
+
+    def variables(self, shown: Callable[[str], str]) -> Iterator[Tuple[Role, Mapping[str, str]]]:
+        yield Role.SAFETY_TURN, {str(k): f"next: {shown(place)}" for k, place in enumerate(self.order)}
 
     def sentence(self, shown: Callable[[str], str]) -> str:
         who = who_text(self.who, shown=True)

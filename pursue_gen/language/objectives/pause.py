@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Callable, ClassVar, Iterator, Optional, Tuple
+from typing import Callable, ClassVar, Iterator, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
-from pursue_gen.language.numbers import Number
-from pursue_gen.language.objectives.base import Breaks, Safety, Words
+from pursue_gen.language.numbers import Number, whole_below
+from pursue_gen.language.objectives.base import Breaks, Counted, Easier, Safety, StatedObjective, Words
 from pursue_gen.language.refs import Ref
+from pursue_gen.language.symbols import Role
 from pursue_gen.language.template import Template
-from pursue_gen.language.times import units_of_time, written_time
+from pursue_gen.language.times import instead, units_of_time, written_time
 from pursue_gen.language.word import Form, Numbers, Word
 
 
@@ -67,10 +68,22 @@ class Pause(Safety):
     def breaks(self) -> Breaks:
         return Breaks(too_soon=self.following, last=self.event, pause=self.time)
 
-    def shorter(self, time: Number) -> Pause:
-        """The same with a pause of another length."""
-        return replace(self, time=time)
+    def variables(self, shown: Callable[[str], str]) -> Iterator[Tuple[Role, Mapping[str, str]]]:
+        begun = f"{self.following.shown} has begun too soon"
+        yield Role.SAFETY_PAUSE, {"0": "no pause", "1": f"since the end of {self.event.shown}", "2": begun}
+
+    def easier(self, counted: Counted) -> Iterator[Easier]:
+        names = " and ".join(dict.fromkeys((self.event.shown, self.following.shown)))
+        yield Easier(
+            "pause", names, f"a shorter pause between {names}", self.time, whole_below(self.time, 1),
+            lambda each, k: replace(each, time=k), lambda k: f"a pause of {instead(k, self.time)} between {names}",
+        )  # fmt: skip
 
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if kind == "event" and name == self.following.name:
             yield f"begins {units_of_time(self.time)} after each end of {self.event.name}, or later"
+
+
+def pauses_in(objectives: Sequence[StatedObjective]) -> Iterator[Tuple[int, Pause]]:
+    """The pauses, each behind its number among these objectives."""
+    return ((k, each) for k, each in enumerate(objectives) if isinstance(each, Pause))

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Callable, ClassVar, Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed, units
-from pursue_gen.language.numbers import Number, exact
-from pursue_gen.language.objectives.base import StatedObjective, Whole, Words
+from pursue_gen.language.numbers import Number, exact, whole_below
+from pursue_gen.language.objectives.base import Counted, Easier, StatedObjective, Whole, Words
 from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.symbols import Role, Symbol
 from pursue_gen.language.template import Filling, Template
-from pursue_gen.language.times import like, units_of_time, written_time
+from pursue_gen.language.times import instead, like, units_of_time, written_time
 from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Numbers, Word
 
@@ -119,6 +119,21 @@ class Reach(StatedObjective):
             message = f"at_least {written_time(self.apart)} apart: expected more than 0, and an event that happens "
             message += "twice or more"
             yield error("PML225", message, self.span, "write how often: do e1 twice at_least 60 apart")
+
+    def easier(self, counted: Counted) -> Iterator[Easier]:
+        event, due, after, apart = self.events[0].shown, self.words.due, self.after, self.apart or 0
+        yield Easier(
+            "after", listed(ref.name for ref in self.events), f"an earlier {due}", after, whole_below(after, 0),
+            lambda each, k: replace(each, after=like(k, after)), lambda k: f"{due} after {instead(k, after)}", 1,
+        )  # fmt: skip
+        yield Easier(
+            "times", event, f"{event} less often", self.times, range(self.times - 1, 1 if apart else 0, -1),
+            lambda each, k: replace(each, times=k), lambda k: f"{event} {_often_text(k)} instead of {self.often}",
+        )  # fmt: skip
+        yield Easier(
+            "pause", event, f"{event} less far apart", apart, whole_below(apart, 1),
+            lambda each, k: replace(each, apart=k), lambda k: f"{event} at least {instead(k, apart)} apart",
+        )  # fmt: skip
 
     @property
     def often(self) -> str:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Callable, ClassVar, Iterator, Sequence, Tuple
+from typing import Any, Callable, ClassVar, Iterator, Mapping, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.numbers import Number
-from pursue_gen.language.objectives.base import Breaks, Safety, StatedObjective, Whole, Words
+from pursue_gen.language.objectives.base import Breaks, Counted, Easier, Safety, StatedObjective, Whole, Words
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.symbols import Role
 from pursue_gen.language.template import Template
@@ -77,6 +77,20 @@ class Request(Safety):
             whole, self.text, "deadline", self.response.name, "a later deadline", "a deadline of", f" for each {due}"
         )
 
+    def variables(self, shown: Callable[[str], str]) -> Iterator[Tuple[Role, Mapping[str, str]]]:
+        places = [each.which for each in self.each]
+        free = {str(k): f"the next one is {which}" for k, which in enumerate(places)}
+        yield Role.SAFETY_TURN, {**free, str(len(places)): "no more may come"}
+        yield Role.SAFETY_OLDEST, {str(k): f"next to be answered: {which}" for k, which in enumerate(places)}
+
+    def easier(self, counted: Counted) -> Iterator[Easier]:
+        event, most = self.trigger.shown, self.most
+        yield Easier(
+            "open", event, f"fewer of {event} open", most, range(0 if self.number else most - 1, 0, -1),
+            lambda each, k: replace(each, most=k) if each.number < k else None,
+            lambda k: f"at_most {k} of {event} open instead of {most}",
+        )  # fmt: skip
+
     def sentence(self, shown: Callable[[str], str]) -> str:
         asked, due = self.trigger.shown, self.response.shown
         return (
@@ -131,19 +145,3 @@ class Request(Safety):
 def requests_in(objectives: Sequence[StatedObjective]) -> Iterator[Tuple[int, Request]]:
     """The first objective of each such statement, behind its number among these objectives."""
     return ((k, each) for k, each in enumerate(objectives) if isinstance(each, Request) and each.number == 0)
-
-
-def is_further(objective: StatedObjective) -> bool:
-    """True for an objective of such a statement that is not its first."""
-    return isinstance(objective, Request) and objective.number > 0
-
-
-def with_fewer(objectives: Sequence[Safety], request: Request, most: int) -> Tuple[Safety, ...]:
-    """Objectives in which fewer of a request among them may be open at once."""
-
-    def some(each: Safety) -> Tuple[Safety, ...]:
-        if not isinstance(each, Request) or each.span != request.span:
-            return (each,)
-        return (replace(each, most=most),) if each.number < most else ()
-
-    return tuple(new for each in objectives for new in some(each))

@@ -107,6 +107,7 @@ class Agent(Labelled):
         Form("a person who helps", 'agent "{=helper}" human controllable mobile {=1} location {POI} can_do {event}'),
     )
     declares: ClassVar[str] = "agent"
+    described: ClassVar[str] = "{0.role}"
     shortest: ClassVar[str] = 'agent "{name}" location {place}'
     parts: ClassVar[Tuple[str, ...]] = template.begins
 
@@ -131,6 +132,13 @@ class Agent(Labelled):
     @property
     def text(self) -> str:
         return self.template.written(self if self.speed is None else replace(self, mobile=None))
+
+    @property
+    def role(self) -> str:
+        """Who decides what it does."""
+        if self.is_robot:
+            return "a robot: the program decides what it does"
+        return "a person who follows instructions" if self.human and self.controllable else "nobody controls it"
 
     @property
     def starts(self) -> Tuple[Ref, ...]:

@@ -29,6 +29,9 @@ class Written:
     numbers: ClassVar[Numbers] = {}
     """What its numbers mean."""
 
+    aside: ClassVar[Tuple[str, ...]] = ()
+    """Its fields that do not matter for which game is played, poses and the like."""
+
     @classmethod
     def form(cls) -> str:
         """What it looks like, for messages."""
@@ -78,6 +81,8 @@ class StatementKind(Written):
     """The field of a scenario that has what it declares."""
     declares: ClassVar[str] = ""
     """The kind of thing that it declares, whose name in quotes is its second word; "": none."""
+    described: ClassVar[str] = ""
+    """What that is, in words, with fields of what it declares, as in `a state, {0.first_words} at the start`."""
     shortest: ClassVar[str] = ""
     """How it declares a `{name}` in as few words as possible, an agent at a `{place}`; "": nothing is short enough."""
     second: ClassVar[Tuple[str, ...]] = ()
@@ -88,8 +93,15 @@ class StatementKind(Written):
     parts: ClassVar[Tuple[str, ...]] = ()
     """The tokens that begin its parts, in their order, where each part can be written alone (`language.rewriting`)."""
 
+    labelled: ClassVar[bool] = False
+    """What it declares may have a label: the second child of its trees."""
     symbol: ClassVar[str] = "Key"
     """The kind of symbol that editors show for it, as the language server protocol calls it."""
+
+    @property
+    def details(self) -> Iterator[str]:
+        """What it says first of what it declares, before all that `about` says of it."""
+        return iter(())
 
     @classmethod
     def token(cls) -> str:
@@ -127,11 +139,11 @@ class StatementKind(Written):
 
 
 class Labelled(StatementKind):
-    """A kind of statement that declares something with a name and, if it has one, a label, which people read; it is the
-    second child of its trees."""
+    """A kind of statement that declares something with a name and, if it has one, a label, which people read."""
 
     name: str
     label: Optional[str]
+    labelled: ClassVar[bool] = True
 
     @property
     def shown(self) -> str:
@@ -155,6 +167,11 @@ class ForSome(StatementKind):
         return within and all(ref.name != agent for ref in self.not_for)
 
     @property
+    def what(self) -> str:
+        """What this is, in words."""
+        raise NotImplementedError
+
+    @property
     def whom_words(self) -> str:
         """For whom it is, as in `only for Porter 1, not for gerda`; "": for all."""
         said = (("only for", self.only_for), ("not for", self.not_for))
@@ -166,13 +183,13 @@ class ForSome(StatementKind):
         said = (("for", self.only_for), ("except", self.not_for))
         return " ".join(f"{word} {', '.join(ref.name for ref in refs)}" for word, refs in said if refs)
 
-    def check_whom(self, what: str) -> Iterator[Diagnostic]:
-        """Agents that are named twice, or that are all left out again. `what`: what this is, in words."""
+    def check_whom(self) -> Iterator[Diagnostic]:
+        """Agents that are named twice, or that are all left out again."""
         for word, refs in (("for", self.only_for), ("except", self.not_for)):
             for ref in twice(refs):
                 yield error("PML164", f"{ref.name} stands twice behind {word}", ref.span, "delete one of the two")
         if self.only_for and not any(self.admits(ref.name) for ref in self.only_for):
-            message = f"{what} is for nobody: all that are named behind for stand behind except"
+            message = f"{self.what} is for nobody: all that are named behind for stand behind except"
             yield error("PML164", message, self.span, "name somebody whom it is for, or delete except and what follows")
 
 

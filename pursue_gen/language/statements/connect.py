@@ -81,6 +81,10 @@ class Connection(ForSome):
         yield from (("lift", ref) for ref in (self.by,) if ref is not None)
 
     @property
+    def what(self) -> str:
+        return f"the way between {self.a} and {self.b}"
+
+    @property
     def directions(self) -> Tuple[Tuple[str, str], ...]:
         """From and to, for each direction in which it can be taken; the declared one first."""
         return ((self.a, self.b),) if self.one_way else ((self.a, self.b), (self.b, self.a))
@@ -90,9 +94,9 @@ class Connection(ForSome):
             yield f"between {self.a} and {self.b} only while {shown(condition_words(self.only_if))}"
         on_it = {"door": self.through, "lift": () if self.by is None else (self.by,)}.get(kind, ())
         if any(ref.name == name for ref in on_it):
-            yield f"on the way between {self.a} and {self.b}"
+            yield f"on {self.what}"
         if kind == "agent" and not self.admits(name):
-            yield f"never takes the way between {self.a} and {self.b} at distance {written_time(self.distance)}"
+            yield f"never takes {self.what} at distance {written_time(self.distance)}"
 
     def check(self) -> Iterator[Diagnostic]:
         if self.distance <= 0:
@@ -102,4 +106,4 @@ class Connection(ForSome):
             yield error("PML145", f"this connects {self.a} with itself", self.span, "name two different places")
         for ref in twice(self.through):
             yield error("PML460", f"{ref.name} stands twice behind through", ref.span, "delete one of the two")
-        yield from self.check_whom(f"the way between {self.a} and {self.b}")
+        yield from self.check_whom()

@@ -52,6 +52,8 @@ class Door(Labelled):
         "within": "A way through it takes up to {} longer, as whoever sets off may have to wait for it.".format
     }
     declares: ClassVar[str] = "door"
+    described: ClassVar[str] = "a door that opens by itself"
+    aside: ClassVar[Tuple[str, ...]] = ("pose",)
     shortest: ClassVar[str] = 'door "{name}" opens within 5'
 
     @property

@@ -133,6 +133,7 @@ class Event(Labelled):
         ),
     )
     declares: ClassVar[str] = "event"
+    described: ClassVar[str] = "an event"
     shortest: ClassVar[str] = 'event "{name}"'
     numbers: ClassVar[Numbers] = {
         "at_most": lambda _, times: f"It can happen {'once' if times == 1 else f'{times} times'} in all.",

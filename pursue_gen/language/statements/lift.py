@@ -55,6 +55,8 @@ class Lift(Labelled):
         "within": "A way by it takes up to {} longer, as whoever sets off may have to wait for it.".format
     }
     declares: ClassVar[str] = "lift"
+    described: ClassVar[str] = "a lift"
+    aside: ClassVar[Tuple[str, ...]] = ("pose", "cabins")
 
     @property
     def ride(self) -> Window:

@@ -62,6 +62,8 @@ class Poi(Labelled, ForSome):
         Form("a place where somebody never is", 'poi "{=room}" except {agent}'),
     )
     declares: ClassVar[str] = "POI"
+    described: ClassVar[str] = "a place"
+    aside: ClassVar[Tuple[str, ...]] = ("pose", "spots")
     shortest: ClassVar[str] = 'poi "{name}"'
     parts: ClassVar[Tuple[str, ...]] = template.begins
 
@@ -72,5 +74,9 @@ class Poi(Labelled, ForSome):
         if kind == "agent" and not self.admits(name):
             yield f"never is at {self.name}"
 
+    @property
+    def what(self) -> str:
+        return self.name
+
     def check(self) -> Iterator[Diagnostic]:
-        yield from self.check_whom(self.name)
+        yield from self.check_whom()

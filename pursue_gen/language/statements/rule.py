@@ -21,12 +21,28 @@ class _Two:
     second: RuleBody
     span: Span = NOWHERE
     word: ClassVar[str]
+    between: ClassVar[str] = ""
+    """The same for people; "": it is that word."""
+    behind: ClassVar[str] = ""
+    """What people read behind the two."""
+
+    @property
+    def in_words(self) -> str:
+        """The order of events, in words: one word between all sides, however these are bracketed."""
+        sides = (side.name if isinstance(side, Ref) else f"({side.in_words})" for side in self._sides)
+        return (self.between or f" {self.word} ").join(sides) + self.behind
+
+    @property
+    def _sides(self) -> Tuple[RuleBody, ...]:
+        sides = (side._sides if isinstance(side, type(self)) else (side,) for side in (self.first, self.second))
+        return tuple(each for some in sides for each in some)
 
 
 class Sequence(_Two):
     """`first before second` in a rule."""
 
     word = "before"
+    between = ", then "
 
 
 class Choice(_Two):
@@ -39,6 +55,7 @@ class Both(_Two):
     """`first and second` in a rule: in any order, and while the other one goes on."""
 
     word = "and"
+    behind = ", in any order"
 
 
 RuleBody = Union[Ref, Sequence, Choice, Both]
@@ -120,6 +137,7 @@ class Rule(StatementKind):
         Form("two events in any order, then a third", 'rule "{=all}": ({event} and {event}) before {event}'),
     )
     declares: ClassVar[str] = "rule"
+    described: ClassVar[str] = "a rule, round after round"
 
     @property
     def events(self) -> Tuple[Ref, ...]:

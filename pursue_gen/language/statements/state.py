@@ -76,6 +76,7 @@ class State(StatementKind):
         Form("not known until a robot sees it", 'state "{=empty}": initially unknown seen_at {POI}'),
     )
     declares: ClassVar[str] = "state"
+    described: ClassVar[str] = "a state, {0.first_words} at the start"
     shortest: ClassVar[str] = 'state "{name}": initially false'
 
     @property
@@ -87,6 +88,15 @@ class State(StatementKind):
     def first_words(self) -> str:
         """What it is at the start."""
         return _known_text(self.initially)
+
+    @property
+    def details(self) -> Iterator[str]:
+        for value, refs in (("true", self.true_if), ("false", self.false_if)):
+            yield f"made {value} by {', '.join(ref.name for ref in refs) or 'nothing'}"
+        if self.shown_by:
+            yield f"shown by {', '.join(ref.name for ref in self.shown_by)}"
+        if self.seen_at is not None:
+            yield f"seen by robots at {self.seen_at.shown}"
 
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if kind == "event":

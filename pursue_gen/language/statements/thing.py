@@ -29,4 +29,5 @@ class Thing(Labelled):
     template: ClassVar[Template] = Template('thing {name="box"} [label {label:name}]')
     forms: ClassVar[Tuple[Form, ...]] = (Form("something that robots carry", 'thing "{=box}"'),)
     declares: ClassVar[str] = "thing"
+    described: ClassVar[str] = "a thing that is carried"
     shortest: ClassVar[str] = 'thing "{name}"'

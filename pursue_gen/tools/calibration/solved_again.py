@@ -8,7 +8,7 @@ from typing import Any, Dict, Optional, Tuple
 
 from pursue_gen import api
 from pursue_gen.language.numbers import Number, at_most
-from pursue_gen.language.scenario import Patrol, Scenario
+from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.times import written_time
 from pursue_gen.outcomes import LimitHit, Lost
 from pursue_gen.solving.request import SolveRequest
@@ -60,7 +60,7 @@ def verdict_of(scenario: Scenario, request: SolveRequest, progress: Optional[Lis
     except (Lost, LimitHit) as problem:
         return Verdict(LOST if isinstance(problem, Lost) else UNDECIDED, problem.diagnostics[0].message)
     given_up = tuple(sorted({each.objective.optional for each in solved.scenario.given_up}))
-    period = next((each.every for each in solved.scenario.safety if isinstance(each, Patrol) and each.least), None)
+    period = next((each.every for each in solved.scenario.patrols if each.least), None)
     has_goal = solved.solution.objective.reaches
     return Verdict(WON, "", solved.worst_time, has_goal, period, solved.margin_text(), given_up)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 from itertools import takewhile
-from typing import Callable, Dict, List, Optional, Tuple, Union
+from typing import Any, Callable, List, Mapping, Optional, Tuple
 
 from lark import Token
 
@@ -19,22 +19,7 @@ from pursue_gen.language.labels import in_markdown, markdown
 from pursue_gen.language.lengths import unit_of_distance, units_of_distance
 from pursue_gen.language.numbers import Number, exact, window_of
 from pursue_gen.language.occurrences import GROUP, MEMBERS, VARIABLE, Occurrence
-from pursue_gen.language.scenario import (
-    Agent,
-    Both,
-    Door,
-    Event,
-    Lift,
-    Poi,
-    Ref,
-    Rule,
-    RuleBody,
-    Scenario,
-    Sequence,
-    State,
-    Thing,
-    Window,
-)
+from pursue_gen.language.scenario import Agent, Event, Poi, Ref, Rule, Scenario, Window
 from pursue_gen.language.statements.base import Written
 from pursue_gen.language.statements.battery import MOST_CAPACITY
 from pursue_gen.language.syntax import Statement
@@ -121,19 +106,14 @@ def _about_members(document: Draft, here: Occurrence) -> str:
 
 
 def _about(scenario: Scenario, kind: str, name: str) -> Optional[str]:
-    parts: Dict[str, Tuple[Tuple[object, ...], Callable[..., List[str]]]] = {
-        "POI": (scenario.pois, _poi),
-        "event": (scenario.events, _event),
-        "rule": (scenario.rules, _rule),
-        "state": (scenario.states, _state),
-        "agent": (scenario.agents, _agent),
-        "thing": (scenario.things, _thing),
-        "door": (scenario.doors, partial(_opening, "a door that opens by itself")),
-        "lift": (scenario.lifts, partial(_opening, "a lift")),
-    }
-    found, explain = parts[kind]
-    part = next((part for part in found if getattr(part, "name", None) == name), None)
-    return None if part is None else "\n".join(explain(scenario, part))
+    field = next(each.listed_in for each in STATEMENTS.values() if each.declares == kind)
+    part = next((part for part in getattr(scenario, field) if part.name == name), None)
+    if part is None:
+        return None
+    label, more = getattr(part, "label", None), _MORE.get(kind)
+    read_as = f"; people read \u201c{markdown(label)}\u201d" if label else ""
+    lines = [f"**{name}**: {part.described.format(part)}{read_as}", "", *(f"- {line}" for line in part.details)]
+    return "\n".join([*lines, *(more(scenario, part) if more else ()), *_said(scenario, kind, name)])
 
 
 def _listed(lines: List[str]) -> List[str]:
@@ -142,7 +122,7 @@ def _listed(lines: List[str]) -> List[str]:
 
 
 def _poi(scenario: Scenario, poi: Poi) -> List[str]:
-    lines = [f"**{poi.name}**: a place{_read_as(poi.label)}", ""]
+    lines = []
     ways = [way for way in scenario.connections if poi.name in (way.a, way.b)]
     for way in ways:
         other = way.b if way.a == poi.name else way.a
@@ -156,7 +136,7 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
         words += f": distance {written_time(way.distance)}"
         doors = "".join(f", {in_markdown(scenario, said)}" for said in scenario.words_on(way))
         lines.append(f"- {words}" + (f" ({times})" if times else "") + doors + whom + only)
-    lines = [*lines[:2], *_listed(lines[2:])]
+    lines = _listed(lines)
     if not ways:
         lines.append("- no way leads here")
     lines += [f"- {in_markdown(scenario, poi.whom_words)}"] if poi.whom_words else []
@@ -167,12 +147,12 @@ def _poi(scenario: Scenario, poi: Poi) -> List[str]:
         lines.append(f"- on the robot's map at x = {poi.pose.x:g} m, y = {poi.pose.y:g} m")
     for spot in poi.spots:
         lines.append(f"- {spot.robot.name} stands at x = {spot.pose.x:g} m, y = {spot.pose.y:g} m")
-    return lines + _said(scenario, "POI", poi.name)
+    return lines
 
 
 def _event(scenario: Scenario, event: Event) -> List[str]:
     where = f"at {event.location.name}" if event.location else "wherever the agent is"
-    lines = [f"**{event.name}**: an event{_read_as(event.label)}", "", f"- happens {where}"]
+    lines = [f"- happens {where}"]
     lines.append(f"- takes {lasts(event.window, scenario.unit)}" if event.window is not None else "- takes no time")
     if event.split is not None:
         lines.append(f"- is done in {event.split} parts, each of which stays done")
@@ -186,53 +166,16 @@ def _event(scenario: Scenario, event: Event) -> List[str]:
         if event.duration is not None:
             both = "both are busy until it ends" if event.together else "the partner may leave as soon as it has begun"
             lines.append(f"- {both}")
-    return lines + _said(scenario, "event", event.name)
+    return lines
 
 
 def _rule(scenario: Scenario, rule: Rule) -> List[str]:
-    lines = [f"**{rule.name}**: a rule, round after round", "", f"- {_in_words(rule.body)}"]
+    lines = [f"- {rule.body.name if isinstance(rule.body, Ref) else rule.body.in_words}"]
     if rule.each:
         bound = ", ".join(agent.name for agent in scenario.bound_by(rule))
         lines.append(f"- each of these has its own turn: {bound or 'nobody'}")
     names = ", ".join(ref.name for ref in rule.events)
     return [*lines, f"- {names} can happen only when it is their turn"]
-
-
-def _in_words(body: RuleBody) -> str:
-    if isinstance(body, Ref):
-        return body.name
-    word = ", then " if isinstance(body, Sequence) else f" {body.word} "
-    sides = word.join(_bracketed(side) for side in _sides(body, type(body)))
-    return sides + (", in any order" if isinstance(body, Both) else "")
-
-
-def _sides(body: RuleBody, kind: type) -> List[RuleBody]:
-    """What one kind of word stands between, however it is bracketed."""
-    if isinstance(body, Ref) or not isinstance(body, kind):
-        return [body]
-    return _sides(body.first, kind) + _sides(body.second, kind)
-
-
-def _bracketed(body: RuleBody) -> str:
-    return body.name if isinstance(body, Ref) else f"({_in_words(body)})"
-
-
-def _state(scenario: Scenario, state: State) -> List[str]:
-    lines = [f"**{state.name}**: a state, {state.first_words} at the start", ""]
-    lines.append("- made true by " + (", ".join(ref.name for ref in state.true_if) or "nothing"))
-    lines.append("- made false by " + (", ".join(ref.name for ref in state.false_if) or "nothing"))
-    lines += [f"- shown by {', '.join(ref.name for ref in state.shown_by)}"] if state.shown_by else []
-    lines += [f"- seen by robots at {state.seen_at.shown}"] if state.seen_at is not None else []
-    return lines + _said(scenario, "state", state.name)
-
-
-def _thing(scenario: Scenario, thing: Thing) -> List[str]:
-    head = f"**{thing.name}**: a thing that is carried{_read_as(thing.label)}"
-    return [head, "", *_said(scenario, "thing", thing.name)]
-
-
-def _opening(what: str, scenario: Scenario, part: Union[Door, Lift]) -> List[str]:
-    return [f"**{part.name}**: {what}{_read_as(part.label)}", "", *_said(scenario, part.declares, part.name)]
 
 
 def _said(scenario: Scenario, kind: str, name: str) -> List[str]:
@@ -246,10 +189,7 @@ def _said(scenario: Scenario, kind: str, name: str) -> List[str]:
 
 
 def _agent(scenario: Scenario, agent: Agent) -> List[str]:
-    what = "a robot: the program decides what it does" if agent.is_robot else "nobody controls it"
-    if agent.human and agent.controllable:
-        what = "a person who follows instructions"
-    lines = [f"**{agent.name}**: {what}{_read_as(agent.label)}", "", f"- starts at {agent.starts_text}"]
+    lines = [f"- starts at {agent.starts_text}"]
     if agent.mobile is None:
         lines.append("- stays there")
     else:
@@ -266,7 +206,13 @@ def _agent(scenario: Scenario, agent: Agent) -> List[str]:
     lines += [f"- {words} on a map" for words in [agent.size_words] if words]
     lines += _if_any("can do", [ref.name for ref in agent.can_do])
     lines += _if_any("reacts to", [ref.name for ref in agent.reacts_to])
-    return lines + _said(scenario, "agent", agent.name)
+    return lines
+
+
+_MORE: Mapping[str, Callable[[Scenario, Any], List[str]]] = {
+    "POI": _poi, "event": _event, "rule": _rule, "agent": _agent
+}  # fmt: skip
+"""What the whole scenario has to say of a thing of a kind."""
 
 
 def _number(document: Draft, part: Statement, start: int, time: Number) -> str:
@@ -283,8 +229,8 @@ def _number(document: Draft, part: Statement, start: int, time: Number) -> str:
         return "\n".join(lines + _listed(needs))
     if part.kind == "EVENT" and word in ("TAKES", "GIVES"):
         return f"So many at one time: {number}."
-    if word in ("DURATION", "TAKES", "TO"):
-        begins = next(k for k, t in enumerate(part.tokens) if t.type in ("DURATION", "TAKES"))
+    begins = next((k for k, t in enumerate(part.tokens) if t.type in ("DURATION", "TAKES")), None)
+    if begins is not None and word in ("DURATION", "TAKES", "TO"):
         written = takewhile(lambda token: token.type in ("NUMBER", "TO"), part.tokens[begins + 1 :])
         read = (read_time(document, token) for token in written if token.type == "NUMBER")
         numbers = [value for value in read if value is not None]
@@ -306,12 +252,9 @@ def _number(document: Draft, part: Statement, start: int, time: Number) -> str:
         return "\n".join(lines + _listed(ways))
     if part.kind == "BATTERY":
         return _battery(scenario, part)
-    kind = STATEMENTS.get(word) or STATEMENTS.get(part.kind)  # a number may stand behind optional itself
-    return kind.number_words(word.lower(), time) if kind is not None else ""
-
-
-def _read_as(label: Optional[str]) -> str:
-    return f"; people read \u201c{markdown(label)}\u201d" if label else ""
+    stated = (one for one in (*scenario.assumptions, *scenario.objectives) if one.span.line == part.tokens[0].line)
+    kinds = (STATEMENTS.get(word), *stated, STATEMENTS.get(part.kind))  # a number may stand behind optional itself
+    return next(filter(None, (kind.number_words(word.lower(), time) for kind in kinds if kind is not None)), "")
 
 
 def _battery(scenario: Scenario, part: Statement) -> str:

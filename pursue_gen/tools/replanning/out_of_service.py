@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from fractions import Fraction
 from typing import Dict, FrozenSet, Iterator, List, Mapping, Sequence, Tuple
 
 from pursue_gen.language.network_names import event
 from pursue_gen.language.scenario import Scenario, StatedObjective
-from pursue_gen.outcomes import LimitHit
+from pursue_gen.solving.lost_promises import lost_alone, lost_promises
+from pursue_gen.solving.options import SolveOptions
 from pursue_gen.synthesis.limits import Limits
-from pursue_gen.synthesis.solve import solve
-from pursue_gen.tga.network import Automaton, Edge, Kind, Network, Objective
+from pursue_gen.tga.network import Automaton, Edge, Network, Objective
 from pursue_gen.tga.objectives import stated
 from pursue_runtime.sentences import marked
 
@@ -49,25 +48,13 @@ def drawn_in(automata: Sequence[Automaton], scenario: Scenario, robots: FrozenSe
 
 
 def kept_no_more(
-    network: Network, objective: Objective, scenario: Scenario, reaction: Fraction, limits: Limits
+    network: Network, objective: Objective, scenario: Scenario, reaction: Fraction, limits: Limits, quick: bool
 ) -> List[StatedObjective]:
-    """An objective that cannot be kept in this game even if it is the only one, or all that is to be reached, as far as
-    searches find that; none where it takes several of them."""
-    start = limits.now()
-    for statements, alone in _one_by_one(objective, scenario):
-        with suppress(LimitHit):
-            if solve(network, alone, reaction, limits=limits.since(start)).strategy is None:
-                return statements
-    return []
-
-
-def _one_by_one(objective: Objective, scenario: Scenario) -> Iterator[Tuple[List[StatedObjective], Objective]]:
-    for name, statement in stated(scenario).items():
-        bad = tuple(place for place in objective.bad if place[0] == name)
-        if bad:
-            yield [statement], Objective(Kind.SAFETY, bad=bad)
-    if objective.goal:
-        yield list(scenario.reach), Objective(Kind.REACH, goal=objective.goal)
+    """An objective that cannot be kept in this game even if it is the only one, or two that exclude each other, as far
+    as little work finds that, with `quick` very little; none where it takes more of them."""
+    lost = (lost_alone if quick else lost_promises)(network, objective, reaction, SolveOptions(limits))
+    watching = {name for each in lost[:1] for name, _ in (*each.goal, *each.bad)}
+    return [objective for name, objective in stated(scenario).items() if name in watching]
 
 
 def _shared(automata: Sequence[Automaton], scenario: Scenario, robots: FrozenSet[str]) -> Shared:

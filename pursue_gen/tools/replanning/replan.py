@@ -62,6 +62,9 @@ _FEW = 2_000
 a patrol of six rooms by two robots."""
 
 
+_ENOUGH = " within the limits of a search"
+"""What is said where a search has done all the work that it may do."""
+
 _MOMENTS = ((1, 10), (1, 2), (0, 10), (0, 2), (0, Fraction(1, 2)))
 """When a plan may come into force for its time to be known, tried in this order: as a share of `ahead` before it
 begins, and time units after that. Not measured."""
@@ -128,7 +131,7 @@ def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
             most = replace(limits, states=min(states, _FEW))
             verdict = solve(network, objective, request.rules.reaction, limits=most.since(start))
         elif many and own.tours and states:  # the same beside other promises: each game takes long there
-            return _lost(f"no plan was found{_at_limit(limits)}")
+            return _undecided(game, request, network, limits.since(start), _at_limit(limits))
         else:
             shared = _won_in_shares(network, objective, request, options, little)
             if shared is not None:
@@ -149,8 +152,9 @@ def _answer(request: Request, limits: Limits, states: int) -> Dict[str, Any]:
     except NotProven as problem:
         return _lost(f"the plan that was found is not proven: {quoted(str(problem))}")
     except PursueError as problem:
-        why = _at_limit(limits.since(start)) or f": {problem.diagnostics[0].message}"
-        return _lost(f"no plan was found{quoted(why)}")
+        at_work = _ENOUGH if limits.work and isinstance(problem, LimitHit) else ""
+        why = _at_limit(limits.since(start)) or at_work or f": {problem.diagnostics[0].message}"
+        return _undecided(game, request, network, limits.since(start), quoted(why))
     return _won(strategy, network, request, None if states else objective)
 
 
@@ -223,7 +227,7 @@ def _takes(strategy: Strategy, network: Network, objective: Objective, request: 
 def _at_limit(limits: Limits) -> str:
     """Which limit of the request has ended the search; "" for others."""
     if limits.states:
-        return " within the limits of a search"
+        return _ENOUGH
     return f" within {limits.seconds:g} s" if 0 < limits.seconds <= limits.spent else ""
 
 
@@ -243,8 +247,21 @@ def _reason_lost(network: Network, objective: Objective, scenario: Scenario) -> 
     return f"the mission is lost already: {_objectives(scenario, [missed] if missed else None)} is broken"
 
 
-def _cannot_be_met(game: Network, request: Request, network: Network, limits: Limits) -> str:
-    """One sentence: the objective that cannot be guaranteed from here, and the agents on which it depends."""
+def _leaves(request: Request) -> bool:
+    """True where a robot is to go out of service, and all that is promised is to be kept without it."""
+    return bool(request.window and request.out_of_service and not request.sooner)
+
+
+def _undecided(game: Network, request: Request, network: Network, limits: Limits, why: str) -> Dict[str, Any]:
+    """The answer where no plan was found; for a robot that is to leave with an objective that is lost by itself, as far
+    as very little work finds one."""
+    what = f"no plan was found{why}"
+    return _lost(_cannot_be_met(game, request, network, limits, what) if _leaves(request) else what)
+
+
+def _cannot_be_met(game: Network, request: Request, network: Network, limits: Limits, undecided: str = "") -> str:
+    """One sentence: the objective that cannot be guaranteed from here, and the agents on which it depends; or
+    `undecided`, where that is given and no objective is known to be lost by itself."""
     clocks = start_clocks(game, request)
     agents = [*(agent.name for agent in request.scenario.agents), *request.scenario.facts]
     over = [each.name for each in game.automata if passed_bounds(each, request.locations[each.name], clocks)]
@@ -260,10 +277,10 @@ def _cannot_be_met(game: Network, request: Request, network: Network, limits: Li
         without.append(f"without the way between {marked(a)} and {marked(b)}{for_whom}")
     without += [f"while {marked(name)} is out of service" for name in sorted(request.out_of_service)]
     ordered = [each for name, each in stated(request.scenario).items() if clock_of(name) in request.sooner]
-    if request.window and request.out_of_service and not request.sooner:
+    if _leaves(request):
         objective, reaction = scenario_objective(request.scenario), request.rules.reaction
-        lost = kept_no_more(network, objective, request.scenario, reaction, limits)
-        what = f"{_objectives(request.scenario, lost)} cannot be kept"
+        lost = kept_no_more(network, objective, request.scenario, reaction, limits, bool(undecided))
+        what = undecided if undecided and not lost else f"{_objectives(request.scenario, lost)} cannot be kept"
     elif request.window:
         asked = as_written(_objectives(request.scenario, ordered), request)
         what = f"{asked} cannot be promised beside all that is promised already"

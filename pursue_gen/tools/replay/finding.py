@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Sequence, Tuple
 
 NOTE, WORLD, FAULT, UNRECORDED = "note", "world", "fault", "unrecorded"
 """Nothing wrong; the world did what the model does not know; a node did what it must not, or it cannot be known; the
@@ -17,3 +18,8 @@ class Finding:
     kind: str
     seq: int
     text: str
+
+
+def of_kind(findings: Sequence[Finding], *kinds: str) -> Tuple[Finding, ...]:
+    """The findings of these kinds."""
+    return tuple(finding for finding in findings if finding.kind in kinds)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from itertools import count
 from typing import Dict, Iterator, List, NamedTuple, Optional, Set, Tuple
 
 from pursue_gen.language.objectives.request import requests_in
-from pursue_gen.language.scenario import MostOpen, Scenario
+from pursue_gen.language.scenario import Scenario
 
 
 class Duty(NamedTuple):
@@ -24,9 +25,7 @@ class OpenRequests:
         self._requests = dict(requests_in(scenario.safety))
         self._waiting: Dict[int, List[Tuple[float, float]]] = {number: [] for number in self._requests}
         self._duties = {number: Duty() for number in self._requests}
-        assumed = enumerate(scenario.assumed, start=1)
-        numbers = (k for k, each in assumed if isinstance(each, MostOpen))
-        self._assumptions = dict(zip(self._requests, numbers))
+        self._assumptions = dict(zip(self._requests, count(len(scenario.assumptions) + 1)))
         self.too_many: Set[int] = set()
         """The numbers of the assumptions that the last event has broken: as many were open as may be."""
 

@@ -13,8 +13,8 @@ from pursue_gen.language import network_names as names
 from pursue_gen.language.conditions import EventOrCondition
 from pursue_gen.language.network_names import going, has_happened
 from pursue_gen.language.objectives.base import Breaks
-from pursue_gen.language.objectives.request import is_further
-from pursue_gen.language.scenario import Endurance, Ref, Request, Respond, Safety, Scenario
+from pursue_gen.language.objectives.endurance import batteries_in
+from pursue_gen.language.scenario import Ref, Safety, Scenario
 from pursue_gen.tools.simulation.charges import Charges
 from pursue_gen.tools.simulation.meaning import holds
 from pursue_gen.tools.simulation.open_requests import Duty, OpenRequests
@@ -27,8 +27,8 @@ from pursue_runtime.state import LOST, WON, SystemState
 def duties_of(scenario: Scenario) -> Tuple[Tuple[int, Safety], ...]:
     """The objectives that are called upon, each time with a limit for the answer, with their numbers; of requests the
     first of their statement."""
-    numbered = enumerate(scenario.safety)
-    return tuple((k, each) for k, each in numbered if each.limit is not None and not is_further(each))
+    limited = ((k, each) for k, each in enumerate(scenario.safety) if each.limit is not None)
+    return tuple((k, each) for k, each in limited if each.told_with(scenario.safety)[0] is each)
 
 
 class Promises:
@@ -59,8 +59,7 @@ class Promises:
         self._broken: Dict[str, float] = {}
         self._levels: Dict[str, float] = {each.agent.name: float(each.capacity) for each in scenario.batteries}
         self._seen: Dict[str, Tuple[float, str]] = {}
-        by_time = {k: each for k, each in enumerate(scenario.safety) if isinstance(each, Endurance)}
-        self._charges = Charges(by_time, self._places)
+        self._charges = Charges(dict(batteries_in(scenario.safety)), self._places)
         self._open = OpenRequests(scenario)
         self._begun: Optional[float] = None
         self._seq = 0
@@ -117,7 +116,7 @@ class Promises:
         """What an order asks for is wanted no longer."""
         self._open.on_cancel(event)
         for number, safety in enumerate(self._scenario.safety):
-            if isinstance(safety, Respond) and isinstance(safety.trigger, Ref) and safety.trigger.name == event:
+            if safety.called_by == event:
                 self._since.pop(number, None)
                 self._called.pop(number, None)
 
@@ -153,9 +152,9 @@ class Promises:
     def _breaks(self, number: int, safety: Safety, event: str, latest: float, state: SystemState) -> bool:
         """True if the objective is broken now."""
         breaks = self._how[number]
-        if isinstance(safety, Request):
-            return False
-        if isinstance(safety, Endurance):
+        if safety.called_by and safety.order:
+            return False  # which of them is answered depends on turns: `_open` sees to it
+        if number in self._charges:
             since_full = self._charges.since(number)
             self._since.pop(number, None)
             if since_full is not None:

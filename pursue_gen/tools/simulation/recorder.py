@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Tuple
 
 from pursue_gen.tools.replay.check import check
-from pursue_gen.tools.replay.finding import FAULT, UNRECORDED, WORLD
+from pursue_gen.tools.replay.finding import FAULT, UNRECORDED, WORLD, of_kind
 from pursue_gen.tools.replay.game import Game
 from pursue_gen.tools.replay.record import MissionRecord, RecordedWord, RobotOrder, read_word
 from pursue_runtime.locations import is_movement
@@ -69,11 +69,12 @@ class Recorder:
         """
         found = check(self.record(now), game, EPSILON, math.inf if faulty else 0.0, offset)
         levels = (FAULT, UNRECORDED) if faulty else (FAULT, UNRECORDED, WORLD)
-        wrong = [each for each in found.findings if each.level in levels or each.kind == "command"]  # nobody is by hand
-        beside = {each.seq for each in found.findings if each.level == WORLD and each.kind in ("early", "late")}
+        by_hand = of_kind(found.findings, "command")  # nobody is
+        wrong = [each for each in found.findings if each.level in levels or each in by_hand]
+        beside = {each.seq for each in of_kind(found.findings, "early", "late") if each.level == WORLD}
         steps = [step.state for step in found.steps if not game.is_deadline(*step.move[0])]
         text = "{0.event} by {0.agent} (state {0.seq}) came outside the model's window"
         untimely = [text.format(state) for state in steps if state.seq in beside]
-        untimely += [each.text for each in found.findings if each.kind == "overdue"]
+        untimely += [each.text for each in of_kind(found.findings, "overdue")]
         problems = [*self._misdated, *(f"state {each.seq}: {each.text}" for each in wrong)]
         return Judgement(tuple(problems), len(found.steps), tuple(untimely), *found.longest_due)

@@ -115,6 +115,16 @@ def test_a_robot_that_is_needed_cannot_leave_and_it_is_said_for_what(ward: Ward)
     assert not ward.mission.state(ward.now).out_of_service and ward.mission.plan == 0
 
 
+def test_where_no_plan_comes_in_time_that_is_said_with_how_long_a_search_could_take(ward: Ward) -> None:
+    ward.call("order", "leave bot2")
+    answers: List[OrderAnswer] = []
+    while not answers:
+        ward.now += 1.0
+        ward.call("tick")
+        answers = ward.mission.ordering.drain()
+    assert answers[0].why.startswith("no plan was found within 10.0 s") and ward.now < 400.0
+
+
 def test_a_command_to_a_robot_out_of_service_is_not_taken(ward: Ward) -> None:
     ward.order("leave bot2")
     seq = ward.mission.seq

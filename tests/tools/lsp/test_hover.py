@@ -81,6 +81,19 @@ def test_a_battery_says_how_many_levels_it_has() -> None:
     assert "battery of 9, uses 1 per unit" in told("battery b", more)
 
 
+@pytest.mark.parametrize(
+    ("says", "words"),
+    [
+        ("does rest every 20 to 30", "It has happened 30 units of time after the start, or after the last time."),
+        ("stays 20 to 30", "It has set off 30 units of time after it came, or after the start."),
+    ],
+)
+def test_the_second_of_two_numbers_is_told_by_the_assumption_that_has_it(says: str, words: str) -> None:
+    text = f"{SMALL_WITH_MORE}assume: man {says}\n"
+    found = hover(Draft.of(text, "x.pur"), text.rindex("30"))
+    assert found is not None and found.markdown == words
+
+
 def test_a_number_behind_optional_says_what_is_given_up_first() -> None:
     assert "the one with the greatest number" in told("optional 1", SMALL + "optional 1 objective: avoid hand\n")
 

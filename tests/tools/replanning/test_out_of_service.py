@@ -127,3 +127,25 @@ def test_a_robot_cannot_leave_where_somebody_may_do_something_with_it() -> None:
 def test_only_agents_are_out_of_service() -> None:
     with pytest.raises(PursueError, match="bot7 is out_of_service"):
         asked(TWO, ["bot7"])
+
+
+ROUNDS = """\
+poi "c"
+poi "d"
+connect c and d distance 2
+agent "bot3" controllable mobile 1 location c
+agent "bot4" controllable mobile 1 location d
+objective: patrol c, d every 40 by bot3 or bot4
+"""
+
+
+def test_at_the_limit_of_a_search_a_refusal_names_what_is_lost_by_itself() -> None:
+    request = {**request_of(parse(TWO + ROUNDS, "two.pur", "two")), "window": 2.0}
+    why = replan({**request, "out_of_service": ["bot1", "bot2"]}, 1)["why"]
+    assert why.startswith("'objective: if ring then answer within 60' cannot be kept while {bot1} is out of service")
+
+
+def test_at_the_limit_of_a_search_a_refusal_says_that_no_plan_was_found() -> None:
+    request = {**request_of(parse(TWO, "two.pur", "two")), "window": 2.0}
+    why = replan({**request, "out_of_service": ["bot2"]}, 1)["why"]
+    assert why == "no plan was found within the limits of a search while {bot2} is out of service"

@@ -81,6 +81,15 @@ def test_a_robot_that_leaves_gets_no_command_and_a_judge_finds_what_does_not_fit
     assert faults(replace(record, states=states)) == unsaid
 
 
+def test_people_write_orders_too_and_what_is_accepted_of_these_is_kept() -> None:
+    mission = SimulatedMission(stage(ORDERS), Settings("still", until=700.0), 4, None, record=True)
+    assert mission.run().end == SAFE
+    assert any(line.endswith("somebody orders bert at hall within 405.9") for line in mission.lines)
+    record = mission.recorder.record(mission.events.now)
+    assert [state.event for state in record.states if state.event == "order1"] == ["order1"]
+    assert not [each for each in check(record, stage(ORDERS).game).findings if each.level == FAULT]
+
+
 def test_nobody_orders_where_there_is_nothing_to_order() -> None:
     mission = SimulatedMission(stage("thesis/scenario_1"), Settings("still"), 1, None, record=True)
     mission.run()
