@@ -62,7 +62,12 @@ def excuse(reason: object) -> None:
 
 
 class OptionalBuild(build_ext):
-    """Builds solver and checker if it can; without them nothing is solved, but all else works."""
+    """Builds solver and checker if it can, at the same time; without them nothing is solved, but all else works."""
+
+    def initialize_options(self) -> None:
+        """Options as they are, but for as many compilers as there are processors."""
+        super().initialize_options()
+        self.parallel = True
 
     def run(self) -> None:
         """Never fails the installation."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Callable, List, Sequence, Tuple, Union
 
 from hypothesis import assume
@@ -24,6 +25,7 @@ from pursue_gen.language.conditions import (
     condition_text,
 )
 from pursue_gen.language.scenario import Scenario
+from tests.choices import member_of
 from tests.conditions import ref
 
 EVENTS = ("load", "drop", "ride", "wave", "sing")
@@ -41,9 +43,17 @@ def conditions(
     places: Sequence[str], agents: Sequence[str], things: Sequence[str] = ()
 ) -> st.SearchStrategy[str]:
     """Conditions on these places, agents and things, on doing `load`, and on the state `open`."""
-    who = st.sampled_from([Who(None), Who(None, robots=True), *(Who(ref(name)) for name in agents)])
+    return _conditions(tuple(places), tuple(agents), tuple(things))
+
+
+@functools.lru_cache(maxsize=100)
+def _conditions(
+    places: Tuple[str, ...], agents: Tuple[str, ...], things: Tuple[str, ...]
+) -> st.SearchStrategy[str]:
+    """The same, made but once for each of these."""
+    who = member_of([Who(None), Who(None, robots=True), *(Who(ref(name)) for name in agents)])
     atoms: st.SearchStrategy[Condition] = (
-        st.builds(At, who, st.sampled_from([ref(place) for place in places]))
+        st.builds(At, who, member_of([ref(place) for place in places]))
         | st.builds(OnWay, who)
         | st.builds(lambda one, either: OnWay(one, ref("a"), ref("b"), either), who, st.booleans())
         | st.builds(AtMostOf, st.integers(0, 1), st.just((At(Who(None), ref("a")),)) | st.just((OnWay(Who(None)),)))
@@ -51,7 +61,7 @@ def conditions(
         | st.builds(Holds, st.just(ref("open")), st.booleans())
     )
     if things:
-        atoms |= st.builds(Has, who, st.sampled_from([ref(thing) for thing in things]))
+        atoms |= st.builds(Has, who, member_of([ref(thing) for thing in things]))
     literals = atoms | atoms.map(Not)
     pairs = st.lists(literals, min_size=2, max_size=2).map(tuple)
     return (literals | pairs.map(AllOf) | pairs.map(AnyOf)).map(condition_text)
@@ -64,8 +74,8 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     names = ["bot1", "guest"] if small else ["bot1", "bot2", "nurse", "guest"]
     condition = conditions(places, names)
     moved = ((" takes box", " gives box"), (" takes 2 box", " gives box"), (" takes 2 box", " gives 2 box"))
-    takes, gives = draw(st.sampled_from((("", ""), ("", ""), *moved)))
-    mounts, needs = draw(st.sampled_from((("", ""), ("", ""), (" mounts brush", " needs brush"))))
+    takes, gives = draw(member_of((("", ""), ("", ""), *moved)))
+    mounts, needs = draw(member_of((("", ""), ("", ""), (" mounts brush", " needs brush"))))
     things = ["box"] * bool(takes) + ["brush", "saw"] * bool(mounts)
     guard = conditions(places, names, things)
 
@@ -76,7 +86,7 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
         return text if isinstance(text, str) else text()
 
     def place() -> str:
-        return draw(st.sampled_from(places))
+        return draw(member_of(places))
 
     def window() -> str:
         low = draw(st.integers(1, 4))
@@ -86,8 +96,8 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
         return maybe(lambda: f" only_if {draw(guard)}")
 
     def whom() -> str:
-        some = st.lists(st.sampled_from(names), min_size=1, max_size=2, unique=True).map(", ".join)
-        each = st.sampled_from((" for {}", " except {}", " for robots"))
+        some = st.lists(member_of(names), min_size=1, max_size=2, unique=True).map(", ".join)
+        each = member_of((" for {}", " except {}", " for robots"))
         return maybe(lambda: draw(each).format(draw(some)), 5)
 
     def ways(ends: str, some: str) -> List[str]:
@@ -117,13 +127,13 @@ def stories(draw: st.DrawFn, small: bool = False) -> Tuple[str, Scenario]:
     ]
     shuffled = draw(st.permutations([*EVENTS, "call"]))
     for number in range(draw(st.integers(0, 2))):
-        some, word = shuffled[3 * number : 3 * number + 3], st.sampled_from(("before", "or", "and"))
-        each = draw(st.sampled_from(("", "", " for each robot", " for each agent")))
+        some, word = shuffled[3 * number : 3 * number + 3], member_of(("before", "or", "and"))
+        each = draw(member_of(("", "", " for each robot", " for each agent")))
         lines.append(f'rule "r{number}"{each}: ({some[0]} {draw(word)} {some[1]}) {draw(word)} {some[2]}')
-    first = draw(st.sampled_from(("true", "false", "unknown", f"unknown seen_at {place()}")))
-    shows = f" shown_by {draw(st.sampled_from(('load', 'ride', 'wave')))}" if first == "unknown" else ""
+    first = draw(member_of(("true", "false", "unknown", f"unknown seen_at {place()}")))
+    shows = f" shown_by {draw(member_of(('load', 'ride', 'wave')))}" if first == "unknown" else ""
     lines.append(f'state "open": initially {first}, true_if drop false_if call{shows}')
-    needing = draw(st.sampled_from(("load", "sing", "ride", "")))
+    needing = draw(member_of(("load", "sing", "ride", "")))
     lines += [f"stateDependency: {needing} only_if open is_true"] if needing else []
     lines += _agents(draw, names, place, takes + gives, bool(mounts))
     lines += _travels(draw, names[:-1], places)
@@ -147,10 +157,10 @@ def _agents(draw: st.DrawFn, names: Sequence[str], place: Callable[[], str], car
         also = ["load"] * (bool(carry) and "drop" in own) + ["wave"] * (mount and "sing" in own)
         own = [event for event in EVENTS if event in own or event in also]
         room = (" carries 2", " carries 3") if " 2 " in carry else ("", " carries 2", " carries 3")
-        carries = draw(st.sampled_from(room)) if carry else ""
-        carries += draw(st.sampled_from(("", " has box"))) if carry and "load" in own else ""
+        carries = draw(member_of(room)) if carry else ""
+        carries += draw(member_of(("", " has box"))) if carry and "load" in own else ""
         brush = ", brush" if " has" in carries else " has brush"
-        carries += draw(st.sampled_from(("", brush))) if mount and "wave" in own else ""
+        carries += draw(member_of(("", brush))) if mount and "wave" in own else ""
         kind = "human controllable" if name == "nurse" else "controllable"
         can_do = f" can_do {', '.join(own)}" if own else ""
         reacts = [event for event in ("ride", "wave") if event not in own]
@@ -159,7 +169,7 @@ def _agents(draw: st.DrawFn, names: Sequence[str], place: Callable[[], str], car
         lines.append(f'agent "{name}" {kind} {mobile} location {place()}{can_do}{reacts_to}')
     moves = " mobile 2" if draw(st.booleans()) else ""
     first = place()
-    other = draw(st.sampled_from(("", "", " or a", " or b")))
+    other = draw(member_of(("", "", " or a", " or b")))
     first += other if other != f" or {first}" else ""
     lines.append(f'agent "guest"{moves} location {first} can_do call reacts_to ride, wave')
     return lines
@@ -169,7 +179,7 @@ def _travels(draw: st.DrawFn, names: Sequence[str], places: Sequence[str]) -> Li
     if draw(st.integers(0, 2)):
         return []
     low = draw(st.integers(1, 5))
-    return [f"travel {draw(st.sampled_from(names))} from {places[0]} to {places[1]} takes {low} to {low + 2}"]
+    return [f"travel {draw(member_of(names))} from {places[0]} to {places[1]} takes {low} to {low + 2}"]
 
 
 def _assumptions(draw: st.DrawFn, place: Callable[[], str]) -> List[str]:
@@ -183,20 +193,20 @@ def _assumptions(draw: st.DrawFn, place: Callable[[], str]) -> List[str]:
         "stays": lambda: f"assume: guest stays {draw(st.integers(0, 4))} to {draw(st.integers(4, 20))} at each place",
         "there": lambda: f"assume: guest at {place()} by {draw(st.integers(4, 60))}",
         "reaches": lambda: f"assume: guest reaches {place()} within {draw(st.integers(4, 60))}"
-        f" after {draw(st.sampled_from((*EVENTS, 'call')))}",
+        f" after {draw(member_of((*EVENTS, 'call')))}",
         "never": lambda: f"assume: guest never at {place()}",
-        "not": lambda: f"assume: not guest {draw(st.sampled_from(('on_way', f'at {place()}')))}",
+        "not": lambda: f"assume: not guest {draw(member_of(('on_way', f'at {place()}')))}",
     }
-    return [drawn[kind]() for kind in draw(st.lists(st.sampled_from(list(drawn)), max_size=2, unique=True))]
+    return [drawn[kind]() for kind in draw(st.lists(member_of(list(drawn)), max_size=2, unique=True))]
 
 
 def _batteries(draw: st.DrawFn, place: Callable[[], str]) -> List[str]:
     """Of the first robot, which takes part in nothing that others begin, and can do something at every place."""
     if draw(st.integers(0, 2)):
         return []
-    capacity, rate = draw(st.sampled_from((8, 12, 20, 30))), draw(st.integers(0, 3))
+    capacity, rate = draw(member_of((8, 12, 20, 30))), draw(st.integers(0, 3))
     recharges = f" recharges {rate} per unit at {place()}" if rate else ""
-    driving = draw(st.sampled_from(("", "", "1 per metre, ", "3 per metre, ")))
+    driving = draw(member_of(("", "", "1 per metre, ", "3 per metre, ")))
     return [f"battery bot1 capacity {capacity} uses {driving}{draw(st.integers(1, 2))} per unit{recharges}"]
 
 
@@ -216,28 +226,28 @@ def _objectives(
         "follows": lambda: f"objective: if call then {draw(condition)} within {draw(st.integers(5, 30))}",
         "condition": lambda: f"objective: avoid {draw(guard)}",
         "always": lambda: f"objective: always {draw(guard)}",
-        "place": lambda: f"objective: place {draw(st.sampled_from((where, 'a, b')))} holds "
-        f"{draw(st.sampled_from(ROOM))}",
+        "place": lambda: f"objective: place {draw(member_of((where, 'a, b')))} holds "
+        f"{draw(member_of(ROOM))}",
         "escort": lambda: f"objective: escort guest at {where} within {draw(st.integers(4, 30))} by bot1",
         "either": lambda: f"objective: patrol {where} every {draw(st.integers(8, 40))} by bot1 or {other}",
         "company": lambda: f"objective: escort guest at {where} within {draw(st.integers(4, 30))} by bot1 or {other}",
-        "pause": lambda: f"objective: at_least {draw(st.integers(2, 20))} between {draw(st.sampled_from(PAUSES))}",
-        "way": lambda: f"objective: way a to b holds {draw(st.sampled_from(ROOM))}",
-        "with": lambda: f"objective: bot1 never_with guest{draw(st.sampled_from(('', f' at {where}')))}",
+        "pause": lambda: f"objective: at_least {draw(st.integers(2, 20))} between {draw(member_of(PAUSES))}",
+        "way": lambda: f"objective: way a to b holds {draw(member_of(ROOM))}",
+        "with": lambda: f"objective: bot1 never_with guest{draw(member_of(('', f' at {where}')))}",
         "answer": lambda: f"objective: if {draw(condition)} then {draw(condition)} within {draw(st.integers(5, 30))}",
         "rounds": lambda: f"objective: patrol b, a in order every {draw(st.integers(12, 40))} by bot1",
         "patrol": lambda: f"objective: patrol {where} every {draw(st.integers(8, 40))} by bot1",
         "lasts": lambda: f"battery bot1 lasts {draw(st.integers(6, 40))}, charges in {draw(st.integers(1, 12))}"
-        f"{draw(st.sampled_from(('', '', ' in 2 parts', ' in 4 parts')))} at {where}",
+        f"{draw(member_of(('', '', ' in 2 parts', ' in 4 parts')))} at {where}",
         "round": lambda: f"objective: patrol a, b in order every {draw(st.integers(8, 40))} by bot1",
-        "request": lambda: f"objective: if call then {draw(st.sampled_from(('drop', 'load')))} within"
+        "request": lambda: f"objective: if call then {draw(member_of(('drop', 'load')))} within"
         f" {draw(st.integers(5, 40))}, at_most {draw(st.integers(1, 2 if small else 3))} open",
     }
-    safety = draw(st.lists(st.sampled_from(list(kinds)), max_size=1 if small else 2, unique=True))
-    event = draw(st.sampled_from(("load", "drop", "sing", "wave")))
-    later = draw(st.sampled_from(("", " after 3", " within {}"))).format(draw(st.integers(10, 60)))
+    safety = draw(st.lists(member_of(list(kinds)), max_size=1 if small else 2, unique=True))
+    event = draw(member_of(("load", "drop", "sing", "wave")))
+    later = draw(member_of(("", " after 3", " within {}"))).format(draw(st.integers(10, 60)))
     also = " and drop" if event != "drop" and draw(st.integers(0, 3)) == 0 else ""
-    more = st.sampled_from(("", " twice", " 3 times", " twice at_least {} apart"))
+    more = member_of(("", " twice", " 3 times", " twice at_least {} apart"))
     often = draw(more).format(draw(st.integers(2, 9))) if not also and draw(st.integers(0, 2)) == 0 else ""
     reach = [f"reach_objective: do {event}{also}{often}{later}"] if not safety or draw(st.integers(0, 2)) else []
     return [kinds[kind]() for kind in safety] + reach

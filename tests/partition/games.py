@@ -6,6 +6,7 @@ objectives.
 
 from __future__ import annotations
 
+import functools
 from fractions import Fraction
 from typing import Dict, List, Tuple
 
@@ -16,6 +17,7 @@ from pursue_gen.diagnostics import Span
 from pursue_gen.language.scenario import Agent, Ref
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, DiscreteState, Move, Strategy, Zone
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective, Sync, Test
+from tests.choices import member_of
 
 QUICK = settings(max_examples=50, deadline=None)
 """For tests that draw whole strategies: on a busy machine one draw may take long."""
@@ -60,6 +62,7 @@ def _receiver(source: str, target: str, channel: str, *assign: Tuple[str, int]) 
     return Edge(source, target, sync=Sync(channel, False), assign=assign)
 
 
+@functools.lru_cache(maxsize=None)
 def game() -> Network:
     """The network."""
     rule = Automaton(
@@ -149,6 +152,7 @@ def bounds() -> st.SearchStrategy[Fraction]:
     return st.builds(Fraction, st.integers(-40, 40), st.sampled_from((1, 1, 1, 2, 3, 10, 32)))
 
 
+@functools.lru_cache(maxsize=None)
 def constraints(clocks: Tuple[str, ...]) -> st.SearchStrategy[Constraint]:
     """Constraints over two different clocks, one of which may be the constant 0."""
     pairs = [(a, b) for a in (*clocks, None) for b in (*clocks, None) if a != b]
@@ -170,21 +174,32 @@ def zones(draw: st.DrawFn, clocks: Tuple[str, ...]) -> Zone:
 def states(draw: st.DrawFn, network: Network) -> DiscreteState:
     """Discrete states, reachable or not."""
     return DiscreteState(
-        tuple((a.name, draw(st.sampled_from([loc.name for loc in a.locations]))) for a in network.automata),
-        tuple((name, draw(st.sampled_from(VALUES.get(name, (1, 2, -12, -11))))) for name, _ in network.variables),
+        tuple((a.name, draw(member_of(tuple(loc.name for loc in a.locations)))) for a in network.automata),
+        tuple((name, draw(member_of(VALUES.get(name, (1, 2, -12, -11))))) for name, _ in network.variables),
     )
+
+
+@functools.lru_cache(maxsize=None)
+def _federations() -> Tuple[st.SearchStrategy[Tuple[Zone, ...]], st.SearchStrategy[Tuple[Zone, ...]]]:
+    """What commands stand in, and when to wait beside them."""
+    some = st.lists(zones(game().clocks), min_size=1, max_size=2).map(tuple)
+    return some, st.one_of(st.just(()), some)
+
+
+@functools.lru_cache(maxsize=None)
+def _some_states() -> st.SearchStrategy[List[DiscreteState]]:
+    return st.lists(states(game()), min_size=1, max_size=3, unique=True)
 
 
 @st.composite
 def random_strategies(draw: st.DrawFn, controllable: bool = True) -> Strategy:
     """Strategies whose blocks all say something; with `controllable` False counter-strategies."""
-    network = game()
-    federations = st.lists(zones(network.clocks), min_size=1, max_size=2).map(tuple)
+    federations, or_none = _federations()
     blocks = []
-    for state in draw(st.lists(states(network), min_size=1, max_size=3, unique=True)):
-        possible = joint_moves(network, state, controllable)
-        chosen = draw(st.lists(st.sampled_from(possible), max_size=3)) if possible else []
+    for state in draw(_some_states()):
+        possible = joint_moves(game(), state, controllable)
+        chosen = draw(st.lists(member_of(possible), max_size=3)) if possible else []
         commands = tuple(Command(draw(federations), moves) for moves in chosen)
-        wait = draw(federations if not commands else st.one_of(st.just(()), federations))
+        wait = draw(federations if not commands else or_none)
         blocks.append(Block(state, wait, commands))
     return Strategy(tuple(blocks), counter=not controllable)

@@ -16,6 +16,7 @@ from pursue_gen.synthesis.game import State, initial_state, is_goal, joint_moves
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Strategy, Zone, with_automata_of
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
+from tests.choices import member_of
 
 Game = Tuple[Network, Objective]
 
@@ -29,10 +30,10 @@ def passing_texts(draw: st.DrawFn) -> str:
     count, robots = draw(st.integers(4, 6)), draw(st.integers(2, 3))
     places = [f"p{k}" for k in range(count)]
     ways = {(draw(st.integers(0, k - 1)), k) for k in range(1, count)}
-    ways |= {tuple(sorted(pair)) for pair in draw(st.sets(st.sampled_from(_pairs(count)), max_size=2))}
+    ways |= {tuple(sorted(pair)) for pair in draw(st.sets(member_of(_pairs(count)), max_size=2))}
     order = Random(draw(st.integers(0, 10**6)))
     starts, works = order.sample(places, robots), order.sample(places, robots)
-    where = draw(st.sampled_from(("", "", "", f" at {draw(st.sampled_from(places))}")))
+    where = draw(member_of(("", "", "", f" at {draw(member_of(places))}")))
     lines = [f'poi "{place}"' for place in places]
     lines += [f"connect p{a} and p{b} distance {draw(st.integers(1, 3))}" for a, b in sorted(ways)]
     lines += [f'event "work{k}" location {place} duration 2' for k, place in enumerate(works)]
@@ -56,7 +57,7 @@ def patrolling_texts(draw: st.DrawFn) -> str:
     """Two robots that patrol places of a small floor, each of whose places holds one."""
     count = draw(st.integers(3, 5))
     ways = {(draw(st.integers(0, k - 1)), k) for k in range(1, count)}
-    ways |= {tuple(sorted(pair)) for pair in draw(st.sets(st.sampled_from(_pairs(count)), max_size=2))}
+    ways |= {tuple(sorted(pair)) for pair in draw(st.sets(member_of(_pairs(count)), max_size=2))}
     order = Random(draw(st.integers(0, 10**6)))
     starts = order.sample(range(count), 2)
     lines = [f'poi "p{k}"' for k in range(count)]
@@ -64,7 +65,7 @@ def patrolling_texts(draw: st.DrawFn) -> str:
     lines += [f'agent "bot{k}" controllable mobile 1 location p{place}' for k, place in enumerate(starts)]
     lines += ["objective: every place holds 1 robot", "objective: every way holds 1 robot"]
     visits = draw(st.lists(st.integers(0, count - 1), min_size=1, max_size=3, unique=True))
-    who = st.sampled_from(("any robot", "any robot", "bot0", "bot1"))
+    who = member_of(("any robot", "any robot", "bot0", "bot1"))
     return "\n".join([*lines, *(f"objective: patrol p{place} every EVERY by {draw(who)}" for place in visits)])
 
 
@@ -118,11 +119,11 @@ def _block(tables: Tables, strategy: Strategy, state: State) -> Block:
 @st.composite
 def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     """The strategy with one thing changed: an order of passage, what a block names or commands, or a block less."""
-    what = draw(st.sampled_from(("swap", "drop visit", "rename", "unname", "elsewhere", "reroute", "unsay", "hurry")))
+    what = draw(member_of(("swap", "drop visit", "rename", "unname", "elsewhere", "reroute", "unsay", "hurry")))
     blocks = list(strategy.blocks)
     orders = [k for k, passage in enumerate(strategy.passages) if passage.robots]
     if what in ("swap", "drop visit", "rename") and orders:
-        k = draw(st.sampled_from(orders))
+        k = draw(member_of(orders))
         robots = list(strategy.passages[k].robots)
         a, b = (draw(st.integers(0, len(robots) - 1)) for _ in range(2))
         if what == "swap":
@@ -130,12 +131,12 @@ def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
         elif what == "drop visit":
             del robots[a]
         else:
-            robots[a] = draw(st.sampled_from([f"bot{n}" for n in range(3)]))
+            robots[a] = draw(member_of([f"bot{n}" for n in range(3)]))
         passages = list(strategy.passages)
         passages[k] = replace(passages[k], robots=tuple(robots))
         return replace(strategy, passages=tuple(passages))
     commanding = [k for k, block in enumerate(blocks) if block.commands]
-    k = draw(st.sampled_from(commanding))
+    k = draw(member_of(commanding))
     state = blocks[k].state
     if not state.locations:
         return strategy
@@ -143,19 +144,19 @@ def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
         del blocks[k]
     elif what == "hurry":
         commands = tuple(replace(command, zones=((),)) for command in blocks[k].commands)
-        blocks[k] = replace(blocks[k], wait=draw(st.sampled_from(((), ((),)))), commands=commands)
+        blocks[k] = replace(blocks[k], wait=draw(member_of(((), ((),)))), commands=commands)
     elif what == "elsewhere":
-        name, place = draw(st.sampled_from(state.locations))
+        name, place = draw(member_of(state.locations))
         others = [p for block in blocks for n, p in block.state.locations if n == name and p != place]
-        where = draw(st.sampled_from(others or [place]))
+        where = draw(member_of(others or [place]))
         places = tuple((n, where if n == name else p) for n, p in state.locations)
         blocks[k] = replace(blocks[k], state=DiscreteState(places, state.values))
     elif what == "reroute":
         sender = blocks[k].commands[0].moves[0].automaton
         theirs = [blocks[n].commands for n in commanding if blocks[n].commands[0].moves[0].automaton == sender]
-        blocks[k] = replace(blocks[k], commands=draw(st.sampled_from(theirs)))
+        blocks[k] = replace(blocks[k], commands=draw(member_of(theirs)))
     else:
-        gone = draw(st.sampled_from(state.locations))
+        gone = draw(member_of(state.locations))
         kept = tuple(place for place in state.locations if place != gone)
         blocks[k] = replace(blocks[k], state=DiscreteState(kept, state.values))
     return replace(strategy, blocks=tuple(blocks))

@@ -36,6 +36,7 @@ from pursue_gen.tga.network import (
     Test,
 )
 from pursue_gen.tga.part import part_of
+from tests.choices import member_of
 
 ROBOTS, WALKER, GOAL, BAD = ("R0", "R1"), "E", "G", "B"
 DONE = ("a", "b")
@@ -75,7 +76,7 @@ def games(draw: st.DrawFn) -> Game:
         edge = Edge("b0", "b1", Guard((), tests[0]), controllable=False)
         automata.append(Automaton(BAD, (Location("b0"), Location("b1")), "b0", (edge,)))
     clocks = ("x0", "x1", "y")
-    for _ in range(draw(st.sampled_from((0, 0, 1, 2)))):
+    for _ in range(draw(member_of((0, 0, 1, 2)))):
         k = draw(st.integers(0, len(automata) - 1))
         automata[k] = replace(automata[k], edges=(*automata[k].edges, _free(draw, automata[k], tuple(variables))))
     network = Network(clocks, tuple(variables.items()), ("a", "b", "go", "e"), tuple(automata))
@@ -99,14 +100,14 @@ def _robot(draw: st.DrawFn, number: int) -> Automaton:
     if draw(st.integers(0, 3)):
         edges.append(Edge("l1", "l0", Guard(_between(clock, 1)), assign=((position, 0),), resets=(clock,)))
     deeds = [DONE[number]]
-    deeds += draw(st.lists(st.sampled_from(("a", "b", "go", "e")), max_size=1))
+    deeds += draw(st.lists(member_of(("a", "b", "go", "e")), max_size=1))
     deeds += ["go"] if number == 0 or draw(st.booleans()) else []
     for deed in deeds:
-        place = draw(st.sampled_from(("l0", "l1")))
+        place = draw(member_of(("l0", "l1")))
         needs = ((Test("t0", 1),), (Test("t1", 1),))[: draw(st.integers(1, 2))] if deed == "go" else ()
-        more = draw(st.sampled_from((*(8 * ((),)), ("p0", 0), ("p0", 1), ("p1", 0), ("p1", 1), ("pe", 0), ("s", 0))))
+        more = draw(member_of((*(8 * ((),)), ("p0", 0), ("p0", 1), ("p1", 0), ("p1", 1), ("pe", 0), ("s", 0))))
         needs += ((Test(*more),),) if more and more[0] != position else ()
-        sets = draw(st.sampled_from(((), (), (), (), (("s", 1),))))
+        sets = draw(member_of(((), (), (), (), (("s", 1),))))
         edges.append(Edge(place, place, Guard(_between(clock, 1), needs), Sync(deed, True), sets, (clock,)))
     bound = (ClockBound(clock, "<=", way + 1),)
     return Automaton(ROBOTS[number], (Location("l0"), Location("w", bound), Location("l1")), "l0", tuple(edges))
@@ -115,14 +116,14 @@ def _robot(draw: st.DrawFn, number: int) -> Automaton:
 def _rule(draw: st.DrawFn, number: int) -> Automaton:
     turn = f"t{number}"
     edges = [_listening("m0", "m1", DONE[number], ((turn, 1),))]
-    undone = draw(st.sampled_from(("", "", "", "", "", "a", "b", "e")))
+    undone = draw(member_of(("", "", "", "", "", "a", "b", "e")))
     edges += [_listening("m1", "m0", undone, ((turn, 0),))] if undone else []
     return Automaton(f"M{number}", (Location("m0"), Location("m1")), "m0", tuple(edges))
 
 
 def _walker(draw: st.DrawFn) -> Automaton:
     """It walks about, or waits to be sent; and may do something."""
-    sends = draw(st.sampled_from((None, None, Sync("e", True), Sync("a", False), Sync("b", False))))
+    sends = draw(member_of((None, None, Sync("e", True), Sync("a", False), Sync("b", False))))
     comes = () if sends is not None and not sends.sends else _between("y", draw(st.integers(0, 1)))
     free = draw(st.integers(0, 3)) == 0
     edges = [
@@ -140,18 +141,18 @@ def _free(draw: st.DrawFn, automaton: Automaton, variables: Sequence[str]) -> Ed
     """Any edge of the automaton."""
     places = [location.name for location in automaton.locations]
     clock = {"R0": "x0", "R1": "x1"}.get(automaton.name, "y")
-    role = draw(st.sampled_from((None, "!", "?")))
-    channel = draw(st.sampled_from(("a", "b", "go", "e")))
+    role = draw(member_of((None, "!", "?")))
+    channel = draw(member_of(("a", "b", "go", "e")))
     bounds = () if role == "?" else _between(clock, draw(st.integers(0, 2)))
-    tests = draw(st.sampled_from(((), ("t0", 1), ("p0", 1), ("p1", 1), ("pe", 1), ("s", 1))))
-    assign = draw(st.sampled_from((None, None, *variables)))
+    tests = draw(member_of(((), ("t0", 1), ("p0", 1), ("p1", 1), ("pe", 1), ("s", 1))))
+    assign = draw(member_of((None, None, *variables)))
     return Edge(
-        draw(st.sampled_from(places)),
-        draw(st.sampled_from(places)),
+        draw(member_of(places)),
+        draw(member_of(places)),
         Guard(bounds, ((Test(*tests),),) if tests else ()),
         None if role is None else Sync(channel, role == "!"),
         () if assign is None else ((assign, draw(st.integers(0, 1))),),
-        (draw(st.sampled_from(("x0", "x1", "y"))),) if draw(st.booleans()) else (),
+        (draw(member_of(("x0", "x1", "y"))),) if draw(st.booleans()) else (),
         controllable=automaton.name != WALKER and draw(st.booleans()),
     )
 
@@ -160,8 +161,8 @@ def _free(draw: st.DrawFn, automaton: Automaton, variables: Sequence[str]) -> Ed
 def staged(draw: st.DrawFn, game: Game, reaction: Fraction = Fraction(0)) -> Optional[Strategy]:
     """A strategy in stages that may win; None where a stage is not won in the game of those whom it names."""
     network, objective = game
-    numbers = draw(st.permutations((0, 1)))[: draw(st.sampled_from((1, 2, 2, 2)))]
-    first = [draw(st.sampled_from(MILESTONES[number])) for number in numbers]
+    numbers = draw(st.permutations((0, 1)))[: draw(member_of((1, 2, 2, 2)))]
+    first = [draw(member_of(MILESTONES[number])) for number in numbers]
     together = draw(st.booleans())
     known: Optional[Known] = at_start(network)
     reached: List[str] = []
@@ -171,7 +172,7 @@ def staged(draw: st.DrawFn, game: Game, reaction: Fraction = Fraction(0)) -> Opt
         own: Dict[Place, List[Block]] = {}
         for place in places:
             team = {"R1" if place in MILESTONES[1] else "R0"}
-            team |= set() if len(places) > 1 else draw(st.sets(st.sampled_from(ROBOTS), max_size=1))
+            team |= set() if len(places) > 1 else draw(st.sets(member_of(ROBOTS), max_size=1))
             assert known is not None
             blocks = _won(draw, game, reaction, place, team, reached, known)
             if not blocks:
@@ -208,9 +209,9 @@ def _won(
     needed = {name for name in reached if name in known.owned}.union([goal[0]])
     names = {automaton.name for automaton in cone.automata} | needed
     others = sorted({automaton.name for automaton in network.automata} - needed)
-    names ^= draw(st.sets(st.sampled_from(others), max_size=draw(st.sampled_from((0, 0, 0, 0, 1, 2)))))
+    names ^= draw(st.sets(member_of(others), max_size=draw(member_of((0, 0, 0, 0, 1, 2)))))
     variables = {name for name, _ in cone.variables} | {v for name in names for v in known.owned[name]}
-    more = st.sets(st.sampled_from([name for name, _ in network.variables]), max_size=2)
+    more = st.sets(member_of([name for name, _ in network.variables]), max_size=2)
     variables ^= draw(more) if draw(st.integers(0, 7)) == 0 else set()
     variables |= {name for name in (*reached, place[0]) if name not in known.owned}
     if any(v not in variables for name in names for v in known.owned[name]):
@@ -265,7 +266,7 @@ def _without_begin(strategy: Strategy) -> List[Block]:
 @st.composite
 def damaged(draw: st.DrawFn, network: Network, strategy: Strategy) -> Strategy:
     """The strategy with something changed in its blocks, in whom they name, or in its stages."""
-    how = draw(st.sampled_from((_fewer, _elsewhere, _opened, _unnamed, _swapped, _restaged, None)))
+    how = draw(member_of((_fewer, _elsewhere, _opened, _unnamed, _swapped, _restaged, None)))
     return _milestone(draw, network, strategy) if how is None else how(draw, strategy)
 
 
@@ -298,12 +299,12 @@ def _opened(draw: st.DrawFn, strategy: Strategy) -> Strategy:
 
 def _unnamed(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     """The blocks of a part no longer name an automaton or a variable."""
-    stage, place = draw(st.sampled_from([(n, place) for n, places in enumerate(strategy.stages) for place in places]))
+    stage, place = draw(member_of([(n, place) for n, places in enumerate(strategy.stages) for place in places]))
     numbers = strategy.numbers_of(stage, place)
     if not numbers:
         return strategy
     state = strategy.blocks[numbers[0]].state
-    gone: Set[str] = {draw(st.sampled_from([name for name, _ in (*state.locations, *state.values)]))}
+    gone: Set[str] = {draw(member_of([name for name, _ in (*state.locations, *state.values)]))}
     kept: Dict[object, Block] = {}
     for number in numbers:
         block = strategy.blocks[number]
@@ -342,7 +343,7 @@ def _milestone(draw: st.DrawFn, network: Network, strategy: Strategy) -> Strateg
     number = draw(st.integers(0, len(strategy.stages) - 1))
     places = [(automaton.name, location.name) for automaton in network.automata for location in automaton.locations]
     places += [(n, str(v)) for automaton in network.automata for edge in automaton.edges for n, v in edge.assign]
-    place = draw(st.sampled_from(places))
+    place = draw(member_of(places))
     stages = list(strategy.stages)
     stages[number] = (place, *stages[number][1:])
     return replace(strategy, stages=tuple(stages))

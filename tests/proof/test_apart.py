@@ -15,6 +15,7 @@ from pursue_gen.proof.shares import shares_of
 from pursue_gen.solving.rules import Rules
 from pursue_gen.synthesis.strategy import Block, Constraint, Strategy, with_automata_of
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Network, Objective
+from tests.choices import member_of
 from tests.patrols import corridor, small_patrols, tours_of
 from tests.proof.test_stages import of_the_whole
 
@@ -124,7 +125,7 @@ def whole(network: Network, strategy: Strategy) -> Tuple[Network, Strategy]:
 def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     """The strategy with other zones in a block, another block's advice, a block less, or a share that keeps less."""
     number = draw(st.integers(0, len(strategy.blocks) - 1))
-    block, other = strategy.blocks[number], draw(st.sampled_from(strategy.blocks))
+    block, other = strategy.blocks[number], draw(member_of(strategy.blocks))
     always = tuple(replace(command, zones=((),)) for command in block.commands)
     open_ended = tuple(replace(c, zones=tuple(zone[:1] for zone in c.zones)) for c in block.commands)
     new = draw(
@@ -142,7 +143,7 @@ def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     shares = strategy.shares
     if draw(st.booleans()):
         k = draw(st.integers(0, len(shares) - 1))
-        gone = draw(st.sampled_from(shares[k]))
+        gone = draw(member_of(shares[k]))
         shares = tuple(tuple(p for p in share if n != k or p != gone) for n, share in enumerate(shares))
     return replace(with_block(strategy, number, new), shares=shares)
 
@@ -162,7 +163,7 @@ def test_what_passes_wins_the_game_as_a_whole(data: st.DataObject, text: str) ->
     for name, _ in objective.bad:
         if data.draw(st.integers(0, 3)) == 0:
             network = with_deadline(network, name, data.draw(st.integers(5, 40)))
-    reaction = NOW if "bot2" in text else data.draw(st.sampled_from([NOW, LATE]))
+    reaction = NOW if "bot2" in text else data.draw(member_of([NOW, LATE]))
     passes = verify(network, objective, strategy, reaction).ok
     event(f"{'passes' if passes else 'refused'} with reaction {reaction}")
     if passes:

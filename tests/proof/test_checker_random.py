@@ -13,6 +13,7 @@ from pursue_gen.proof.checker import pruned, verify
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Block, Command, Constraint, Strategy, Zone, ZoneKey
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective, Sync
+from tests.choices import member_of
 from tests.synthesis.play_by_play import broken
 from tests.synthesis.random_games import objectives
 
@@ -33,16 +34,16 @@ def _automaton(draw: st.DrawFn, number: int) -> Automaton:
     )
     edges = []
     for k in range(draw(st.integers(3, 5) if number == 0 else st.integers(1, 3))):
-        role = draw(st.sampled_from(("tau", "tau", "a!", "a?")))
+        role = draw(member_of(("tau", "tau", "a!", "a?")))
         bounds = []
         if role != "a?":
-            bounds.append(ClockBound(clock, draw(st.sampled_from((">", ">="))), draw(st.integers(0, 3))))
+            bounds.append(ClockBound(clock, draw(member_of((">", ">="))), draw(st.integers(0, 3))))
             if draw(st.integers(0, 3)) == 0:
-                bounds.append(ClockBound(draw(st.sampled_from(CLOCKS)), "<=", draw(st.integers(1, 4))))
+                bounds.append(ClockBound(draw(member_of(CLOCKS)), "<=", draw(st.integers(1, 4))))
         edges.append(
             Edge(
                 PLACES[k % 2],
-                draw(st.sampled_from(PLACES)),
+                draw(member_of(PLACES)),
                 Guard(tuple(bounds)),
                 None if role == "tau" else Sync("a", role == "a!"),
                 resets=(clock,) if draw(st.booleans()) else (),
@@ -66,8 +67,8 @@ def _all_keys(strategy: Strategy) -> List[ZoneKey]:
 
 def _changed(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     """The strategy with one zone removed, moved by a bit, made to wait, or opened wide."""
-    key = draw(st.sampled_from(_all_keys(strategy)))
-    how = draw(st.sampled_from(("remove", "shift", "wait", "open")))
+    key = draw(member_of(_all_keys(strategy)))
+    how = draw(member_of(("remove", "shift", "wait", "open")))
     b, part, n = key
     block = strategy.blocks[b]
     zones = block.wait if part == "wait" else block.commands[int(part)].zones
@@ -93,7 +94,7 @@ def _shifted(draw: st.DrawFn, zone: Zone) -> Zone:
     if not zone:
         return zone
     n = draw(st.integers(0, len(zone) - 1))
-    by = draw(st.sampled_from((-1, 0, 1)))
+    by = draw(member_of((-1, 0, 1)))
     other = Constraint(zone[n].left, zone[n].right, zone[n].bound + by, zone[n].strict != (by == 0))
     return zone[:n] + (other,) + zone[n + 1 :]
 

@@ -16,6 +16,7 @@ from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Strategy
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Location, Network, Objective, Sync
 from pursue_gen.tga.pauses import pauses
+from tests.choices import member_of
 from tests.proof.test_checker_random import OBJECTIVES, _all_keys, _changed
 from tests.proof.test_parts import GO, LATER, REACH, before, block, since
 from tests.synthesis.play_by_play import broken
@@ -102,11 +103,11 @@ def _places(draw: st.DrawFn) -> Tuple[Location, ...]:
 
 
 def _edge(draw: st.DrawFn, k: int) -> Edge:
-    role = draw(st.sampled_from(("tau", "tau", "a!", "a!", "b?")))
-    lowest = (ClockBound("x", draw(st.sampled_from((">", ">="))), draw(st.integers(0, 3))),)
+    role = draw(member_of(("tau", "tau", "a!", "a!", "b?")))
+    lowest = (ClockBound("x", draw(member_of((">", ">="))), draw(st.integers(0, 3))),)
     return Edge(
         f"l{k % 2}",
-        draw(st.sampled_from(("l0", "l1", "l2"))),
+        draw(member_of(("l0", "l1", "l2"))),
         Guard(() if role == "b?" else lowest),
         None if role == "tau" else Sync(role[0], role[1] == "!"),
         resets=("x",) if draw(st.booleans()) else (),
@@ -117,11 +118,11 @@ def _edge(draw: st.DrawFn, k: int) -> Edge:
 def _call(draw: st.DrawFn, k: int, receives: bool) -> Edge:
     source = f"l{k % 2}"
     if receives and draw(st.integers(0, 2)) == 0:
-        target = draw(st.sampled_from(("l0", "l1", "l2")))
+        target = draw(member_of(("l0", "l1", "l2")))
         return Edge(source, target, sync=Sync("a", False), resets=("y",), controllable=False)
-    op, rest = draw(st.sampled_from(((">", 0), (">", 1), (">=", 1), (">", 2))))
-    target = draw(st.sampled_from((source, source, source, "l0", "l1", "l2")))
-    sync = draw(st.sampled_from((None, Sync("b", True))))
+    op, rest = draw(member_of(((">", 0), (">", 1), (">=", 1), (">", 2))))
+    target = draw(member_of((source, source, source, "l0", "l1", "l2")))
+    sync = draw(member_of((None, Sync("b", True))))
     return Edge(source, target, Guard((ClockBound("y", op, rest),)), sync, resets=("y",), controllable=False)
 
 

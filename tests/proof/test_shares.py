@@ -32,6 +32,7 @@ from pursue_gen.tools.simulation.make import make_case
 from pursue_gen.tools.simulation.mission import simulate_mission
 from pursue_gen.tools.simulation.outcome import SAFE, Settings
 from pursue_gen.tools.simulation.runs import MissionRunner
+from tests.choices import member_of
 from tests.oracle.checker import natively
 from tests.proof.test_stages import of_the_whole
 
@@ -234,7 +235,7 @@ def test_a_deadline_is_not_kept_by_what_others_may_do_but_need_not() -> None:
 def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     """The strategy with wrong claims: another block's waits or commands, a block less, names less, other shares."""
     number = draw(st.integers(0, len(strategy.blocks) - 1))
-    block, other = strategy.blocks[number], draw(st.sampled_from(strategy.blocks))
+    block, other = strategy.blocks[number], draw(member_of(strategy.blocks))
     always: Tuple[Command, ...] = tuple(replace(command, zones=((),)) for command in block.commands)
     changed = draw(
         st.sampled_from(
@@ -250,7 +251,7 @@ def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     blocks = list(strategy.blocks)
     blocks[number] = changed
     if block.state.locations and draw(st.booleans()):
-        name = draw(st.sampled_from([name for name, _ in block.state.locations]))
+        name = draw(member_of([name for name, _ in block.state.locations]))
         blocks = [_without(each, name) if each.state.names == block.state.names else each for each in blocks]
         blocks = list({each.state: each for each in blocks}.values())
     shares = strategy.shares
@@ -266,8 +267,8 @@ def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
 def other_watcher(draw: st.DrawFn, watcher: Automaton) -> Automaton:
     """The automaton with an edge more or less, another deadline, or another beginning."""
     edges = list(watcher.edges)
-    edge = draw(st.sampled_from(edges))
-    what = draw(st.sampled_from(["less", "turned", "silent", "loose", "deadline", "initial"]))
+    edge = draw(member_of(edges))
+    what = draw(member_of(["less", "turned", "silent", "loose", "deadline", "initial"]))
     if what == "less":
         edges.remove(edge)
     elif what == "turned":
@@ -277,7 +278,7 @@ def other_watcher(draw: st.DrawFn, watcher: Automaton) -> Automaton:
     elif what == "loose":
         edges.append(replace(edge, guard=Guard(), resets=()))
     places = [replace(place, invariant=later(place.invariant, what == "deadline")) for place in watcher.locations]
-    initial = draw(st.sampled_from(["idle", "atRisk"])) if what == "initial" else watcher.initial
+    initial = draw(member_of(["idle", "atRisk"])) if what == "initial" else watcher.initial
     return replace(watcher, edges=tuple(edges), locations=tuple(places), initial=initial)
 
 
@@ -336,7 +337,7 @@ def test_what_is_won_in_shares_is_not_lost_in_one_piece(seed: int) -> None:
 def test_who_keeps_a_wrong_watcher_that_passes_keeps_the_objective(data: st.DataObject) -> None:
     network, objective, strategy = in_shares(VISITED)
     network = with_watchers(network, strategy.watchers)
-    watcher = network.automaton(data.draw(st.sampled_from(strategy.watchers)).name)
+    watcher = network.automaton(data.draw(member_of(strategy.watchers)).name)
     wrong = data.draw(other_watcher(watcher))
     network = replace(network, automata=tuple(wrong if each is watcher else each for each in network.automata))
     passes = verify(network, objective, strategy).ok

@@ -23,6 +23,7 @@ from pursue_gen.solving.rules import Rules, played
 from pursue_gen.synthesis.strategy import Block, Command, DiscreteState, Place, Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
+from tests.choices import member_of
 from tests.oracle.checker import natively
 
 DELAY = Fraction(1, 10)
@@ -132,10 +133,10 @@ def test_a_damaged_strategy_that_passes_still_wins_the_game_as_a_whole(data: st.
     number = data.draw(st.integers(0, len(strategy.blocks) - 1))
     block = strategy.blocks[number]
     damages = [replace(block, wait=()), replace(block, commands=block.commands[1:]), replace(block, wait=((),))]
-    other = data.draw(st.sampled_from(strategy.blocks))
+    other = data.draw(member_of(strategy.blocks))
     damages += [replace(block, wait=other.wait), replace(other, state=block.state), replace(block, state=other.state)]
     blocks = list(strategy.blocks)
-    blocks[number] = data.draw(st.sampled_from(damages))
+    blocks[number] = data.draw(member_of(damages))
     if data.draw(st.booleans()):
         del blocks[data.draw(st.integers(0, len(blocks) - 1))]
     damaged = replace(strategy, blocks=tuple(blocks))

@@ -29,6 +29,7 @@ from pursue_gen.synthesis.solve import solve
 from pursue_gen.synthesis.strategy import Constraint, Strategy
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Kind, Network, Objective
+from tests.choices import member_of
 from tests.conftest import thesis_scenario
 from tests.oracle.checker import in_python
 from tests.oracle.closed_loop import LoopInPython
@@ -66,12 +67,12 @@ def looks(draw: st.DrawFn) -> Look:
     else:
         net, objective = draw(networks()), draw(OBJECTIVES)
     reaction = draw(REACTIONS)
-    verdict = solve(net, objective, draw(st.sampled_from((Fraction(0), reaction))))
+    verdict = solve(net, objective, draw(member_of((Fraction(0), reaction))))
     strategy = verdict.strategy or Strategy(())
     for _ in range(draw(st.integers(0, 3))):
         if _all_keys(strategy):
             strategy = _changed(draw, strategy)
-    return net, objective, strategy, reaction, draw(st.sampled_from((None, False, True))), draw(st.booleans())
+    return net, objective, strategy, reaction, draw(member_of((None, False, True))), draw(st.booleans())
 
 
 @RANDOM
@@ -121,7 +122,7 @@ def test_they_agree_on_the_worst_time_from_the_middle_of_a_play(data: st.DataObj
     played_in_python, entry = LoopInPython(loop), loop.start
     with contextlib.suppress(Broken):
         for _ in range(data.draw(st.integers(0, 4))):
-            entry = data.draw(st.sampled_from([after for _, after in played_in_python.successors(entry)] or [entry]))
+            entry = data.draw(member_of([after for _, after in played_in_python.successors(entry)] or [entry]))
     both(lambda: loop.latest(1, limit, LimitMonitor(), start=entry))
 
 
@@ -260,7 +261,7 @@ def test_what_does_not_fit_together_is_refused_by_both_with_the_same_words(one: 
 @st.composite
 def crowded(draw: st.DrawFn) -> Network:
     """A game with many clocks more, which edges reset, in between."""
-    net, more = draw(networks()), [f"z{k}" for k in range(draw(st.sampled_from((37, 38, 62, 94, 125))))]
+    net, more = draw(networks()), [f"z{k}" for k in range(draw(member_of((37, 38, 62, 94, 125))))]
     numbers = count()
 
     def resetting(one: Edge) -> Edge:

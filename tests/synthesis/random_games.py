@@ -25,6 +25,7 @@ from pursue_gen.tga.network import (
     Sync,
     Test,
 )
+from tests.choices import member_of
 
 PLACES = ("l0", "l1", "l2")
 
@@ -38,7 +39,7 @@ def networks(draw: st.DrawFn, kinds: Tuple[Kind, ...], most_clocks: int = 2) -> 
     """
     clocks = ("x", "y")[: draw(st.integers(1, most_clocks))]
     network = Network(clocks, (("v", 0),), ("a",), tuple(_automaton(draw, clocks, number) for number in range(2)))
-    kind = draw(st.sampled_from(kinds))
+    kind = draw(member_of(kinds))
     return network, draw(objectives(kind))
 
 
@@ -46,9 +47,9 @@ def networks(draw: st.DrawFn, kinds: Tuple[Kind, ...], most_clocks: int = 2) -> 
 def objectives(draw: st.DrawFn, kind: Kind) -> Objective:
     """What is wanted of two automata: for a good part of the games several locations to reach at once, or to avoid."""
     goal, bad = (("A0", "l2"),), (("A0" if kind is Kind.SAFETY else "A1", "l2"),)
-    more = draw(st.sampled_from(("", "", "", "goal", "bad", "both")))
+    more = draw(member_of(("", "", "", "goal", "bad", "both")))
     if more in ("goal", "both"):
-        goal += (("A1", draw(st.sampled_from(("l0", "l1")))),)
+        goal += (("A1", draw(member_of(("l0", "l1")))),)
     if more in ("bad", "both"):
         bad += ((("A1" if kind is Kind.SAFETY else "A0"), "l1"),)
     return Objective(kind, goal, bad)
@@ -59,7 +60,7 @@ def started(draw: st.DrawFn, kinds: Tuple[Kind, ...], most_clocks: int = 2) -> T
     """The same, started somewhere in the middle: any locations, a zone of clocks."""
     network, objective = draw(networks(kinds, most_clocks))
     automata = tuple(
-        replace(automaton, initial=draw(st.sampled_from(PLACES[:2])), home="l0") for automaton in network.automata
+        replace(automaton, initial=draw(member_of(PLACES[:2])), home="l0") for automaton in network.automata
     )
     bounds = _start(draw, network.clocks)
     return replace(network, variables=(("v", draw(st.integers(0, 1))),), automata=automata, start=bounds), objective
@@ -67,7 +68,7 @@ def started(draw: st.DrawFn, kinds: Tuple[Kind, ...], most_clocks: int = 2) -> T
 
 def _start(draw: st.DrawFn, clocks: Tuple[str, ...]) -> Tuple[Constraint, ...]:
     """Bounds that are around one of a few points, some of them beyond the constants of the games."""
-    point = {clock: Fraction(draw(st.sampled_from((0, 1, 2, 3, 4, 5, 7, 8, 9, 10, 13))), 4) for clock in clocks}
+    point = {clock: Fraction(draw(member_of((0, 1, 2, 3, 4, 5, 7, 8, 9, 10, 13))), 4) for clock in clocks}
     bounds: List[Constraint] = []
     for left, right in permutations((None, *clocks), 2):
         value = point.get(left or "", Fraction(0)) - point.get(right or "", Fraction(0))
@@ -82,14 +83,14 @@ def _start(draw: st.DrawFn, clocks: Tuple[str, ...]) -> Tuple[Constraint, ...]:
 def games(draw: st.DrawFn, kinds: Tuple[Kind, ...], delays: Tuple[int, ...]) -> Game:
     """The same, with a delay of so many units, as tables."""
     network, objective = draw(networks(kinds))
-    return compile_game(network, objective, Fraction(draw(st.sampled_from(delays))))
+    return compile_game(network, objective, Fraction(draw(member_of(delays))))
 
 
 def _automaton(draw: st.DrawFn, clocks: Tuple[str, ...], number: int) -> Automaton:
     locations = []
     for place in PLACES:
         bounded = draw(st.integers(0, 2)) == 0
-        bound = ClockBound(draw(st.sampled_from(clocks)), "<=", draw(st.integers(1, 4)))
+        bound = ClockBound(draw(member_of(clocks)), "<=", draw(st.integers(1, 4)))
         locations.append(Location(place, (bound,) if bounded else ()))
     count = draw(st.integers(3, 6) if number == 0 else st.integers(1, 4))
     edges = tuple(_edge(draw, clocks, mostly=number == 0, source=PLACES[k % 2]) for k in range(count))
@@ -97,19 +98,19 @@ def _automaton(draw: st.DrawFn, clocks: Tuple[str, ...], number: int) -> Automat
 
 
 def _edge(draw: st.DrawFn, clocks: Tuple[str, ...], mostly: bool, source: str) -> Edge:
-    role = draw(st.sampled_from(("tau", "a!", "a?", "tau")))
+    role = draw(member_of(("tau", "a!", "a?", "tau")))
     bounds: List[ClockBound] = []
     if role != "a?":
         if draw(st.booleans()):
-            lower = draw(st.sampled_from((">", ">=")))
-            bounds.append(ClockBound(draw(st.sampled_from(clocks)), lower, draw(st.integers(0, 2))))
+            lower = draw(member_of((">", ">=")))
+            bounds.append(ClockBound(draw(member_of(clocks)), lower, draw(st.integers(0, 2))))
         if draw(st.integers(0, 2)) == 0:
-            upper = draw(st.sampled_from(("<", "<=", "==")))
-            bounds.append(ClockBound(draw(st.sampled_from(clocks)), upper, draw(st.integers(1, 4))))
+            upper = draw(member_of(("<", "<=", "==")))
+            bounds.append(ClockBound(draw(member_of(clocks)), upper, draw(st.integers(1, 4))))
     clauses = ((Test("v", draw(st.integers(0, 1))),),) if draw(st.integers(0, 3)) == 0 else ()
     return Edge(
         source=source,
-        target=draw(st.sampled_from(PLACES)),
+        target=draw(member_of(PLACES)),
         guard=Guard(tuple(bounds), clauses),
         sync=None if role == "tau" else Sync("a", role == "a!"),
         assign=(("v", draw(st.integers(0, 1))),) if draw(st.integers(0, 3)) == 0 else (),

@@ -37,6 +37,7 @@ from pursue_gen.tga.network import (
     Test,
 )
 from pursue_gen.tga.part import part_of
+from tests.choices import member_of
 from tests.oracle import ENGINES
 from tests.synthesis.play_by_play import broken
 from tests.synthesis.random_games import networks
@@ -334,14 +335,14 @@ def with_walker(draw: st.DrawFn, kinds: Tuple[Kind, ...], receives: bool = True)
     network, objective = draw(networks(kinds))
     edges: List[Edge] = []
     for _ in range(draw(st.integers(1, 3))):
-        role = draw(st.sampled_from(("tau", "b!", "a!", *(("a?", "a?") if receives else ()))))
-        bounds = () if role == "a?" else (ClockBound("z", draw(st.sampled_from((">", ">="))), draw(st.integers(1, 2))),)
+        role = draw(member_of(("tau", "b!", "a!", *(("a?", "a?") if receives else ()))))
+        bounds = () if role == "a?" else (ClockBound("z", draw(member_of((">", ">="))), draw(st.integers(1, 2))),)
         test = ((Test("v", draw(st.integers(0, 1))),),) if draw(st.integers(0, 3)) == 0 else ()
-        assign = draw(st.sampled_from(((), (), (("w", 1),), (("v", 1),))))
+        assign = draw(member_of(((), (), (("w", 1),), (("v", 1),))))
         edges.append(
             Edge(
-                draw(st.sampled_from(("m0", "m1"))),
-                draw(st.sampled_from(("m0", "m1"))),
+                draw(member_of(("m0", "m1"))),
+                draw(member_of(("m0", "m1"))),
                 Guard(bounds, test),
                 None if role == "tau" else Sync(role[0], role[1] == "!"),
                 assign,
@@ -395,8 +396,8 @@ def test_the_checker_passes_no_part_in_which_something_is_missing(
 ) -> None:
     network, objective = game
     keep = {name for name, _ in (*objective.goal, *objective.bad)}
-    keep |= data.draw(st.sets(st.sampled_from(("A0", "A1", "B"))))
-    part = part_of(network, keep, data.draw(st.sets(st.sampled_from(("v", "w")))))
+    keep |= data.draw(st.sets(member_of(("A0", "A1", "B"))))
+    part = part_of(network, keep, data.draw(st.sets(member_of(("v", "w")))))
     strategy = solve(part, objective, whole=True).strategy
     if strategy is None or not strategy.blocks:
         return

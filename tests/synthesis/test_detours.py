@@ -28,6 +28,7 @@ from pursue_gen.tga.network import (
     Sync,
     Test,
 )
+from tests.choices import member_of
 from tests.synthesis.play_by_play import broken
 from tests.synthesis.random_games import networks
 
@@ -152,18 +153,18 @@ def with_robot(draw: st.DrawFn) -> Tuple[Network, Objective]:
     network, objective = draw(networks((Kind.SAFETY, Kind.REACH, Kind.REACH_WHILE_SAFE), most_clocks=1))
 
     def after(most: int) -> Guard:
-        tests = draw(st.sampled_from(((), ((Test("v", 1),),))))
+        tests = draw(member_of(((), ((Test("v", 1),),))))
         return Guard((ClockBound("z", ">", draw(st.integers(0, most))),), tests)
 
-    channel = draw(st.sampled_from(("b", "b", "b", "a")))
-    sets = draw(st.sampled_from(((), (), (("v", 1),))))
+    channel = draw(member_of(("b", "b", "b", "a")))
+    sets = draw(member_of(((), (), (("v", 1),))))
     begin = Edge("home", "work", after(1), Sync(channel, True), (("d", 2),), ("z",))
     end = Edge("work", "home", AFTER, None, (("d", 1),), ("z",), controllable=False)
-    away = Edge("home", "far", after(1), draw(st.sampled_from((None, Sync("a", True)))), (("d", 3), *sets), ("z",))
-    back = Edge("far", "home", AFTER, draw(st.sampled_from((None, Sync("a", True)))), (("d", 1),), ("z",), False)
+    away = Edge("home", "far", after(1), draw(member_of((None, Sync("a", True)))), (("d", 3), *sets), ("z",))
+    back = Edge("far", "home", AFTER, draw(member_of((None, Sync("a", True)))), (("d", 1),), ("z",), False)
     loop = (Edge("home", "home", AFTER, None, (), ("z",)),) if draw(st.booleans()) else ()
     robot = Automaton("bot", LOCATIONS, "home", (begin, end, away, back, *loop))
-    looks = draw(st.sampled_from(((), ((Test("d", 1), Test("d", 2)),), ((Test("d", 3),),), ((Test("d", 2),),))))
+    looks = draw(member_of(((), ((Test("d", 1), Test("d", 2)),), ((Test("d", 3),),), ((Test("d", 2),),))))
     first, second = network.automata
     edges = tuple(
         replace(edge, guard=replace(edge.guard, integers=(*edge.guard.integers, *looks)))

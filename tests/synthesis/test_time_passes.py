@@ -12,6 +12,7 @@ from pursue_gen.proof.independence import why_it_matters
 from pursue_gen.synthesis.time_passes import lets_time_pass
 from pursue_gen.tga.network import Automaton, ClockBound, Edge, Guard, Kind, Location, Network, Objective
 from pursue_gen.tga.part import part_of
+from tests.choices import member_of
 
 OPERATORS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
 STEPS, LONGEST = 4, 8
@@ -35,7 +36,7 @@ def walkers(draw: st.DrawFn) -> Automaton:
     loops = draw(st.lists(edges("there", "there"), max_size=2))
     some = (draw(edges("here", "there")), *loops, draw(edges("there", "here")))
     places = Location("here"), Location("there", (ClockBound("z", "<=", draw(st.integers(1, 5))),))
-    return Automaton("walker", places, draw(st.sampled_from(["here", "there"])), some)
+    return Automaton("walker", places, draw(member_of(["here", "there"])), some)
 
 
 def is_stuck(walker: Automaton) -> bool:
