@@ -121,8 +121,8 @@ class Safety : public Fixpoint<Z> {
         Federation<Z> lost() const { return minus(past, ways); }
     };
 
-    Dangers dangers(const Node<Z>& n, const Federation<Z>& unsafe, const typename Fixpoint<Z>::Usable& usable) const {
-        const Federation<Z> bound = time_blocked(n);
+    Dangers dangers(Node<Z>& n, const Federation<Z>& unsafe, const typename Fixpoint<Z>::Usable& usable) const {
+        const Federation<Z>& bound = time_blocked(n);
         if (unsafe.empty() && bound.empty()) return {};
         Federation<Z> escapes;
         for (const auto& [joint, zones] : usable) append(escapes, zones);
@@ -136,14 +136,8 @@ class Safety : public Fixpoint<Z> {
     bool finished_ = false;
 
     // Stuck before escapes are taken off: at the bound of an automaton that the environment cannot move.
-    Federation<Z> time_blocked(const Node<Z>& n) const {
-        Federation<Z> out;
-        int last = -1;
-        for (const auto& [a, bound] : n.limits) {
-            if (a != last) append(out, minus(this->at_bound(n, a), this->own_moves(n, a)));
-            last = a;
-        }
-        return out;
+    const Federation<Z>& time_blocked(Node<Z>& n) const {
+        return this->at_bounds(n, [&](int a) { return minus(this->at_bound(n, a), this->own_moves(n, a)); });
     }
 
     static Federation<Z> pasts(const Federation<Z>& zones) {
