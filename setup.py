@@ -42,7 +42,7 @@ def native_modules() -> List[Any]:
             include_dirs=["pursue_gen"],
             depends=sorted(header.as_posix() for header in Path("pursue_gen").rglob("*.hpp")),
             cxx_std=17,
-            extra_compile_args=["-O3", "-g0"],
+            extra_compile_args=["-O3", "-g0", "-fno-stack-protector"],
         )
         for name, source in EXTENSIONS.items()
     ]

@@ -11,20 +11,15 @@ from __future__ import annotations
 import json
 import math
 import re
-from fractions import Fraction
 from functools import lru_cache
 from typing import Any, Callable, Dict, Iterator, List, NamedTuple, NoReturn, Optional, Tuple, Union
 
 import yaml
 
 from pursue_runtime.needs import PYYAML, require
+from pursue_runtime.numbers import quoted, whole
 
 require(PYYAML)
-
-DIGITS = 18
-"""The most digits of a whole number; it fits 64 bits."""
-
-_SHOWN = 40
 
 
 class Bounds(NamedTuple):
@@ -47,34 +42,6 @@ class BadText(ValueError):
     def __init__(self, reason: str, line: int = 0, column: int = 0) -> None:
         super().__init__(f"line {line}, column {column}: {reason}" if line else reason)
         self.reason, self.line, self.column = reason, line, column
-
-
-# Numbers --------------------------------------------------------------------------------------------------------------
-
-_WHOLE = re.compile(rf"[-+]?[0-9]{{1,{DIGITS}}}")
-_OVER = rf"/0*[1-9][0-9]{{0,{DIGITS}}}"
-_POINT = rf"(?:\.[0-9]{{1,{DIGITS}}})?(?:e[-+]?[0-9]{{1,2}})?"
-_EXACT = re.compile(rf"{_WHOLE.pattern}(?:{_OVER}|{_POINT})")
-
-
-def whole(text: str) -> int:
-    """The whole number in a text of decimal digits. Raises ValueError where it is none, or has too many digits."""
-    if not _WHOLE.fullmatch(text):
-        raise ValueError(f"{quoted(text)} is not a whole number of at most {DIGITS} digits")
-    return int(text)
-
-
-def exact(value: object) -> Fraction:
-    """The number in a text such as `7`, `0.1` or `1/20`, or a number, as a fraction. Raises ValueError otherwise."""
-    text = str(value)
-    if isinstance(value, bool) or not _EXACT.fullmatch(text):
-        raise ValueError(f"{quoted(text)} is not a number such as 0.1 or 1/20")
-    return Fraction(text)
-
-
-def quoted(text: str) -> str:
-    """The text in quotes as a message can hold it: cut where it is long."""
-    return repr(text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "...")
 
 
 # JSON -----------------------------------------------------------------------------------------------------------------
@@ -345,7 +312,10 @@ def _kind(text: str) -> str:
 
 def _scalar(text: str) -> Union[bool, int, float, str, None]:
     """The value of a scalar without quotes. Raises ValueError for a number that is too large."""
-    return _short_scalar(text) if len(text) <= _SHOWN else _typed(text)
+    return _short_scalar(text) if len(text) <= _SHORT else _typed(text)
+
+
+_SHORT = 40  # letters: of texts with no more the values are kept
 
 
 @lru_cache(maxsize=8192)

@@ -6,9 +6,9 @@ from copy import copy
 from fractions import Fraction
 from typing import AbstractSet, Any, Dict, FrozenSet, Iterator, List, Mapping, NamedTuple, Optional, Tuple
 
-from pursue_runtime.bounded import whole
 from pursue_runtime.data import reading
 from pursue_runtime.locations import breaks_off, ends_part, is_end, part_of
+from pursue_runtime.numbers import whole
 from pursue_runtime.zones import EPSILON, Zone, holds, parse_zone
 
 ORDER_DESK = "orders"

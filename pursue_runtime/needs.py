@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import os
 import re
 import sys
 from typing import NamedTuple, Optional, Sequence, Tuple
@@ -55,14 +56,31 @@ def require(*needs: Need) -> None:
 
 def found_version(need: Need) -> Optional[str]:
     """The version that this Python would import: "" where the package does not tell it, None where it is missing."""
-    from importlib import metadata  # costs more than all else here
-
     if importlib.util.find_spec(need.module) is None:
         return None
+    named = _named_version(need.name)
+    if named:
+        return named
+    from importlib import metadata  # costs more than all else here
+
     try:
         return metadata.version(need.name) or ""
     except metadata.PackageNotFoundError:  # the module is of a package of another name, such as lark-parser
         return str(getattr(importlib.import_module(need.module), "__version__", ""))
+
+
+def _named_version(package: str) -> str:
+    """The version in the name of the folder that tells of a package (jinja2-3.1.2.dist-info); "" where there is not one
+    such folder."""
+    called = re.compile(re.sub(r"[-_.]+", "[-_.]+", package) + r"-(\d[^-]*)(-py\d[\d.]*)?\.(dist|egg)-info", re.I)
+    for folder in sys.path:
+        try:
+            found = [match for match in map(called.fullmatch, os.listdir(folder or ".")) if match]
+        except OSError:  # an archive, or nothing
+            continue
+        if found:
+            return found[0][1] if len(found) == 1 else ""
+    return ""
 
 
 def _does(need: Need, found: Optional[str]) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Tuple
 
-from pursue_runtime.bounded import whole
+from pursue_runtime.numbers import whole
 from pursue_runtime.orders import parse_orders
 from pursue_runtime.sentences import in_words, quoted
 

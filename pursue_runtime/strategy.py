@@ -21,9 +21,10 @@ from typing import (
     TypeVar,
 )
 
-from pursue_runtime.bounded import BadText, exact, read_json
+from pursue_runtime.bounded import BadText, read_json
 from pursue_runtime.data import DataError, check_format, reading
 from pursue_runtime.locations import automaton_clock
+from pursue_runtime.numbers import exact
 from pursue_runtime.state import RUNNING, SystemState
 from pursue_runtime.zones import EPSILON, INFINITY, Zone, due, parse_zone
 

@@ -9,8 +9,8 @@ import re
 from fractions import Fraction
 from typing import Iterable, List, Mapping, NamedTuple, Optional, Tuple
 
-from pursue_runtime.bounded import quoted
 from pursue_runtime.data import DataError
+from pursue_runtime.numbers import quoted
 
 INFINITY = float("inf")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import sys
 from importlib import import_module
+from typing import Any, List
 
 import typer
 
@@ -12,9 +13,26 @@ from pursue_gen import __version__
 from pursue_gen.cli.groups import Commands
 from pursue_gen.outcomes import INTERRUPTED
 
+
+class _Program(Commands):
+    """All commands; the module of one is imported when it is asked for, since all together take longer than many a
+    solution."""
+
+    def list_commands(self, ctx: Any) -> List[str]:
+        """Their names, in the order of the help."""
+        return [_name_of(module) for module, _ in COMMANDS]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """The command of this name, None: there is none."""
+        for module, example in COMMANDS:
+            if _name_of(module) == cmd_name and cmd_name not in self.commands:
+                self.commands[cmd_name] = _made(module, example)
+        return super().get_command(ctx, cmd_name)
+
+
 app = typer.Typer(
     name="pursue-gen",
-    cls=Commands,
+    cls=_Program,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     no_args_is_help=True,
@@ -98,13 +116,20 @@ def _options(
     pass
 
 
-for _module, _example in COMMANDS:
-    _name = _module.rpartition(".")[2]
-    _command = getattr(import_module(f"pursue_gen.{_module}"), _name)
-    if isinstance(_command, typer.Typer):
-        app.add_typer(_command, name=_name)
-    else:  # `import` is a word of Python
-        app.command(_name.rstrip("_"), epilog=_example)(_command)
+def _name_of(module: str) -> str:
+    return module.rpartition(".")[2].rstrip("_")  # `import` is a word of Python
+
+
+def _made(module: str, example: str) -> Any:
+    """The command, or group of commands, of a module."""
+    name = _name_of(module)
+    found = getattr(import_module(f"pursue_gen.{module}"), module.rpartition(".")[2])
+    alone = typer.Typer(rich_markup_mode=None, add_completion=False)
+    if isinstance(found, typer.Typer):
+        alone.add_typer(found, name=name)
+    else:
+        alone.command(name, epilog=example)(found)
+    return typer.main.get_group(alone).commands[name]
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from pursue_gen.solving.solution import Solution
 from pursue_gen.solving.solvers import solved
 from pursue_gen.synthesis.limits import NO_LIMITS, Listener
 from pursue_gen.tga.network import Network, Objective
-from pursue_runtime.bounded import DIGITS, exact
+from pursue_runtime.numbers import DIGITS, exact
 
 _GENERAL = "general"
 

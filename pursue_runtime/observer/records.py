@@ -13,8 +13,9 @@ import os
 import zlib
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from pursue_runtime.bounded import DATA, Bounds, read_json, whole
+from pursue_runtime.bounded import DATA, Bounds, read_json
 from pursue_runtime.folders import sync_folder
+from pursue_runtime.numbers import whole
 
 FORMAT = 2
 """The format of journals that have such records. Format 1 had the JSON objects alone."""

@@ -17,13 +17,12 @@ from pursue_runtime.bounded import (
     SETTINGS,
     BadText,
     Bounds,
-    exact,
     node_value,
     read_json,
     read_yaml,
-    whole,
     yaml_tree,
 )
+from pursue_runtime.numbers import exact, whole
 
 SMALL = Bounds(size=200, depth=3, values=10)
 

@@ -31,12 +31,13 @@ from pursue_gen.tools.transport.poses_file import read_poses
 from pursue_gen.tools.transport.robots_file import read_robots
 from pursue_gen.workspace.machines import parse_machines
 from pursue_runtime import bundle
-from pursue_runtime.bounded import DATA, exact, read_json, read_yaml, whole
+from pursue_runtime.bounded import DATA, read_json, read_yaml
 from pursue_runtime.data import DataError, parse_data, read_data
 from pursue_runtime.event_words import parse_word
 from pursue_runtime.manager.manager import parse_status
 from pursue_runtime.missions import MANIFEST, Missions, Source
 from pursue_runtime.model import Model
+from pursue_runtime.numbers import exact, whole
 from pursue_runtime.observer.planner import _read as read_answer
 from pursue_runtime.reader.contents import StoreError, manifest, read_state
 from pursue_runtime.reader.reader import check_data

@@ -120,9 +120,12 @@ class ClosedLoop {
     }
 
   private:
-    const std::vector<int>* blocks(int state) const {
-        const auto found = strategy_.of_state.find(arena.state(state));
-        return found == strategy_.of_state.end() ? nullptr : &found->second;
+    const std::vector<int>* blocks(int state) {
+        for (int known = static_cast<int>(blocks_.size()); known <= state; ++known) {
+            const auto found = strategy_.of_state.find(arena.state(known));
+            blocks_.push_back(found == strategy_.of_state.end() ? nullptr : &found->second);
+        }
+        return blocks_[state];
     }
 
     // All zones of the advice with their numbers.
@@ -145,11 +148,14 @@ class ClosedLoop {
 
     bool is_lower(const Entry<Z>& entry, std::int64_t rank) {
         if (!blocks(entry.state)) return false;
+        std::vector<std::pair<const Z*, int>> lower = zones(entry.state);
+        lower.erase(std::remove_if(lower.begin(), lower.end(), [&](const auto& one) { return (*ranks_)[one.second] >= rank; }),
+                    lower.end());
+        for (const auto& one : lower)
+            if (includes(*one.first, entry.zone)) return true;
         Zones<Z> rest{entry.zone};
-        for (const auto& [zone, key] : zones(entry.state)) {
-            if ((*ranks_)[key] >= rank) continue;
-            if (includes(*zone, entry.zone)) return true;
-            rest = without(rest, *zone, watch);
+        for (const auto& one : lower) {
+            rest = without(rest, *one.first, watch);
             if (rest.empty()) return true;
         }
         return false;
@@ -246,6 +252,7 @@ class ClosedLoop {
     const Strategy& strategy_;
     const Places goal_, bad_;
     const Ranks* ranks_;
+    std::vector<const std::vector<int>*> blocks_;  // of each discrete state, none: it has no block
     std::unordered_map<int, std::unique_ptr<Advice<Z>>> advice_;
     std::unordered_map<int, Zones<Z>> covered_;
 };

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from array import array
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Callable, ClassVar, Collection, Dict, List, Optional, Tuple
+from typing import Any, Callable, ClassVar, Collection, Dict, Optional
 
 from pursue_gen.synthesis.engine import Engine, Outcome, Stats, not_guessed
-from pursue_gen.synthesis.game import Action, Game, RawBlock
+from pursue_gen.synthesis.game import Game
 from pursue_gen.synthesis.limits import NO_LIMITS, NOTHING_YET, Limits, Listener, Progress, limit_reached
 from pursue_gen.synthesis.native import not_built
-from pursue_gen.zones.dbm import INF
 
 try:
     from pursue_gen.synthesis.native import _core
@@ -20,9 +18,6 @@ except ImportError:  # no compiler when the package was installed
 
 _CLOCKS, _NO_BOUND, _VALUES = 127, 1 << 29, 1 << 31
 """The bounds of module.cpp: clocks, raw bounds, values of variables."""
-
-_UNBOUNDED = {1 << 30: INF}
-"""How module.cpp writes no bound, and what that is here."""
 
 
 def core() -> Any:
@@ -92,37 +87,16 @@ class NativeEngine(Engine):
 
         try:
             most = limits.left, limits.states, limits.memory, limits.work, limits.wall and bool(limits.seconds)
-            return _outcome(game, search(_tables(game), *most, report))
+            return _outcome(search(_tables(game), *most, report))
         except _core.LimitReached as limit:
             raise limit_reached(str(limit), limits, reached) from None
         except MemoryError:
             raise limit_reached("memory", limits, reached) from None
 
 
-def _outcome(game: Game, result: Dict[str, Any]) -> Outcome:
-    count = len(game.automata)
-    states = result["states"]
-    known: Dict[bytes, Tuple[int, ...]] = {}
-    blocks: List[RawBlock] = [
-        (tuple(d[:count]), tuple(d[count:]), tuple((_matrix(zone, known), _action(edges)) for zone, edges, _ in pieces))
-        for d, pieces in states
-    ]
-    ranks = tuple(tuple(rank for _, _, rank in pieces) for _, pieces in states)
+def _outcome(result: Dict[str, Any]) -> Outcome:
     counts = (result[count] for count in ("discrete_states", "zones", "seconds", "symbolic_states", "work"))
-    return Outcome(result["won"], tuple(blocks), ranks, Stats(NativeEngine.name, *counts))
-
-
-def _matrix(bounds: bytes, known: Dict[bytes, Tuple[int, ...]]) -> Tuple[int, ...]:
-    """The matrix; `known` are those that were met: most are met again."""
-    matrix = known.get(bounds)
-    if matrix is None:
-        found = array("i", bounds)
-        matrix = known[bounds] = tuple(map(_UNBOUNDED.get, found, found))
-    return matrix
-
-
-def _action(edges: Any) -> Action:
-    return None if edges is None else tuple(edges)
+    return Outcome(result["won"], result["blocks"], result["ranks"], Stats(NativeEngine.name, *counts))
 
 
 def _tables(game: Game) -> Dict[str, Any]:

@@ -280,7 +280,7 @@ class Fixpoint : public ZoneGraph<Z> {
             Node<Z>& target = nodes_[transition.target];
             if (!joint.controllable && target.reached) before(n, joint, losing(target), out);
         }
-        return out.size() > 1 ? reduced(out) : out;
+        return reduced(std::move(out));
     }
 
     // cPre of what is winning, per move: the points at which it may be commanded, right now and for the whole reaction
@@ -294,7 +294,7 @@ class Fixpoint : public ZoneGraph<Z> {
             Federation<Z> good;
             before(n, joint, winning(target), good);
             if (game_.delta > 0 && !good.empty()) good = lasting(reduced(minus(good, unsafe)), game_.delta);
-            if (!good.empty()) out.emplace_back(transition.joint, reduced(good));
+            if (!good.empty()) out.emplace_back(transition.joint, reduced(std::move(good)));
         }
         return out;
     }

@@ -2,6 +2,9 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <functional>
+#include <unordered_map>
+
 #include "guesses.hpp"
 #include "reach.hpp"
 #include "safety.hpp"
@@ -68,28 +71,70 @@ Game read_game(const py::dict& in) {
     return game;
 }
 
-// What the Python side writes for no bound.
-constexpr std::int32_t UNBOUNDED = 1 << 30;
-
-// The bounds, row by row, as the bytes of native 32-bit integers.
+// The blocks of a strategy, as the Python side has them (RawBlock), and the ranks of their zones. A zone, or a command,
+// that stands in many places is one value.
 template <class Z>
-py::bytes matrix(const Z& z, int dim) {
-    std::vector<std::int32_t> out;
-    for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j) out.push_back(z.at(i, j) >= INF<typename Z::raw_t> ? UNBOUNDED : z.at(i, j));
-    return py::bytes(reinterpret_cast<const char*>(out.data()), out.size() * sizeof(std::int32_t));
-}
+class Blocks {
+  public:
+    using JointOf = std::function<const Joint&(int)>;
 
-// The plan of a discrete state: zones, each with the edges of a command, or None: wait.
-template <class Z, class Search>
-py::tuple block(const Discrete& d, const std::vector<Piece<Z>>& pieces, const Search& search, int dim) {
-    py::list actions;
-    for (const auto& [zone, joint, rank] : pieces) {
-        const py::object edges = joint < 0 ? py::object(py::none()) : py::cast(search.joint(joint).edges);
-        actions.append(py::make_tuple(matrix(zone, dim), edges, rank));
+    Blocks(const Game& game, JointOf joint)
+        : joint_(std::move(joint)), automata_(game.automata.size()), dim_(game.clocks + 1),
+          no_bound_(py::module_::import("pursue_gen.zones.dbm").attr("INF")) {}
+
+    void add(const Discrete& d, const std::vector<Piece<Z>>& pieces) {
+        py::tuple zones(pieces.size()), numbers(pieces.size());
+        for (std::size_t p = 0; p < pieces.size(); ++p) {
+            put(zones, p, py::make_tuple(matrix(pieces[p].zone), action(pieces[p].joint)));
+            put(numbers, p, py::int_(pieces[p].rank));
+        }
+        const auto values = d.begin() + static_cast<std::ptrdiff_t>(automata_);
+        blocks.append(py::make_tuple(tuple_of(d.begin(), values), tuple_of(values, d.end()), zones));
+        ranks.append(numbers);
     }
-    return py::make_tuple(d, actions);
-}
+
+    py::list blocks, ranks;
+
+  private:
+    static void put(const py::tuple& to, std::size_t at, py::object item) {
+        PyTuple_SET_ITEM(to.ptr(), static_cast<py::ssize_t>(at), item.release().ptr());
+    }
+
+    template <class It>
+    static py::tuple tuple_of(It first, It last) {
+        py::tuple out(last - first);
+        for (std::size_t k = 0; first != last; ++first) put(out, k++, py::int_(*first));
+        return out;
+    }
+
+    // The bounds, row by row.
+    py::object matrix(const Z& z) {
+        std::string bounds;
+        for (int i = 0; i < dim_; ++i) bounds.append(reinterpret_cast<const char*>(z.row(i)), dim_ * sizeof(*z.m));
+        py::object& found = matrices_[std::move(bounds)];
+        if (found) return found;
+        py::tuple out(dim_ * dim_);
+        for (int i = 0; i < dim_; ++i)
+            for (int j = 0; j < dim_; ++j)
+                put(out, i * dim_ + j, z.at(i, j) >= INF<typename Z::raw_t> ? no_bound_ : py::int_(z.at(i, j)));
+        return found = std::move(out);
+    }
+
+    // The edges of a command, None: wait.
+    py::object action(int joint) {
+        if (joint < 0) return py::none();
+        py::object& found = actions_[joint];
+        if (!found) found = tuple_of(joint_(joint).edges.begin(), joint_(joint).edges.end());
+        return found;
+    }
+
+    const JointOf joint_;
+    const std::size_t automata_;
+    const int dim_;
+    const py::object no_bound_;
+    std::unordered_map<std::string, py::object> matrices_;
+    std::unordered_map<int, py::object> actions_;
+};
 
 // What was found, without Python's objects.
 template <class Z>
@@ -112,12 +157,14 @@ Found<Z> decide(const Game& game, LimitMonitor& monitor, double small_budget, bo
     return found;
 }
 
-py::dict outcome(bool won, double seconds, const py::list& states, std::size_t reached, std::size_t zones,
+template <class Z>
+py::dict outcome(bool won, double seconds, const Blocks<Z>& found, std::size_t reached, std::size_t zones,
                  std::size_t evaluations, std::size_t symbolic_states) {
     py::dict out;
     out["won"] = won;
     out["seconds"] = seconds;
-    out["states"] = states;
+    out["blocks"] = py::tuple(found.blocks);
+    out["ranks"] = py::tuple(found.ranks);
     out["discrete_states"] = reached;
     out["symbolic_states"] = symbolic_states;
     out["zones"] = zones;
@@ -130,19 +177,19 @@ template <class Z>
 py::dict solve_with(const Game& game, const Limits& limits, double small_budget, bool soonest) {
     LimitMonitor monitor(limits);
     const Found<Z> found = decide<Z>(game, monitor, small_budget, soonest);
-    py::list states;
+    const Fixpoint<Z>& solver = *found.solver;
+    Blocks<Z> blocks(game, [&](int k) -> const Joint& { return solver.joint(k); });
     std::size_t reached = 0, zones = 0;
-    for (const Node<Z>& node : found.solver->nodes()) {
+    for (const Node<Z>& node : solver.nodes()) {
         reached += node.reached;
         if (!found.won) zones += node.rest.size();
     }
     for (const auto& [k, pieces] : found.plan) {
         monitor.look();
         zones += pieces.size();
-        states.append(block(found.solver->state(k), pieces, *found.solver, game.clocks + 1));
+        blocks.add(solver.state(k), pieces);
     }
-    const Fixpoint<Z>& solver = *found.solver;
-    return outcome(found.won, found.seconds, states, reached, zones, solver.evaluations(), solver.symbolic_states());
+    return outcome(found.won, found.seconds, blocks, reached, zones, solver.evaluations(), solver.symbolic_states());
 }
 
 template <class Z>
@@ -159,14 +206,14 @@ py::dict guess_with(const Game& game, const Limits& limits, const std::vector<in
         seconds = monitor.spent();
         if (winning) plan = winning->plan();
     }
-    py::list states;
+    Blocks<Z> blocks(game, [&](int k) -> const Joint& { return joints[k]; });
     std::size_t zones = 0;
     for (const auto& [d, pieces] : plan) {
         monitor.look();
         zones += pieces.size();
-        states.append(block(d, pieces, *winning, game.clocks + 1));
+        blocks.add(d, pieces);
     }
-    return outcome(winning != nullptr, seconds, states, plan.size(), zones, 0, winning ? winning->followed() : 0);
+    return outcome(winning != nullptr, seconds, blocks, plan.size(), zones, 0, winning ? winning->followed() : 0);
 }
 
 // Whether every finite bound that can come up fits: sums along a path through all clocks.

@@ -95,14 +95,12 @@ struct Joint {
 
     // True for a move that is none: it leads back to d, and no clock notices; a command also if it is unseen.
     bool changes_nothing(const Discrete& d, const Game& game) const {
-        return controllable ? is_unseen(d, game) : resets.empty() && target(d) == d;
+        return controllable ? is_unseen(d, game) : resets.empty() && leads_back(d, {});
     }
 
     // True for a move from d that changes at most what cannot matter.
     bool is_unseen(const Discrete& d, const Game& game) const {
-        Discrete after = target(d);
-        for (int k : game.unseen) after[k] = d[k];
-        return after == d && std::all_of(resets.begin(), resets.end(), [&](int x) {
+        return leads_back(d, game.unseen) && std::all_of(resets.begin(), resets.end(), [&](int x) {
                    return std::find(game.unseen_clocks.begin(), game.unseen_clocks.end(), x) != game.unseen_clocks.end();
                });
     }
@@ -110,6 +108,17 @@ struct Joint {
     Discrete target(Discrete d) const {
         for (const auto& [index, value] : writes) d[index] = value;
         return d;
+    }
+
+  private:
+    // Whether it leads from d to d but for these parts of it. Of several writes to one part the last one counts.
+    bool leads_back(const Discrete& d, const std::vector<int>& but) const {
+        for (auto write = writes.rbegin(); write != writes.rend(); ++write) {
+            const auto& [index, value] = *write;
+            if (d[index] == value || std::find(but.begin(), but.end(), index) != but.end()) continue;
+            if (std::none_of(writes.rbegin(), write, [i = index](const auto& later) { return later.first == i; })) return false;
+        }
+        return true;
     }
 };
 

@@ -151,10 +151,10 @@ class Reach : public Fixpoint<Z> {
         // X need not be added: whoever can wait for X can wait for what made X winning.
         Federation<Z> good = minus(forced(n), unsafe);
         for (const auto& [joint, zones] : usable) append(good, zones);
-        const Federation<Z> fresh = reduced(intersection(predt(good, unsafe), n.rest));
+        Federation<Z> fresh = reduced(intersection(predt(good, unsafe), n.rest));
         const Federation<Z> open = most_ ? n.rest : Federation<Z>{};
         const bool grown = !fresh.empty() && take(n, fresh);
-        if (grown) record(k, open, fresh, usable, unsafe);
+        if (grown) record(k, open, std::move(fresh), usable, unsafe);
         this->work_ += static_cast<double>(effort.zones - before);
         return grown;
     }
@@ -162,15 +162,13 @@ class Reach : public Fixpoint<Z> {
     // Takes fresh points of the rest off it; false: they are so few that the rest, in as many zones as it may have, stays.
     bool take(Node<Z>& n, const Federation<Z>& fresh) {
         Federation<Z> rest, cut;
-        std::vector<Federation<Z>> parts;
-        for (const Z& r : n.rest)
-            if (touches(fresh, r)) {
-                parts.push_back(minus(Federation<Z>{r}, fresh));
-                append(cut, parts.back());
-            } else {
-                parts.push_back({r});
-                rest.push_back(r);
-            }
+        std::vector<Federation<Z>> parts;  // in a coarse search
+        for (const Z& r : n.rest) {
+            const bool met = touches(fresh, r);
+            Federation<Z> part = met ? minus(Federation<Z>{r}, fresh) : Federation<Z>{r};
+            append(met ? cut : rest, part);
+            if (most_) parts.push_back(std::move(part));
+        }
         for (const Z& z : cut) absorb(rest, z);
         n.coarse = most_ && rest.size() > most_;
         if (n.coarse) {
@@ -194,24 +192,17 @@ class Reach : public Fixpoint<Z> {
     }
 
     // F before uPre is taken off: where an automaton of the environment is at its bound, and has to move.
-    Federation<Z> forced(const Node<Z>& n) const {
-        Federation<Z> out;
-        int last = -1;
-        for (const auto& [a, bound] : n.limits) {
-            if (a != last) append(out, intersection(this->own_moves(n, a), this->at_bound(n, a)));
-            last = a;
-        }
-        return out;
+    const Federation<Z>& forced(Node<Z>& n) const {
+        return this->at_bounds(n, [&](int a) { return intersection(this->own_moves(n, a), this->at_bound(n, a)); });
     }
 
-    void record(int k, const Federation<Z>& open, const Federation<Z>& fresh, const Usable& usable,
-                const Federation<Z>& unsafe) {
-        Step step{rank_++, open, fresh, {}};
+    void record(int k, const Federation<Z>& open, Federation<Z> fresh, const Usable& usable, const Federation<Z>& unsafe) {
+        Step step{rank_++, open, std::move(fresh), {}};
         for (const auto& [joint, zones] : usable) {
             Federation<Z> now;
             for (const Z& z : minus(zones, unsafe))
-                if (touches(fresh, z)) now.push_back(z);
-            if (!now.empty()) step.commands.emplace_back(joint, reduced(now));
+                if (touches(step.won, z)) now.push_back(z);
+            if (!now.empty()) step.commands.emplace_back(joint, reduced(std::move(now)));
         }
         steps_.resize(nodes_.size());
         steps_[k].push_back(std::move(step));

@@ -12,6 +12,8 @@ class Safety : public Fixpoint<Z> {
   public:
     enum class Verdict { open, won, lost };
 
+    static constexpr double per_state = 24;  // the work of a budget that exploring a state stands for
+
     // `most`: in so many zones at most is kept, in each discrete state, what is lost; 0: in as many as it takes. Fewer zones
     // hold more points, so what is won is won, and what is lost may only be lost so.
     Safety(const Game& game, LimitMonitor& monitor, Restricted restricted, std::size_t most = 0)
@@ -30,7 +32,6 @@ class Safety : public Fixpoint<Z> {
 
     // Tries the game as it is: decides it if it is small.
     Verdict try_small(double budget) {
-        constexpr double per_state = 24;
         if (!this->enter_start()) return Verdict::lost;
         schedule_all(this->explore(static_cast<std::size_t>(budget / per_state)));
         if (!this->queue_.empty()) return Verdict::open;
@@ -121,8 +122,8 @@ class Safety : public Fixpoint<Z> {
         Federation<Z> lost() const { return minus(past, ways); }
     };
 
-    Dangers dangers(const Node<Z>& n, const Federation<Z>& unsafe, const typename Fixpoint<Z>::Usable& usable) const {
-        const Federation<Z> bound = time_blocked(n);
+    Dangers dangers(Node<Z>& n, const Federation<Z>& unsafe, const typename Fixpoint<Z>::Usable& usable) const {
+        const Federation<Z>& bound = time_blocked(n);
         if (unsafe.empty() && bound.empty()) return {};
         Federation<Z> escapes;
         for (const auto& [joint, zones] : usable) append(escapes, zones);
@@ -136,14 +137,8 @@ class Safety : public Fixpoint<Z> {
     bool finished_ = false;
 
     // Stuck before escapes are taken off: at the bound of an automaton that the environment cannot move.
-    Federation<Z> time_blocked(const Node<Z>& n) const {
-        Federation<Z> out;
-        int last = -1;
-        for (const auto& [a, bound] : n.limits) {
-            if (a != last) append(out, minus(this->at_bound(n, a), this->own_moves(n, a)));
-            last = a;
-        }
-        return out;
+    const Federation<Z>& time_blocked(Node<Z>& n) const {
+        return this->at_bounds(n, [&](int a) { return minus(this->at_bound(n, a), this->own_moves(n, a)); });
     }
 
     static Federation<Z> pasts(const Federation<Z>& zones) {
@@ -205,7 +200,9 @@ class Safety : public Fixpoint<Z> {
 
 // Small games, for which `small_budget` is enough work, are decided as they are. Otherwise two searches take turns, each
 // with twice the work of its turn before: one keeps the controller to few moves and what is lost to few zones, more where
-// it loses, so that what it wins is won; the other keeps the environment to few, so that what it loses is lost, and plays the whole game when those are not enough.
+// it loses, so that what it wins is won; the other keeps the environment to few, so that what it loses is lost, and plays the
+// whole game when those are not enough. It has to explore all states before it evaluates one, which later turns pay for as
+// long as there are two searches.
 template <class Z>
 std::pair<bool, std::unique_ptr<Safety<Z>>> solve_safety(const Game& game, LimitMonitor& monitor,
                                                          double small_budget) {
@@ -218,6 +215,7 @@ std::pair<bool, std::unique_ptr<Safety<Z>>> solve_safety(const Game& game, Limit
     std::size_t most = 1;  // zones of what is lost
     auto winning = std::make_unique<Safety<Z>>(game, monitor, Restricted::controllable, most);
     auto losing = std::make_unique<Safety<Z>>(game, monitor, Restricted::uncontrollable);
+    double given = 0, used = 0;  // work for `losing`, and its work
     for (double budget = std::max(small_budget, 1.0);; budget *= 2) {
         for (double left = budget; winning && left > 0; left -= std::max(winning->work(), 1.0)) {
             const Verdict verdict = winning->resume(left);
@@ -227,7 +225,11 @@ std::pair<bool, std::unique_ptr<Safety<Z>>> solve_safety(const Game& game, Limit
             else winning.reset();
             if (!winning) break;
         }
+        given += budget;
+        if (winning && used >= given) continue;
+        const std::size_t before = losing->symbolic_states();
         const Verdict verdict = losing->resume(budget);
+        used += losing->work() + Safety<Z>::per_state * static_cast<double>(losing->symbolic_states() - before);
         if (verdict != Verdict::open) return {verdict == Verdict::won, std::move(losing)};
     }
 }

@@ -39,6 +39,9 @@ struct Node {
     std::vector<int> parents;
     Federation<Z> rest;                       // of the hull, what is not (yet) won in a reach game, or lost in a safety game
     Federation<Z> done, fresh;                // the other points: gathered, and not gathered yet
+    Federation<Z> bounds;                     // what comes of automata at their bounds, see `at_bounds`
+    std::uint64_t bounds_work = 0;            // what it takes to find that out
+    bool bounds_known = false;                // since hull and moves changed
     bool coarse = false;                      // reach: more is won than `rest` says
 };
 
@@ -121,6 +124,7 @@ class ZoneGraph {
     void expand(int k, bool full) {
         if (nodes_[k].full || nodes_[k].won || nodes_[k].lost) return;
         nodes_[k].full = full;
+        nodes_[k].bounds_known = false;
         nodes_[k].unfollowed.clear();
         const Discrete d = states_[k];
         joints_.enabled(d, enabled_);
@@ -227,6 +231,7 @@ class ZoneGraph {
         const bool fresh = !target.reached;
         gathered(target);  // while the rest still is what this hull leaves
         target.hull = z;
+        target.bounds_known = false;
         target.reached = true;
         enqueue(transition.target);
         if (fresh) expand(transition.target, all_);
@@ -266,12 +271,31 @@ class ZoneGraph {
         for (const Z& zone : zones) {
             const auto late = [&](int x) { return zone.at(0, x) < LE_ZERO; };
             if (std::any_of(joint.resets.begin(), joint.resets.end(), late)) continue;
-            out.push_back(zone);
-            Z& z = out.back();
+            Z z = zone;
             for (int x : joint.resets) constrain(z, x, 0, LE_ZERO);
             for (int x : joint.resets) free_clock(z, x);
-            if (!guard(joint, z) || !intersect(z, n.hull)) out.pop_back();
+            if (guard(joint, z) && intersect(z, n.hull)) out.push_back(z);
         }
+    }
+
+    // For each automaton with bounds what `found` makes of it, together. It is found out once as long as hull and moves
+    // stay as they are, and its work counts each time.
+    template <class F>
+    static const Federation<Z>& at_bounds(Node<Z>& n, F found) {
+        if (n.bounds_known) {
+            spend(n.bounds_work);
+            return n.bounds;
+        }
+        const auto before = effort.zones;
+        n.bounds.clear();
+        int last = -1;
+        for (const auto& [a, bound] : n.limits) {
+            if (a != last) append(n.bounds, found(a));
+            last = a;
+        }
+        n.bounds_work = effort.zones - before;
+        n.bounds_known = true;
+        return n.bounds;
     }
 
     // The points where automaton a is at the bound of its invariant.

@@ -14,7 +14,7 @@ from pursue_gen.language.parser import read, without_errors
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.language.written_orders import NoOrder, WrittenOrder, with_written
 from pursue_gen.solving.rules import CONTROLLABLE, REPORTED, Rules
-from pursue_runtime.bounded import exact
+from pursue_runtime.numbers import exact
 
 _LONGEST = 1e9
 """The largest value of a clock, in time units."""

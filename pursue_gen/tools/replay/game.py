@@ -27,7 +27,8 @@ from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Edge, Network, Objective
 from pursue_gen.tools.replay.moves import Moves
 from pursue_gen.tools.replay.orders import Orders, of_strategy
-from pursue_runtime.bounded import BadText, exact, read_yaml, whole
+from pursue_runtime.bounded import BadText, read_yaml
+from pursue_runtime.numbers import exact, whole
 
 DISTRIBUTED, DEDICATED = "distributed", "dedicated"
 _OTHER_PLAN = (

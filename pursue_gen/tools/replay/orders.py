@@ -12,7 +12,7 @@ from pursue_gen.synthesis.plan_text import read_constraint
 from pursue_gen.synthesis.strategy import Constraint, Strategy, Zone
 from pursue_gen.tga.event_words import event_word
 from pursue_gen.tools.replay.moves import DiscreteState, Move, Moves, after
-from pursue_runtime.bounded import exact
+from pursue_runtime.numbers import exact
 
 EPSILON = 1e-6
 Since = TypeVar("Since")

@@ -157,10 +157,9 @@ bool clearly_disjoint(const Z& a, const Z& b) {
     return false;
 }
 
-// Ensures: a holds the points of both, and true; or false: there are none.
+// As `intersect`. Requires: they are not clearly disjoint.
 template <class Z>
-bool intersect(Z& a, const Z& b) {
-    if (clearly_disjoint(a, b)) return false;
+bool intersect_near(Z& a, const Z& b) {
     attend(BOUNDS<Z>);
     bool changed = false;
     for (int k = 0; k < Z::size * Z::stride; ++k) {
@@ -168,6 +167,12 @@ bool intersect(Z& a, const Z& b) {
         a.m[k] = std::min(a.m[k], b.m[k]);
     }
     return !changed || close(a);
+}
+
+// Ensures: a holds the points of both, and true; or false: there are none.
+template <class Z>
+bool intersect(Z& a, const Z& b) {
+    return !clearly_disjoint(a, b) && intersect_near(a, b);
 }
 
 // Whether every point of `small` is in `big`: exact, as `small` is canonical.

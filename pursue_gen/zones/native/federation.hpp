@@ -53,8 +53,9 @@ Federation<Z> intersection(const Federation<Z>& a, const Federation<Z>& b) {
         spend(a.size());
         attend(a.size());
         for (const auto& other : a) {
+            if (clearly_disjoint(other, zone)) continue;
             out.push_back(other);
-            if (!intersect(out.back(), zone)) out.pop_back();
+            if (!intersect_near(out.back(), zone)) out.pop_back();
         }
     }
     return out;
@@ -165,6 +166,12 @@ Federation<Z> reduced(const Federation<Z>& fed) {
     return out;
 }
 
+template <class Z>
+Federation<Z> reduced(Federation<Z>&& fed) {
+    if (fed.size() < 2) return std::move(fed);
+    return reduced(std::as_const(fed));
+}
+
 // The same set in pairwise disjoint zones.
 template <class Z>
 Federation<Z> disjoint(const Federation<Z>& fed) {
@@ -224,9 +231,14 @@ template <class Z>
 Federation<Z> predt(const Federation<Z>& good, const Federation<Z>& bad) {
     constexpr std::size_t many = 4;
     Federation<Z> out;
+    out.reserve(good.size());
     for (const auto& g : good) {
         Z past = g;
         down(past);
+        if (bad.empty()) {
+            out.push_back(past);
+            continue;
+        }
         Federation<Z> safe{past};
         spend(bad.size());
         for (const auto& b : bad) {

@@ -31,11 +31,13 @@ inline std::size_t memory_in_use() {
 }
 
 // What is freed is kept for what comes next, up to some MiB, as federations grow and shrink all the time: to get pages from
-// the system and to give them back took up to half of the time (two robots around a hub). To be called once.
+// the system and to give them back took up to half of the time (two robots around a hub). Small blocks are joined when they
+// are freed, not all at once at each larger one. To be called once.
 inline void keep_what_is_freed() {
 #ifdef __GLIBC__
     mallopt(M_MMAP_THRESHOLD, 32 << 20);
     mallopt(M_TRIM_THRESHOLD, 64 << 20);
+    mallopt(M_MXFAST, 0);
 #endif
 }
 
