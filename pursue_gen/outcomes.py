@@ -51,9 +51,11 @@ class NotProven(PursueError):
 
 
 class LimitHit(PursueError):
-    """A limit was reached before it was decided."""
+    """A limit was reached before it was decided: `which` one of "seconds", "memory", "states" and "work", "" where it
+    is none of these."""
 
     exit_status = 5
+    which: str = ""
 
 
 class Unfinished(PursueError):

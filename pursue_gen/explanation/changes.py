@@ -34,9 +34,10 @@ _SHARED = 0.02
 """The part of what is left that a strategy in shares may take. Measured on a depot with three carts, and labs 9, 73 and
 181."""
 
-_FOR_GUESSES = 0.1
-"""The part of the budget for strategies in shares or by a policy, where the exact game is too large. Measured on a
-barn with a battery."""
+_FOR_GUESSES, _FOR_LIMITS = 0.1, 0.1
+"""The part of the budget for strategies in shares or by a policy, where the exact game is too large; of what is left of
+it, that for a later deadline, which people ask for first. Measured on a barn with a battery, and on an usher in a
+cinema."""
 
 _PROBES = (11, 19, 31, 63, 127, 255)
 """Where a search for a number that wins looks before the end of a long list: large ones take longer. Not measured."""
@@ -48,7 +49,10 @@ _IN_IDEAL = ("ends", "reaction")
 _WHO_PREVENTS = ("assumption", "control")
 """Changes of what those do whom nobody controls."""
 
-_FIRST, _LAST = (_WHO_PREVENTS, ("deadline", "within", "after")), (("game",), _IN_IDEAL)
+_LIMITS = ("deadline", "within", "after")
+"""Changes of what an objective gives as a limit."""
+
+_FIRST, _LAST = (_WHO_PREVENTS, _LIMITS), (("game",), _IN_IDEAL)
 """What is tried before all else, and after it: no robot can play the ideal game."""
 
 
@@ -119,8 +123,9 @@ def findings(scenario: Scenario, rules: Rules, budget: Budget) -> Findings:
         else:
             won[k] = win
     guesses = budget.with_work(for_guesses)
-    for k in sorted(undecided):
-        guess = _guess(tried[k], scenario, rules, guesses)
+    for k in sorted(undecided, key=lambda k: (_turn(tried[k]), k)):
+        share = _FOR_LIMITS if tried[k].what in _LIMITS else _SHARED
+        guess = _guess(tried[k], scenario, rules, guesses, share)
         if guess is not None:
             won[k] = guess
             del undecided[k]
@@ -187,16 +192,16 @@ def _least(repair: Repair, scenario: Scenario, rules: Rules, budget: Budget) -> 
     return _Win(low, high, known[high])
 
 
-def _guess(repair: Repair, scenario: Scenario, rules: Rules, budget: Budget) -> Optional[_Win]:
+def _guess(repair: Repair, scenario: Scenario, rules: Rules, budget: Budget, share: float) -> Optional[_Win]:
     """A small change that wins by a strategy in shares or by a policy, where the exact game is too large; None: there
-    is no such strategy for the largest."""
+    is no such strategy for the largest. `share`: the part of what is left of the budget for each value."""
     known: Dict[int, Strategy] = {}
 
     def wins(k: int) -> bool:
         with suppress(PursueError):
             changed = repair.make(repair.values[k])
             game = _game(*((changed, rules) if isinstance(changed, Scenario) else (scenario, changed)))
-            strategy = guessed(budget, *game, _SHARED, _SHARED)
+            strategy = guessed(budget, *game, share, share)
             known.update({} if strategy is None else {k: strategy})
         return k in known
 

@@ -27,6 +27,10 @@ from pursue_gen.tga.pauses import pauses
 _MOST_STEPS, _MOST_BEGINNINGS = 60, 8
 """So many steps of a play are followed, and so many beginnings of the robots at most. Not measured."""
 
+_IN_VAIN = 2
+"""After so many beginnings in turn that are not decided no other is looked at: there is about as much work for each.
+Measured on errands beside a visitor."""
+
 _FOR_MAIN, _FOR_FEW = 0.7, 0.1
 """The parts of the budget for the play in which the controller begins as it likes, and for whether few events of the
 environment are enough for one. Not measured."""
@@ -84,11 +88,14 @@ def counter_plays(
     player = _CounterPlayer(network, oracle, objective, reaction, helpful, needs_no_time)
     main = player.play(budget.split(_FOR_MAIN))
     yield main
-    beginnings = list(_beginnings(main))
+    beginnings, in_vain = list(_beginnings(main)), 0
     for k, first in enumerate(beginnings):
         play = player.play(budget.split(1 / (len(beginnings) - k)), first)
-        if play.steps or play.end != "open":
+        in_vain = 0 if play.steps or play.end != "open" else in_vain + 1
+        if not in_vain:
             yield play
+        elif in_vain == _IN_VAIN:
+            return
 
 
 def _beginnings(main: Play) -> Iterator[Tuple[int, ...]]:

@@ -43,22 +43,29 @@ class _Attempt:
 _SHARED = (
     _Attempt(EFFORTS[:1], alone=True),
     _Attempt(EFFORTS[1:2], one_robot=(40_000_000, 2_500_000)),
-    _Attempt(EFFORTS[2:3], policy=450_000, one_robot=(200_000_000, 100_000_000), pinned=(60_000_000, 40_000_000)),
-    _Attempt(EFFORTS[3:6], lost=True),
+    _Attempt(EFFORTS[2:3], one_robot=(60_000_000, 20_000_000), pinned=(60_000_000, 40_000_000)),
+    _Attempt(policy=450_000),
+    _Attempt(EFFORTS[3:6], one_robot=(200_000_000, 100_000_000), lost=True),
     _Attempt(EFFORTS[6:], policy=500_000),
 )
-"""For promises that several robots may keep."""
+"""For promises that several robots may keep. Measured on 200 lab scenarios: what one robot cannot keep took 16 million
+units of work at most, and policies of all robots together win none."""
 
 _ONE = (_Attempt(alone=True), _Attempt(policy=5_000_000, lost=True))
 """For those of one robot."""
+
+_CLOCKS = 11
+"""With more clocks a policy gets less work, as a zone costs more then, by the square. Measured on the ninth large lab,
+where policies took 14 of 30 s in vain."""
 
 
 def decided_by_attempts(
     network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
 ) -> Union[Found, Tuple[Objective, ...]]:
     """A proven strategy, or parts of the objective that are lost; () where no attempt finds either."""
-    start, known = options.limits.now(), Known()
-    for each in _SHARED if can_be_shared(network, objective) else _ONE:
+    start, known, shared = options.limits.now(), Known(), can_be_shared(network, objective)
+    dear = max(1.0, ((len(network.clocks) + 1) / (_CLOCKS + 1)) ** 2) if shared else 1.0
+    for each in _SHARED if shared else _ONE:
         found: Optional[Found] = None
         lost: Tuple[Objective, ...] = ()
         if each.shares:
@@ -68,7 +75,7 @@ def decided_by_attempts(
             stay = None if lost else lost_to_a_stay(network, objective)
             lost = (stay.promises,) if stay else lost or excluded_by_an_errand(network, objective)
         if found is None and each.policy:
-            found = won_by_policy(network, objective, reaction, each.policy, options.since(start))
+            found = won_by_policy(network, objective, reaction, int(each.policy / dear), options.since(start))
         if found is None and not lost and each.one_robot:
             lost = lost_for_one(network, objective, reaction, options.since(start), each.one_robot)
         if found is None and not lost and each.pinned:

@@ -10,7 +10,8 @@ class Effort:
     """How much work the search for shares may spend, and what it tries.
 
     `work`: for all games of groups; `game`: for one of them, which has at most so many discrete `states` and `clocks`
-    (with more clocks a zone costs more than is counted). `thorough`: a group's game that is not won with others hidden
+    (with more clocks a zone costs more than is counted); `guess`: for its policies, as a unit of that work takes five
+    times as long. `thorough`: a group's game that is not won with others hidden
     is played with everybody as well. `free`: the environment's pauses are left out. `joins`: groups that cannot be
     played beside each other are joined. `nobody`: a promise that holds while all robots stand still is given to nobody,
     until other robots' commands show that somebody has to keep it. `few`: half as many robots as promises keep all of
@@ -21,6 +22,7 @@ class Effort:
 
     work: int
     game: int = 20_000_000
+    guess: int = 2_500_000
     states: int = 20_000
     clocks: int = 6
     thorough: bool = False
@@ -34,12 +36,14 @@ class Effort:
 
 EFFORTS = (
     Effort(1_000_000, few=True),
-    Effort(10_000_000, game=150_000, joins=False, nobody=True),
-    Effort(30_000_000, game=1_600_000),
-    Effort(40_000_000, game=4_000_000, joins=False, pairs=True, varied=True),
-    Effort(80_000_000, game=10_000_000, joins=False, varied=True),
-    Effort(80_000_000, game=4_000_000),
+    Effort(10_000_000, game=150_000, guess=37_500, states=6_000, joins=False, nobody=True),
+    Effort(60_000_000, game=10_000_000, guess=200_000),
+    Effort(40_000_000, game=4_000_000, guess=1_000_000, joins=False, pairs=True, varied=True),
+    Effort(80_000_000, game=10_000_000, guess=1_000_000, joins=False, varied=True),
+    Effort(80_000_000, game=4_000_000, guess=1_000_000),
     Effort(60_000_000, thorough=True),
     Effort(60_000_000, thorough=True, free=False),
 )
-"""One after the other, until one wins: few groups that need more than the first are won with little work."""
+"""One after the other, until one wins: few groups that need more than the first are won with little work. Measured on
+200 lab scenarios: of 290 policies that win the dearest took 31,000 units of work in the second, 139,000 in the third,
+629,000 in the fourth."""

@@ -25,7 +25,7 @@ from pursue_gen.solving.subgoals import commanded_agents
 from pursue_gen.synthesis.strategy import Place, Strategy
 from pursue_gen.tga.network import Network, Objective
 
-_EFFORT = Effort(10_000_000, game=700_000)
+_EFFORT = Effort(10_000_000, game=700_000, guess=100_000, states=6_000)
 """How hard the games of these shares are tried. Measured on lab scenarios 6 and 27, and on a care home with two
 robots."""
 

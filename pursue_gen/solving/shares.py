@@ -39,7 +39,7 @@ from pursue_gen.solving.group_games import (
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.proving import prove
 from pursue_gen.solving.subgoals import commanded_agents
-from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.budget import Budget, TooLarge
 from pursue_gen.synthesis.solve import Stats
 from pursue_gen.synthesis.strategy import Place, Strategy
 from pursue_gen.tga.network import Kind, Network, Objective
@@ -62,12 +62,13 @@ _Game = Tuple[Network, Tuple[Place, ...], Tuple[Watcher, ...], bool]
 
 class Known:
     """Who can do something about a promise, strategies of games, games that are known to be lost, whatever the effort,
-    with how much work policies were tried in vain, and what all of it took."""
+    and those that are too large, with how much work policies were tried in vain, and what all of it took."""
 
     def __init__(self) -> None:
         self.able: Dict[Place, Tuple[str, ...]] = {}
         self.won: Dict[_Game, Strategy] = {}
         self.lost: Set[_Game] = set()
+        self.large: List[TooLarge] = []
         self.guessed: Dict[Tuple[Network, Tuple[Place, ...], bool], float] = {}
         self.stats: List[Stats] = []
 
@@ -119,12 +120,12 @@ class SharesSearch:
         self._network, self._objective, self._reaction = network, objective, reaction
         self._options, self._effort = options, effort
         limits = replace(options.limits, work=effort.work, states=effort.states)
-        self.budget = Budget(limits, options.progress, options.engine, whole=True)
+        self._known = Known() if known is None else known
+        self.budget = Budget(limits, options.progress, options.engine, whole=True, large=self._known.large)
         self._robots = commanded_agents(network)
         visited = patrols(network)
         self._visits = frozenset(place for place in objective.bad if place[0] in visited)
         self._games = GroupGames(network, objective)
-        self._known = Known() if known is None else known
         self._tried: Set[_Game] = set()
         self._watched: Dict[Group, Tuple[Watcher, ...]] = {}
         self._alone: Dict[Group, bool] = {}
@@ -335,11 +336,12 @@ class SharesSearch:
 
     def _solved(self, key: _Game, wanted: Objective) -> Optional[Strategy]:
         game, *_, free = key
-        share = min(1.0, self._effort.game / max(1, self.budget.work))
-        guessed = self._guessed(game, wanted, share / 4, free) if len(wanted.bad) > 1 else None
+        single = len(wanted.bad) == 1
+        guessed = None if single else self._guessed(game, wanted, free)
         if guessed is not None or len(game.clocks) > self._effort.clocks:
             return guessed
         try:
+            share = min(1.0, self._effort.game / max(1, self.budget.work))
             verdict = self.budget.verdict(game, wanted, self._reaction, share, without_pauses=free)
             self._known.stats.append(verdict.stats)
             if verdict.strategy is None:
@@ -350,10 +352,11 @@ class SharesSearch:
         except (NotProven, LimitHit):
             if self.budget.used_up:
                 raise
-            return self._guessed(game, wanted, share / 4, free) if len(wanted.bad) == 1 else None
+            return self._guessed(game, wanted, free) if single else None
 
-    def _guessed(self, game: Network, wanted: Objective, share: float, free: bool) -> Optional[Strategy]:
+    def _guessed(self, game: Network, wanted: Objective, free: bool) -> Optional[Strategy]:
         """A guess that is proven."""
+        share = min(0.25, self._effort.guess / max(1, self.budget.work))
         strategy = self._guess(game, wanted, share, free)
         if strategy is not None:
             with suppress(NotProven, LimitHit):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import copy
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import AbstractSet, Optional, Tuple
+from typing import AbstractSet, FrozenSet, Hashable, List, Optional, Tuple
 
 from pursue_gen.outcomes import LimitHit
 from pursue_gen.synthesis.engine import Engine
@@ -19,12 +19,35 @@ _PER_EDGE = 200
 """Work that counts for an edge of a network: it is translated for the engine, in about the time of so many steps.
 Measured on catch the thief and drug delivery."""
 
+_PER_STATE = 100
+"""Work that counts for a discrete state of a game that has too many: these are explored, and hardly anything else is
+done. Measured on labs 92 and 112."""
+
+
+@dataclass(frozen=True)
+class TooLarge:
+    """What can be done in a safety game that is not decided within `most` of a limit, `which` is "states" or "work",
+    without pauses or with them."""
+
+    moves: FrozenSet[Hashable]
+    which: str
+    most: int
+    without_pauses: bool
+
+    def shows(self, moves: FrozenSet[Hashable], limits: Limits, without_pauses: bool) -> bool:
+        """True if a game in which all that and perhaps more can be done, whatever its numbers, is likely to be too
+        large as well: without pauses it has no fewer states."""
+        allowed = limits.states if self.which == "states" else limits.work
+        alike = self.without_pauses == without_pauses or (without_pauses and self.which == "states")
+        return alike and 0 < allowed <= self.most and self.moves <= moves
+
 
 class Budget:
     """How much is left of limits that several games share; a game ends where its part is used up.
 
     The limit on memory is one for each game. `progress` is called with this phase; `engine` and `whole` as
-    for `solve`.
+    for `solve`. `large`: safety games that are too large, in which what is found is noted: one that can do all that one
+    of these can, whatever the numbers in it, is tried only with more than that.
     """
 
     def __init__(
@@ -34,7 +57,9 @@ class Budget:
         engine: Engine = NATIVE,
         phase: str = SOLVING,
         whole: bool = False,
+        large: Optional[List[TooLarge]] = None,
     ) -> None:
+        self._large: List[TooLarge] = [] if large is None else large
         self._limits, self._engine, self._games_whole = limits, engine, whole
         self._whole: Optional[Budget] = None
         self._progress = progress and (lambda reached: progress(replace(reached, phase=phase)))
@@ -73,11 +98,18 @@ class Budget:
         if self.used_up:
             raise limit_reached("work" if self.work < 1 else "seconds", limits, NOTHING_YET)
         self.spend(_PER_EDGE * sum(len(automaton.edges) for automaton in network.automata))
+        moves = _moves(network)
+        for some in () if objective.reaches else self._large:
+            if some.shows(moves, limits, without_pauses):
+                raise limit_reached(some.which, limits, NOTHING_YET)
         try:
             how = self._engine, limits, self._progress, self._games_whole, soonest, without_pauses, first
             verdict = solve(network, objective, reaction, *how)
-        except LimitHit:
-            self.spend(limits.work)
+        except LimitHit as limit:
+            most = {"states": limits.states, "work": limits.work}
+            if limit.which in most and not objective.reaches:
+                self._large.append(TooLarge(moves, limit.which, most[limit.which], without_pauses))
+            self.spend(min(limits.work, _PER_STATE * limits.states) if limit.which == "states" else limits.work)
             raise
         self.spend(verdict.stats.work)
         return verdict
@@ -123,3 +155,10 @@ class Budget:
         self.work -= work
         if self._whole is not None:
             self._whole.spend(work)
+
+
+def _moves(network: Network) -> FrozenSet[Hashable]:
+    """Where all begin, and what each may do there and elsewhere, whatever the guards."""
+    begins = [(automaton.name, automaton.initial) for automaton in network.automata]
+    edges = ((name, edge.source, edge.target, edge.channel) for name, edge in network.edges)
+    return frozenset((*begins, *network.variables, *edges))

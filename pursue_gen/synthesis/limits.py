@@ -170,7 +170,9 @@ def limit_reached(which: str, limits: Limits, reached: Progress) -> LimitHit:
     if proving:
         hint = f"there is a strategy, but only what is proven is used; {hint}"
     message = f"no {'proof' if proving else 'verdict'} {where}; {far}, {reached.memory} MiB in use"
-    return LimitHit([error(UNDECIDED, message, hint=hint)])
+    problem = LimitHit([error(UNDECIDED, message, hint=hint)])
+    problem.which = which
+    return problem
 
 
 def memory_in_use() -> int:

@@ -526,3 +526,29 @@ def test_changes_are_found_where_only_a_policy_shows_that_they_win() -> None:
     for new, old in changes:
         changed = parse(BARN.replace(old, new), "barn.pur", "barn")
         assert solved(translate(changed), scenario_objective(changed), DEFAULT).strategy
+
+
+CINEMA = """unit 1 s
+poi "foyer" poi "bar" poi "booth" poi "closet"
+connect foyer and bar distance 5 connect foyer and booth distance 9 connect foyer and closet distance 4
+event "popcorn" location bar
+event "refill" location bar duration 1 min
+event "fetch" location closet duration 20
+rule "corn": fetch before refill
+agent "barman" location bar can_do popcorn
+agent "guest" mobile 2 location foyer
+agent "usher" controllable mobile 1 location foyer can_do fetch, refill
+assume: barman waits 10 min between popcorn
+objective: if popcorn then refill within 4 min
+objective: if guest at booth then usher at booth within 1 min
+"""
+
+
+def test_a_later_deadline_is_found_where_only_a_policy_with_more_work_shows_that_it_wins() -> None:
+    scenario = parse(CINEMA, "cinema.pur", "cinema")
+    changes = findings(scenario, DEFAULT, Budget(Limits(work=14_000_000, states=50_000))).changes
+    (change,) = (each for each in changes if each.what == "deadline")
+    assert change.name == "usher at booth" and 60 < float(change.after) < 240
+    text = CINEMA.replace("usher at booth within 1 min", f"usher at booth within {change.after}")
+    changed = parse(text, "cinema.pur")
+    assert solved(translate(changed), scenario_objective(changed), DEFAULT).strategy

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import List, Tuple
 
@@ -9,12 +10,13 @@ import pytest
 
 from pursue_gen.diagnostics import PursueError, render
 from pursue_gen.language import load, parse
+from pursue_gen.outcomes import LimitHit
 from pursue_gen.synthesis import limits as limits_module
-from pursue_gen.synthesis.budget import Budget
+from pursue_gen.synthesis.budget import Budget, TooLarge
 from pursue_gen.synthesis.limits import Limits, Progress
 from pursue_gen.synthesis.solve import solve
 from pursue_gen.tga import scenario_objective, translate
-from pursue_gen.tga.network import Network, Objective
+from pursue_gen.tga.network import Automaton, Guard, Network, Objective
 from tests.conftest import thesis_scenario
 from tests.large_scenarios import many_walkers
 from tests.oracle import ENGINES
@@ -87,3 +89,46 @@ def test_progress_has_the_phase(game: Tuple[Network, Objective], monkeypatch: py
     heard: List[Progress] = []
     assert Budget(Limits(), heard.append, ENGINES["python"], "explaining").verdict(*game, NOW).won
     assert {progress.phase for progress in heard} == {"explaining"}
+
+
+@engines
+def test_a_game_that_is_too_large_is_explored_once(engine: str) -> None:
+    scenario = parse(many_walkers(), "crowd.pur")
+    network, safe = translate(scenario), scenario_objective(scenario)
+    large: List[TooLarge] = []
+    budget = Budget(Limits(work=10_000_000, states=300), engine=ENGINES[engine], large=large)
+
+    def spent(some: Network, **how: bool) -> float:
+        before = budget.work
+        with pytest.raises(LimitHit) as problem:
+            budget.verdict(some, safe, NOW, **how)
+        assert problem.value.which == "states"
+        return before - budget.work
+
+    explored = spent(network)
+    assert explored > 300 and [(each.which, each.most) for each in large] == [("states", 300)]
+    edges = spent(network)
+    assert 0 < edges < explored, "it is not explored again"
+    slower = replace(network, automata=tuple(map(_without_guards, network.automata)))
+    assert spent(slower) == edges, "nor where only numbers differ"
+    for states, tries in ((300, 1), (400, 2)):
+        again = Budget(Limits(work=10_000_000, states=states), engine=ENGINES[engine], large=large)
+        with pytest.raises(LimitHit):
+            again.verdict(network, safe, NOW)
+        assert len(large) == tries, "it is explored where more states are allowed"
+
+
+@engines
+def test_a_game_that_takes_too_much_work_is_tried_with_more_only(engine: str) -> None:
+    scenario = parse(many_walkers(), "crowd.pur")
+    network, safe = translate(scenario), scenario_objective(scenario)
+    large: List[TooLarge] = []
+    for work, tries in ((3_000_000, 1), (3_000_000, 1), (2_900_000, 1), (3_100_000, 2)):
+        budget = Budget(Limits(work=work), engine=ENGINES[engine], large=large)
+        with pytest.raises(LimitHit) as problem:
+            budget.verdict(network, safe, NOW, 0.001)
+        assert problem.value.which == "work" and len(large) == tries
+
+
+def _without_guards(automaton: Automaton) -> Automaton:
+    return replace(automaton, edges=tuple(replace(edge, guard=Guard()) for edge in automaton.edges))

@@ -28,7 +28,7 @@ def shared_as_before(
     groups = tuple(_groups(network, objective, request))
     if not groups:
         return None
-    effort = Effort(_WORK, game=_GAME, joins=False)
+    effort = Effort(_WORK, game=_GAME, guess=_GAME // 4, joins=False)
     with suppress(LimitHit):
         return SharesSearch(network, objective, request.rules.reaction, options, effort, known).found(groups)
     return None
