@@ -69,7 +69,7 @@ class Known:
         self.won: Dict[_Game, Strategy] = {}
         self.lost: Set[_Game] = set()
         self.large: List[TooLarge] = []
-        self.guessed: Dict[Tuple[Network, Tuple[Place, ...], bool], float] = {}
+        self.guessed: Dict[Tuple[Network, Tuple[Place, ...], bool, bool], float] = {}
         self.stats: List[Stats] = []
 
 
@@ -138,6 +138,8 @@ class SharesSearch:
         able = {place: self.able(place) for place in self._objective.bad if place not in had}
         if self._effort.few:
             return self._by_few(able)
+        if self._effort.turns:
+            return self._by_policy(self._robots, turns=True)
         order = sorted(able, key=lambda place: len(able[place]))
         turns = range(len(order) + 1) if self._effort.varied else (len(order),)
         ways = chain.from_iterable(self._ways(order, able, having, most) for most in turns)
@@ -153,10 +155,14 @@ class SharesSearch:
         few = self._robots[: -(-len(needed) // 2)]
         if not 1 < len(few) < len(self._robots) or any(len(able[place]) < len(self._robots) for place in needed):
             return None
-        group = Group(frozenset(few), self._objective.bad)
+        return self._by_policy(few)
+
+    def _by_policy(self, team: Sequence[str], turns: bool = False) -> Optional[Strategy]:
+        """A strategy by which this team keeps all promises, while the others stand still. `turns`: by taking turns."""
+        group = Group(frozenset(team), self._objective.bad)
         game = self._games.game(group, frozenset(), NEEDED)
         wanted = Objective(Kind.SAFETY, bad=self._objective.bad)
-        strategy = self._guess(game, wanted, 1.0, free=bool(pauses(game)))
+        strategy = self._guess(game, wanted, 1.0, free=bool(pauses(game)), turns=turns)
         return None if strategy is None else self._proven({group: without_hidden(strategy)})
 
     def won_by(self, groups: Sequence[Group]) -> Optional[Strategy]:
@@ -364,11 +370,13 @@ class SharesSearch:
                 return without_hidden(proven)
         return None
 
-    def _guess(self, game: Network, wanted: Objective, share: float, free: bool) -> Optional[Strategy]:
-        key, before = (game, wanted.bad, free), self.budget.work
+    def _guess(
+        self, game: Network, wanted: Objective, share: float, free: bool, turns: bool = False
+    ) -> Optional[Strategy]:
+        key, before = (game, wanted.bad, free, turns), self.budget.work
         if share * before < _MORE * self._known.guessed.get(key, 0):
             return None
-        found = self.budget.guess(game, wanted, self._reaction, share, without_pauses=free)
+        found = self.budget.guess(game, wanted, self._reaction, share, without_pauses=free, turns=turns)
         if found is None:
             used_up = before - self.budget.work >= share * before - 1
             self._known.guessed[key] = share * before if used_up else math.inf

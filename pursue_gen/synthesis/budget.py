@@ -122,10 +122,11 @@ class Budget:
         share: float,
         without_pauses: bool = False,
         late: AbstractSet[str] = frozenset(),
+        turns: bool = False,
     ) -> Optional[Tuple[Strategy, Stats]]:
         """What `solve.guess` finds with that share of what is left, and what it took."""
         limits = self.part(share)
-        how = self._engine, limits, self._progress, self._games_whole, without_pauses, late
+        how = self._engine, limits, self._progress, self._games_whole, without_pauses, late, turns
         try:
             strategy, stats = guess(network, objective, reaction, *how)
         except LimitHit:

@@ -65,13 +65,19 @@ class Engine(ABC):
         return self
 
     def guess(
-        self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None, late: Collection[str] = ()
+        self,
+        game: Game,
+        limits: Limits = NO_LIMITS,
+        progress: Optional[Listener] = None,
+        late: Collection[str] = (),
+        turns: bool = False,
     ) -> Outcome:
         """Try simple policies in a safety game that it `holds`: each robot does one duty after the other, by itself.
 
         `won` if one keeps from all that is to be avoided; else nothing is known of the game. Zones in which to wait may
         overlap, and those of commands, too. `late`: the automata of patrols; policies by which these wait until they
-        are due. `progress` and what it raises: as `solve`. An engine need not know any policy.
+        are due. `turns`: only policies by which robots leave their homes in turns. `progress` and what it raises: as
+        `solve`. An engine need not know any policy.
         """
         return not_guessed(self)
 

@@ -120,14 +120,16 @@ def guess(
     whole: bool = False,
     without_pauses: bool = False,
     late: AbstractSet[str] = frozenset(),
+    turns: bool = False,
 ) -> Tuple[Optional[Strategy], Stats]:
     """A strategy for a safety game by a simple policy (see `Engine.guess`), None: none of those that are known wins.
 
-    `late`: the automata of patrols; by one by which these wait until they are due. Other arguments, and what it raises,
-    as for `solve`. An engine that does not guess finds none.
+    `late`: the automata of patrols; by one by which these wait until they are due. `turns`: only by one by which robots
+    leave their homes in turns. Other arguments, and what it raises, as for `solve`. An engine that does not guess finds
+    none.
     """
     game, gone = _compiled(network, objective, reaction, engine, whole, without_pauses)
-    outcome = engine.guess(game, limits, progress, late)
+    outcome = engine.guess(game, limits, progress, late, turns)
     return to_strategy(game, outcome.blocks, gone) if outcome.won else None, outcome.stats
 
 

@@ -100,9 +100,35 @@ def test_fewer_robots_than_promises_keep_what_all_can() -> None:
     assert {command.moves[0].automaton for command in commands} == {"bot1", "bot2"}
 
 
+def test_all_robots_keep_all_promises_by_taking_turns() -> None:
+    found = won_in_shares(*game(HUB), REACTION, SolveOptions(), [each for each in EFFORTS if each.turns])
+    assert found is not None and len(found.strategy.shares) == 1
+    assert verify(*game(HUB), found.strategy, REACTION).ok
+
+
 def test_robots_that_never_meet_win_without_a_right_of_way() -> None:
     found = decided_by_attempts(*game(lab_scenario(26)), REACTION, SolveOptions())
     assert isinstance(found, Found)
+
+
+HUB = """
+poi "west"
+poi "hub"
+poi "east"
+poi "room"
+connect west and hub distance 8
+connect hub and east distance 8
+connect hub and room distance 5
+event "call"
+event "bring" location west duration 10
+agent "cart" controllable mobile 1 location west
+agent "porter" controllable mobile 1 location east can_do bring
+agent "nurse" mobile 1 location room can_do call
+objective: patrol room, west every 300 by cart
+objective: if call then bring within 300
+objective: every place holds 1 robot
+"""
+"""The nurse, who walks, is hidden from their game."""
 
 
 CORRIDOR = """

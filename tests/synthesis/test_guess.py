@@ -277,6 +277,61 @@ def test_robots_whose_ways_cross_leave_home_one_at_a_time(late: bool) -> None:
     assert guess(*game_of(tight), DEFAULT.reaction)[0] is None
 
 
+def test_robots_go_to_their_homes_first() -> None:
+    """Each begins in the other's way: the porter has to be out of it before the cart comes through the hub."""
+    changed = HUB.replace("location east can_do", "location room can_do").replace("1 location west\n", "1 location east\n")
+    network, objective = game_of(changed)
+    strategy, _ = guess(network, objective, DEFAULT.reaction, turns=True)
+    assert strategy is not None
+    assert verify(network, objective, strategy, DEFAULT.reaction).ok
+
+
+AISLES = """
+poi "desk"
+poi "main1"
+poi "main2"
+poi "aisle1"
+poi "aisle2"
+poi "bay1"
+poi "bay2"
+poi "bay3"
+connect desk and main1 distance 5
+connect main1 and main2 distance 8
+connect main1 and aisle1 distance 10
+connect main2 and aisle2 distance 10
+connect main1 and bay1 distance 3
+connect main1 and bay2 distance 3
+connect main2 and bay3 distance 3
+event "order"
+event "pick" location aisle1 duration 20
+event "drop" location desk duration 10
+rule "picked": order before pick before drop
+agent "picker" controllable mobile 1 location bay1 can_do pick, drop
+agent "scan1" controllable mobile 1 location bay2
+agent "scan2" controllable mobile 1 location bay3
+agent "packer" location desk can_do order
+objective: if order then drop within 300
+objective: patrol aisle1 every 300 by scan1
+objective: patrol aisle2, main1 every 300 by scan2
+objective: every place holds 1 robot
+"""
+
+
+def test_nobody_who_waits_for_his_turn_waits_for_ever() -> None:
+    """What comes first in an order for picking is the packer's; all three go past one place."""
+    network, objective = game_of(AISLES)
+    strategy, _ = guess(network, objective, DEFAULT.reaction, turns=True)
+    assert strategy is not None
+    assert verify(network, objective, strategy, DEFAULT.reaction).ok
+
+
+def test_robots_that_are_never_in_the_way_do_not_take_turns() -> None:
+    apart = "objective: patrol bay every 90 by bot2"
+    network, objective = game_of(MAKES_WAY.replace("objective: bot1 never_with bot2", apart))
+    assert guess(network, objective, DEFAULT.reaction, turns=True)[0] is None
+    assert guess(network, objective, DEFAULT.reaction)[0] is not None
+
+
 POST = """
 poi "dock"
 poi "post"

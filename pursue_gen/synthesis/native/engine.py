@@ -54,13 +54,18 @@ class NativeEngine(Engine):
         return replace(self, small_budget=max(self.small_budget, work))
 
     def guess(
-        self, game: Game, limits: Limits = NO_LIMITS, progress: Optional[Listener] = None, late: Collection[str] = ()
+        self,
+        game: Game,
+        limits: Limits = NO_LIMITS,
+        progress: Optional[Listener] = None,
+        late: Collection[str] = (),
+        turns: bool = False,
     ) -> Outcome:
         """Try simple policies, see `Engine`."""
         put_off = [k for k, automaton in enumerate(game.automata) if automaton.name in late]
         if game.goal or (late and not put_off):
             return not_guessed(self)
-        return self._run(game, limits, progress, partial(core().guess, late=put_off))
+        return self._run(game, limits, progress, partial(core().guess, late=put_off, turns=turns))
 
     def solve(
         self,

@@ -14,42 +14,53 @@ class Excursions : public Decider {
     }
 
     // Whether there are such homes, and some ways cross.
-    bool applies() const override {
-        const auto any = [](const std::vector<bool>& some) { return std::find(some.begin(), some.end(), true) != some.end(); };
-        return std::any_of(cross_.begin(), cross_.end(), any);
-    }
+    bool applies() const override { return !pairs_.empty(); }
 
-    // Per robot its duty, -1: none, below: on its way home from the one of that number; then who was the last to leave home.
+    // Per robot its duty, -1: none, below: on its way home from the one of that number; then the step of the way to the
+    // homes that is next, none: -1; then per pair whose trips cross who of the two leaves first.
     std::vector<int> remembered(const Discrete& d) override {
         std::vector<int> memory(robots(), -1);
-        memory.push_back(static_cast<int>(robots()) - 1);
+        memory.push_back(first_steps_.empty() ? -1 : 0);
+        for (const auto& [r, s] : pairs_) memory.push_back(static_cast<int>(r));
         if (applies()) assign(d, memory);
         return memory;
     }
 
     void remember(const Discrete& d, const Joint& joint, std::vector<int>& memory) override {
         const Discrete target = joint.target(d);
+        int& step = memory[robots()];
+        if (step >= 0) {
+            const auto [mover, edge, location] = first_steps_[step];
+            if (target[mover] == location && ++step == static_cast<int>(first_steps_.size())) step = -1;
+        }
         for (std::size_t r = 0; r < robots(); ++r) {
             const int duty = memory[r];
-            if (duty >= 0 && (duties_.touches(d, joint, duty) || !duties_.is_open(target, duty))) memory[r] = after(target, r, memory);
-            if (joint.controllable && joint.owner == robot(r) && is_home(d, r) && !is_home(target, r)) memory.back() = static_cast<int>(r);
+            const bool done = duty >= 0 && (duties_.touches(d, joint, duty) || !duties_.is_open(target, duty));
+            if (done) memory[r] = after(target, r, memory);
+            if (joint.controllable && joint.owner == robot(r) && is_home(d, r) && !is_home(target, r)) yields(r, memory);
         }
         assign(target, memory);
     }
 
     std::vector<Order> decided(const Discrete& d, const std::vector<int>& enabled, const std::vector<int>& memory) override {
+        if (const int step = memory[robots()]; step >= 0) {
+            const auto [mover, edge, location] = first_steps_[step];
+            const int next = command(d, enabled, mover, edge);
+            return next < 0 || leads_to_loss(joints_[next].target(d)) ? std::vector<Order>{} : std::vector<Order>{{next}};
+        }
         std::vector<int> wanted;
         std::vector<bool> leaves;  // or wants to
         for (std::size_t r = 0; r < robots(); ++r) {
             std::set<int> way;
-            wanted.push_back(memory[r] < 0 ? begins(d, enabled, robot(r), home(r), way) : wants(d, enabled, r, memory[r], way));
+            const bool returns = memory[r] < 0;
+            wanted.push_back(returns ? begins(d, enabled, robot(r), home(r), way) : wants(d, enabled, r, memory[r], way));
             way.erase(homes_[r]);
             leaves.push_back(is_home(d, r) && wanted[r] >= 0 && !way.empty());
         }
         std::vector<Order> orders;
         for (std::size_t r = 0; r < robots(); ++r) {
             if (wanted[r] < 0 || leads_to_loss(joints_[wanted[r]].target(d))) continue;
-            if (leaves[r] ? !may_leave(d, r, leaves, memory) : !is_home(d, r) && memory[r] < 0 && !may_return(d, r, memory)) continue;
+            if (leaves[r] && !may_leave(d, r, leaves, memory)) continue;
             if (!leaves[r] || !is_patrol(memory[r]) || is_awaited(r, leaves, memory)) orders.push_back({wanted[r]});
             else for (const Bound& since : due(d, r, memory[r])) orders.push_back({wanted[r], since});
         }
@@ -74,12 +85,14 @@ class Excursions : public Decider {
 
     // Whether a duty is open, for robot r, and no robot is at it.
     bool is_next(const Discrete& d, std::size_t r, int a, const std::vector<int>& memory) const {
-        return tasks_.is_for(r, a) && duties_.is_open(d, a) && std::find(memory.begin(), memory.end() - 1, a) == memory.end() - 1;
+        const auto end = memory.begin() + static_cast<std::ptrdiff_t>(robots());
+        return tasks_.is_for(r, a) && duties_.is_open(d, a) && std::find(memory.begin(), end, a) == end;
     }
 
-    // Gives each robot that is at home without a duty its next one: calls first where patrols wait, else one after the other.
+    // Gives each robot that is at home without a duty its next one: calls first where patrols wait, else one after the
+    // other.
     void assign(const Discrete& d, std::vector<int>& memory) {
-        for (std::size_t r = 0; r < robots(); ++r) {
+        for (std::size_t r = 0; r < robots() && memory[robots()] < 0; ++r) {
             if (!is_home(d, r) || (memory[r] >= 0 && !is_patrol(memory[r]))) continue;
             const int last = memory[r] < -1 ? duties_.turn(-2 - memory[r]) : -1, before = memory[r];
             std::tuple<bool, int, int> best{true, 2 * count_, -1};
@@ -92,13 +105,24 @@ class Excursions : public Decider {
         }
     }
 
-    // Whether robot r may leave home: of those whose ways cross its own nobody is away, and nobody who wants to leave has
-    // its turn first, after who was the last.
+    // Whether robot r may leave home: of those whose trips cross its own nobody is away, and nobody who leaves first wants
+    // to.
     bool may_leave(const Discrete& d, std::size_t r, const std::vector<bool>& leaves, const std::vector<int>& memory) const {
-        const auto turn = [&](std::size_t s) { return (s + robots() - static_cast<std::size_t>(memory.back()) - 1) % robots(); };
-        for (std::size_t s = 0; s < robots(); ++s)
-            if (cross_[r][s] && (!is_home(d, s) || (leaves[s] && turn(s) < turn(r) && !waits(r, s, memory)))) return false;
+        for (std::size_t n = 0; n < pairs_.size(); ++n) {
+            const auto [one, other] = pairs_[n];
+            if (one != r && other != r) continue;
+            const std::size_t s = one == r ? other : one, first = memory[robots() + 1 + n];
+            if (!is_home(d, s) || (leaves[s] && first == s && !waits(r, s, memory))) return false;
+        }
         return true;
+    }
+
+    // Lets all others leave before robot r the next time: so robots never wait in a circle (Chandy and Misra 1984).
+    void yields(std::size_t r, std::vector<int>& memory) const {
+        for (std::size_t n = 0; n < pairs_.size(); ++n) {
+            const auto [one, other] = pairs_[n];
+            if (one == r || other == r) memory[robots() + 1 + n] = static_cast<int>(one == r ? other : one);
+        }
     }
 
     // Whether two patrols wait, each until it is due.
@@ -108,29 +132,10 @@ class Excursions : public Decider {
 
     // Whether somebody who is called has to wait until robot r is back.
     bool is_awaited(std::size_t r, const std::vector<bool>& leaves, const std::vector<int>& memory) const {
-        for (std::size_t s = 0; s < robots(); ++s)
-            if (cross_[r][s] && leaves[s] && !is_patrol(memory[s])) return true;
-        return false;
-    }
-
-    // Whether robot r may go home: who else is away, as several may be at first, is not on its way, and does not move.
-    bool may_return(const Discrete& d, std::size_t r, const std::vector<int>& memory) {
-        std::vector<int> enabled;
-        for (std::size_t s = 0; s < robots(); ++s) {
-            if (!cross_[r][s] || is_home(d, s)) continue;
-            if (memory[s] >= 0 || memory[s] < -1) return true;  // it has been away alone
-            if (duties_.is_timed(robot(s), d[robot(s)]) || (s < r && is_free(d, s))) return false;
-        }
-        return is_free(d, r);
-    }
-
-    // Whether nobody is on the way of robot r to its home.
-    bool is_free(const Discrete& d, std::size_t r) {
-        duties_.look(d, robot(r));
-        if (duties_.cost(home(r)) == Duties::NEVER) return false;
-        for (const int location : duties_.way(home(r), robot(r)))
-            if (location != d[robot(r)] && leads_to_loss(duties_.placed(d, robot(r), location))) return false;
-        return true;
+        return std::any_of(pairs_.begin(), pairs_.end(), [&](const auto& pair) {
+            const std::size_t s = pair.first == r ? pair.second : pair.first;
+            return (pair.first == r || pair.second == r) && leaves[s] && !is_patrol(memory[s]);
+        });
     }
 
     // A home, where a robot is on its trips from there, and how long these take, the way there at first included.
@@ -152,10 +157,41 @@ class Excursions : public Decider {
         std::vector<const Round*> chosen;
         if (!choose(all, chosen)) return;
         for (const Round* each : chosen) homes_.push_back(each->home);
-        for (std::size_t r = 0; r < robots(); ++r) {
-            auto& crossed = cross_.emplace_back(robots());
-            for (std::size_t s = 0; s < robots(); ++s) crossed[s] = s != r && cross(r, chosen[r]->locations, s, chosen[s]->locations);
+        if (!find_first_steps()) return;
+        for (std::size_t r = 0; r < robots(); ++r)
+            for (std::size_t s = r + 1; s < robots(); ++s)
+                if (cross(r, chosen[r]->locations, s, chosen[s]->locations)) pairs_.emplace_back(r, s);
+    }
+
+    // The ways of all robots from where they begin to their homes, one step of one robot after the other. False: not found.
+    bool find_first_steps() {
+        States met(start_.size());
+        std::vector<std::tuple<int, int, int, int>> steps{{-1, -1, -1, -1}};  // the state before, then as `first_steps_`
+        std::vector<int> enabled;
+        met.number(start_);
+        for (int k = 0; k < static_cast<int>(met.size()) && k < MOST_CHOICES; ++k) {
+            const Discrete d = met[k];
+            bool home = true;
+            for (std::size_t r = 0; r < robots(); ++r) home &= is_home(d, r);
+            if (home) {
+                for (int n = k; n > 0; n = std::get<0>(steps[n])) {
+                    const auto [before, mover, edge, location] = steps[n];
+                    first_steps_.insert(first_steps_.begin(), {mover, edge, location});
+                }
+                return true;
+            }
+            joints_.enabled(d, enabled);
+            for (const int j : enabled) {
+                const Joint& joint = joints_[j];
+                if (!joint.controllable || !is_robot(joint.owner) || leads_to_loss(joint.target(d))) continue;
+                const Discrete after = ended(joint.target(d), joint.owner);
+                const std::size_t known = met.size();
+                if (after[joint.owner] == d[joint.owner] || duties_.is_timed(joint.owner, after[joint.owner])) continue;
+                met.number(after);
+                if (met.size() > known) steps.emplace_back(k, joint.owner, joint.edges[0], after[joint.owner]);
+            }
         }
+        return false;
     }
 
     // Chooses a home for each further robot, depth first.
@@ -221,9 +257,7 @@ class Excursions : public Decider {
 
     // A trip for the duty of automaton a, and home; where the duty ends, -1: it cannot be made.
     int trip(std::size_t r, int a, int from, Round& round) {
-        Discrete d = duties_.placed(start_, robot(r), from);
-        for (int l = static_cast<int>(game_.automata[a].invariants.size()) - 1; l >= 0; --l)
-            if (duties_.is_timed(a, l)) d[a] = l;
+        Discrete d = opened(duties_.placed(start_, robot(r), from), a);
         std::vector<int> enabled;
         for (int step = 0; step < STEPS_AHEAD && duties_.is_open(d, a); ++step) {
             std::set<int> way;
@@ -245,12 +279,40 @@ class Excursions : public Decider {
         return end;
     }
 
+    // The state after somebody has begun the duty of automaton a, wherever he has to be for it.
+    Discrete opened(Discrete d, int a) {
+        if (duties_.is_open(d, a)) return d;
+        std::vector<int> enabled;
+        for (const Edge& begun : game_.automata[a].edges)
+            for (int b = 0; b < count_ && begun.channel >= 0 && duties_.is_timed(a, begun.target); ++b)
+                for (const Edge& sent : game_.automata[b].edges) {
+                    if (sent.channel != begun.channel || !sent.sends || is_robot(b)) continue;
+                    joints_.enabled(duties_.placed(d, b, sent.source), enabled);
+                    for (const int j : enabled)
+                        if (joints_[j].owner == b && duties_.is_open(joints_[j].target(d), a)) {
+                            const int before = d[b];
+                            d = joints_[j].target(d);
+                            d[b] = before;
+                            return d;
+                        }
+                }
+        for (int l = static_cast<int>(game_.automata[a].invariants.size()) - 1; l >= 0; --l)
+            if (duties_.is_timed(a, l)) d[a] = l;
+        return d;
+    }
+
+    bool is_robot(int a) const {
+        const std::vector<int>& robots = duties_.robots();
+        return std::find(robots.begin(), robots.end(), a) != robots.end();
+    }
+
     static constexpr int MOST_CHOICES = 10'000;  // of homes
 
     const Discrete start_;
     int choices_ = 0;
-    std::vector<int> homes_;                 // per robot, none: there are none
-    std::vector<std::vector<bool>> cross_;   // whether the trips of two robots do
+    std::vector<int> homes_;                                   // per robot, none: there are none
+    std::vector<std::tuple<int, int, int>> first_steps_;       // to the homes: the robot, its edge, and where that leads
+    std::vector<std::pair<std::size_t, std::size_t>> pairs_;   // of robots whose trips cross
     std::map<std::tuple<std::size_t, int, std::size_t, int>, bool> crossing_;  // per robot and location, twice
 };
 

@@ -14,6 +14,8 @@
 
 namespace pursue {
 
+inline constexpr std::size_t ALL = std::numeric_limits<std::size_t>::max();
+
 template <class Z>
 class Forward {
   public:
@@ -26,8 +28,9 @@ class Forward {
         bounds_of_clocks();
     }
 
-    // Whether the policy keeps from all that is to be avoided. False says nothing of the game.
-    bool wins() {
+    // Whether the policy keeps from all that is to be avoided. False says nothing of the game, and where more than so many
+    // zones were followed nothing of the policy.
+    bool wins(std::size_t most) {
         const Discrete d = initial(game_);
         if (robots() == 0 || at_bad(game_, d)) return false;
         Z z = universe<Z>();
@@ -51,7 +54,7 @@ class Forward {
             };
             if (std::none_of(spots_[k].zones.begin(), spots_[k].zones.end(), same)) continue;  // a larger one took its place
             // A deadline that is missed a little later with each round: it would take very many.
-            if (followed_ > 64 * spots_.size() + 1000 || !follow(k, zone)) return false;
+            if (followed_ > std::min(most, 64 * spots_.size() + 1000) || !follow(k, zone)) return false;
         }
         return true;
     }
@@ -299,13 +302,16 @@ class Forward {
         const auto covered = [&](const auto& other) { return includes(z, other.second); };
         s.zones.erase(std::remove_if(s.zones.begin(), s.zones.end(), covered), s.zones.end());
         s.zones.emplace_back(owner, z);
-        queue_.emplace(rank(s, z), std::pair(k, z));
+        queue_.emplace(rank(k, z), std::pair(k, z));
     }
 
     // What comes first. One robot: few open duties, then young ones, as what comes before is complete then. Several are in
-    // each other's way now and then, and come to a state at many times: first in, first out.
-    std::pair<int, wide_t> rank(const Spot& s, const Z& z) const {
+    // each other's way now and then, and come to a state at many times: first in, first out. Where they take turns each trip
+    // begins as others did: what was met first.
+    std::pair<int, wide_t> rank(int k, const Z& z) const {
+        if (guess_.trips != Trips::none) return {0, k};
         if (robots() > 1) return {0, 0};
+        const Spot& s = spots_[k];
         wide_t age = 0;
         for (const int x : s.running)
             if (z.at(x, 0) < INF<R>) age = std::max<wide_t>(age, z.at(x, 0));

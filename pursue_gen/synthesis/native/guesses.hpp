@@ -35,6 +35,10 @@ inline std::vector<Guess> late_guesses(const std::vector<int>& patrols) {
             guess.patrols = patrols;
             guess.reserve = reserve;
             if (guess.next != Next::in_turn || !guess.shared_out || guess.zones > 1) continue;
+            if (guess.trips != Trips::none) {
+                out.push_back(guess);
+                continue;
+            }
             for (const bool sets_off : {false, true}) {
                 guess.sets_off = sets_off;
                 out.push_back(guess);
@@ -48,28 +52,44 @@ inline std::vector<Guess> late_guesses(const std::vector<int>& patrols) {
 inline const std::vector<Charging> CHARGINGS = {Charging::in_turn, Charging::until_called, Charging::when_idle};
 
 inline constexpr std::size_t ZONES_OF_CALLS = 16;  // a charge that a call breaks off has each time gone on for another while
+inline constexpr std::size_t FEW_FOLLOWED = 1000;  // states at clocks: what a policy is given first where robots may take turns
 
-// The first policy that wins, or none. `joints`, `duties`: of the game.
+// Whether a policy is the same as another that is tried, or of no use.
+template <class Z>
+bool is_idle(const Forward<Z>& forward, const Guess& guess, const Duties& duties) {
+    const Tasks& tasks = forward.tasks();
+    if (!guess.shared_out && (forward.robots() < 2 || (guess.next == Next::in_turn && !tasks.has_choice()))) return true;
+    if ((guess.needs_several() && !tasks.has_several()) || (guess.relieved && !tasks.has_guards())) return true;
+    if (!forward.applies()) return true;
+    if (guess.alternates == Alternates::long_limits && !forward.alternates()) return true;
+    return guess.visits_first && guess.patrols.size() == duties.watching().size();  // nobody calls
+}
+
+// The first policy that wins, or none. `joints`, `duties`: of the game. `turns`: of those by which robots leave their homes
+// in turns. Where these apply the others, by which robots may make way for ever, get little at first, and those that are cut
+// off as much as they need then.
 template <class Z>
 std::unique_ptr<Forward<Z>> winning_guess(const Game& game, LimitMonitor& monitor, Joints& joints, Duties& duties,
-                                          const std::vector<int>& late) {
+                                          const std::vector<int>& late, bool turns) {
     const std::vector<int> charges = duties.has_batteries() ? std::vector<int>{0, 60, 100} : std::vector<int>{0};
-    for (const Charging charging : duties.chargers().none() ? std::vector<Charging>{Charging::in_turn} : CHARGINGS)
-        for (Guess each : late.empty() ? GUESSES : late_guesses(late))
-            for (const int charge : charges) {
-                each.charge = charge;
-                each.charging = charging;
-                if (charging != Charging::in_turn) each.zones = ZONES_OF_CALLS;
-                auto forward = std::make_unique<Forward<Z>>(game, monitor, joints, duties, each);
-                const bool alone = forward->robots() < 2 || (each.next == Next::in_turn && !forward->tasks().has_choice());
-                if (!each.shared_out && alone) continue;  // the same as one that was tried
-                if (each.needs_several() && !forward->tasks().has_several()) continue;  // likewise
-                if (!forward->applies()) continue;
-                if (each.relieved && !forward->tasks().has_guards()) continue;  // likewise
-                if (each.alternates == Alternates::long_limits && !forward->alternates()) continue;
-                if (each.visits_first && each.patrols.size() == duties.watching().size()) continue;  // nobody calls
-                if (forward->wins()) return forward;
-            }
+    const bool trips = Forward<Z>(game, monitor, joints, duties, excursions(Trips::several)).applies();
+    if (turns && !trips) return nullptr;
+    std::set<int> lost;
+    for (const std::size_t most : trips ? std::vector<std::size_t>{FEW_FOLLOWED, ALL} : std::vector<std::size_t>{ALL}) {
+        int number = 0;
+        for (const Charging charging : duties.chargers().none() ? std::vector<Charging>{Charging::in_turn} : CHARGINGS)
+            for (Guess each : late.empty() ? GUESSES : late_guesses(late))
+                for (const int charge : charges) {
+                    if (lost.count(++number) || (turns && each.trips == Trips::none)) continue;
+                    each.charge = charge;
+                    each.charging = charging;
+                    if (charging != Charging::in_turn) each.zones = ZONES_OF_CALLS;
+                    auto forward = std::make_unique<Forward<Z>>(game, monitor, joints, duties, each);
+                    const std::size_t limit = each.trips == Trips::none ? most : ALL;
+                    if (!is_idle(*forward, each, duties) && forward->wins(limit)) return forward;
+                    if (forward->followed() <= limit) lost.insert(number);
+                }
+    }
     return nullptr;
 }
 

@@ -193,7 +193,7 @@ py::dict solve_with(const Game& game, const Limits& limits, double small_budget,
 }
 
 template <class Z>
-py::dict guess_with(const Game& game, const Limits& limits, const std::vector<int>& late) {
+py::dict guess_with(const Game& game, const Limits& limits, const std::vector<int>& late, bool turns) {
     LimitMonitor monitor(limits);
     Joints joints(game);
     Duties duties(game);
@@ -202,7 +202,7 @@ py::dict guess_with(const Game& game, const Limits& limits, const std::vector<in
     double seconds = 0;
     {
         const py::gil_scoped_release released;
-        winning = winning_guess<Z>(game, monitor, joints, duties, late);
+        winning = winning_guess<Z>(game, monitor, joints, duties, late, turns);
         seconds = monitor.spent();
         if (winning) plan = winning->plan();
     }
@@ -286,11 +286,11 @@ py::dict solve(const py::dict& in, double seconds, std::size_t states, std::size
 }
 
 py::dict guess(const py::dict& in, double seconds, std::size_t states, std::size_t memory, std::uint64_t work, bool wall,
-               const py::object& progress, const std::vector<int>& late) {
+               const py::object& progress, const std::vector<int>& late, bool turns) {
     const GivesBack memory_of_game;
     const Game game = read_game(in);
     const Limits limits = limits_of(seconds, states, memory, work, wall, progress);
-    return sized(game, [&](auto zone) { return guess_with<decltype(zone)>(game, limits, late); });
+    return sized(game, [&](auto zone) { return guess_with<decltype(zone)>(game, limits, late, turns); });
 }
 
 // A canonical matrix of Python's numbers, of any size; what 64 bits do not hold is no bound.
@@ -330,7 +330,7 @@ PYBIND11_MODULE(_core, module) {
                "is, before searches take turns. `soonest`: see Engine.solve.");
     module.def("guess", &guess, py::arg("game"), py::arg("seconds") = 0.0, py::arg("states") = 0,
                py::arg("memory_mib") = 0, py::arg("work") = 0, py::arg("wall") = false, py::arg("progress") = py::none(),
-               py::arg("late") = std::vector<int>{},
+               py::arg("late") = std::vector<int>{}, py::arg("turns") = false,
                "Tries simple policies in a compiled safety game, see Engine.guess: where `late` names automata, those by which\n"
                "these duties wait until they are due. Limits as for `solve`.");
     module.def("minimal", &minimal_bounds, py::arg("dim"), py::arg("matrix"), "See strategy_from.minimal.");
