@@ -98,8 +98,8 @@ ELSEWHERE = {
         "So many zones of a state where calls break charges off. Measured on a robot that answers calls and charges."
     ),
     ("synthesis/native/guesses.hpp", "FEW_FOLLOWED"): (
-        "Zones that a policy may follow at first, where robots may leave their homes in turns. Measured on three robots "
-        "on a ring of lanes."
+        "Zones that a policy may follow at first, where robots may leave their homes in turns. Measured on three "
+        "robots on a ring of lanes."
     ),
     ("synthesis/native/tasks.hpp", "BOUNDS_OF_A_STATE"): (
         "A look at a state takes about as long as at so many bounds. Measured on lab scenarios 2 and 41."

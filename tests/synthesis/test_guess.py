@@ -279,8 +279,8 @@ def test_robots_whose_ways_cross_leave_home_one_at_a_time(late: bool) -> None:
 
 def test_robots_go_to_their_homes_first() -> None:
     """Each begins in the other's way: the porter has to be out of it before the cart comes through the hub."""
-    changed = HUB.replace("location east can_do", "location room can_do").replace("1 location west\n", "1 location east\n")
-    network, objective = game_of(changed)
+    changed = HUB.replace("location east can_do", "location room can_do")
+    network, objective = game_of(changed.replace("1 location west\n", "1 location east\n"))
     strategy, _ = guess(network, objective, DEFAULT.reaction, turns=True)
     assert strategy is not None
     assert verify(network, objective, strategy, DEFAULT.reaction).ok
