@@ -617,6 +617,7 @@ def test_an_order_is_sent_once_with_the_time_that_is_wanted_and_its_answer_is_sh
     says(page, "#answers .bad", f"refused: {HOSTILE} is too late")
     says(page, "#log", "coffee: accepted")
     node.show(2, 5.0, event="_start_")
+    page.wait("view.seq === 2")
     page.click("#answers .good button")
     page.click("#answers .good button")
     page.wait("document.querySelectorAll('#answers button[aria-disabled=true]').length === 1")
@@ -661,6 +662,7 @@ def test_what_is_written_is_ordered_too(page: Browser, show: Callable[..., Node]
     node.board.on_answer(3.0, "urgent bot at b within 90", True, "accepted: answered in 40 s at the latest")
     page.wait("document.querySelectorAll('#answers li').length === 1")
     node.show(2, 5.0, event="_start_")
+    page.wait("view.seq === 2")
     page.click("#answers .good button")
     page.wait("document.querySelectorAll('#answers button[aria-disabled=true]').length === 1")
     assert node.wanted[1:] == [("order", "cancel bot at b", 2)]
