@@ -176,7 +176,9 @@ def table(rows: List[Row]) -> str:
     ]
     reached = [row for row in _mine(rows) if row.get("verdict") and row["cpu"] <= row["goal"]]
     text = markdown(head, lines, left=3)
-    return f"{text}\n{len(reached)} of {len(lines)} reach the goal.\n"
+    dates = sorted({row["date"] for row in _mine(rows) if "date" in row and "version" not in row})
+    measured = f" Measured {', '.join(dates)}." if dates else ""
+    return f"{text}\n{len(reached)} of {len(lines)} reach the goal.{measured}\n"
 
 
 def times_table(rows: List[Row]) -> str:

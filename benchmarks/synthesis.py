@@ -254,14 +254,16 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     if given.out:
         file = given.out / "benchmarks" / "results.json"
         old: Dict[str, Any] = json.loads(file.read_text()) if file.is_file() else {}
-        # The programs of these names measure them.
-        others = {key: old[key] for key in old if key in ("agreement", "ordinary")}
-        old = {} if is_complete(given) else old
         results = {"machine": given.machine, "date": given.date, "seconds": given.seconds, "memory": given.memory}
         results["load"] = round(load, 1)
-        if given.render:
-            results = {key: old[key] for key in results}
-        write(given.out, {**results, **others, "rows": merged(old.get("rows", []), new)}, not given.no_plots)
+        others = {key: old[key] for key in old if key not in (*results, "rows")}  # other programs measure them
+        if old and not is_complete(given):
+            results = {key: old[key] for key in results}  # of most rows; new ones have a date of their own
+            new = [{**row, "date": given.date} for row in new]
+        else:
+            old = {}
+        rows = merged(old.get("rows", []), new)
+        write(given.out, {**results, "rows": rows, **others}, not given.no_plots)
     return 0
 
 

@@ -96,14 +96,19 @@ def test_names_that_do_not_exist_are_refused(capsys: pytest.CaptureFixture[str])
 def test_commands_and_random_games_are_added_to_what_is_there(tmp_path: Path) -> None:
     here = ["--out", str(tmp_path), "--no-plots"]
     assert synthesis.main([*here, "--only", "scenario 1", "--games", "ideal"]) == 0
-    assert synthesis.main([*here, "--commands", "--only", "scenario 1"]) == 0
-    rows = json.loads((tmp_path / "benchmarks" / "results.json").read_text())["rows"]
+    file = tmp_path / "benchmarks" / "results.json"
+    before = json.loads(file.read_text())
+    file.write_text(json.dumps({**before, "driving": []}))
+    assert synthesis.main([*here, "--commands", "--only", "scenario 1", "--date", "2031-01-01"]) == 0
+    results = json.loads(file.read_text())
+    assert results["date"] == before["date"] != "2031-01-01" and results["driving"] == [], "others stay as they are"
+    rows = results["rows"]
     assert [(row["group"], row["name"], row["game"]) for row in rows] == [
         ("thesis", "scenario 1", "ideal"),
         ("command", "scenario 1", "default"),
     ]
     page = (tmp_path / "benchmarks.md").read_text()
-    assert "of 1 reach the goal" in page
+    assert "of 1 reach the goal. Measured 2031-01-01." in page
 
 
 def test_all_is_chosen_by_one_word() -> None:
