@@ -317,7 +317,7 @@ def test_it_is_solved_and_played_and_keys_do_what_the_mouse_does(there: Browser,
         x, y = at(there, "b")
         there.press(x, y, x, y - 50)
         there.wait("document.querySelector('.place[data-key=b] .dot').getBoundingClientRect().y > "
-                   f"{y - 20} - document.documentElement.getBoundingClientRect().y")
+                   f"{y - 20} + document.documentElement.getBoundingClientRect().y")
         assert there.complaints == []
 
 
