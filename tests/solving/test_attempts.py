@@ -20,6 +20,7 @@ from pursue_gen.solving.shares import Known, won_in_shares
 from pursue_gen.tga import scenario_objective, translate
 from pursue_gen.tga.network import Network, Objective
 from tests.solving.test_one_robot import AVOIDS, FLOOR
+from tests.synthesis.test_guess import HUB
 
 REACTION = Rules().reaction
 TWO_PATROLS = FLOOR[: FLOOR.index("objective")] + """
@@ -101,9 +102,9 @@ def test_fewer_robots_than_promises_keep_what_all_can() -> None:
 
 
 def test_all_robots_keep_all_promises_by_taking_turns() -> None:
-    found = won_in_shares(*game(HUB), REACTION, SolveOptions(), [each for each in EFFORTS if each.turns])
+    found = won_in_shares(*game(WITH_A_WALKER), REACTION, SolveOptions(), [each for each in EFFORTS if each.turns])
     assert found is not None and len(found.strategy.shares) == 1
-    assert verify(*game(HUB), found.strategy, REACTION).ok
+    assert verify(*game(WITH_A_WALKER), found.strategy, REACTION).ok
 
 
 def test_robots_that_never_meet_win_without_a_right_of_way() -> None:
@@ -111,24 +112,8 @@ def test_robots_that_never_meet_win_without_a_right_of_way() -> None:
     assert isinstance(found, Found)
 
 
-HUB = """
-poi "west"
-poi "hub"
-poi "east"
-poi "room"
-connect west and hub distance 8
-connect hub and east distance 8
-connect hub and room distance 5
-event "call"
-event "bring" location west duration 10
-agent "cart" controllable mobile 1 location west
-agent "porter" controllable mobile 1 location east can_do bring
-agent "nurse" mobile 1 location room can_do call
-objective: patrol room, west every 300 by cart
-objective: if call then bring within 300
-objective: every place holds 1 robot
-"""
-"""The nurse, who walks, is hidden from their game."""
+WITH_A_WALKER = HUB.replace('"nurse" location', '"nurse" mobile 1 location')
+"""The nurse, who walks, is hidden from the robots' game."""
 
 
 CORRIDOR = """
