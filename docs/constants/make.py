@@ -97,6 +97,9 @@ ELSEWHERE = {
     ("synthesis/native/guesses.hpp", "ZONES_OF_CALLS"): (
         "So many zones of a state where calls break charges off. Measured on a robot that answers calls and charges."
     ),
+    ("synthesis/native/excursions.hpp", "MOST_CHOICES"): (
+        "Choices of homes that are looked at, and states on the ways to them. Not measured."
+    ),
     ("synthesis/native/guesses.hpp", "FEW_FOLLOWED"): (
         "Zones that a policy may follow at first, where robots may leave their homes in turns. Measured on three "
         "robots on a ring of lanes."

@@ -139,7 +139,7 @@ class Excursions : public Decider {
     }
 
     // A home, where a robot is on its trips from there, and how long these take, the way there at first included.
-    struct Round {
+    struct HomeTrips {
         int home;
         std::set<int> locations;
         std::int64_t time = 0;
@@ -147,16 +147,16 @@ class Excursions : public Decider {
 
     // The first homes, short trips first, at which no robot is in another's way.
     void find_homes() {
-        std::vector<std::vector<Round>> all;
+        std::vector<std::vector<HomeTrips>> all;
         for (std::size_t r = 0; r < robots(); ++r) {
             auto& own = all.emplace_back();
             for (const int location : duties_.rests(robot(r)))
-                if (Round round{location, {location}}; takes(r, round)) own.push_back(std::move(round));
-            std::stable_sort(own.begin(), own.end(), [](const Round& x, const Round& y) { return x.time < y.time; });
+                if (HomeTrips trips{location, {location}}; takes(r, trips)) own.push_back(std::move(trips));
+            std::stable_sort(own.begin(), own.end(), [](const HomeTrips& x, const HomeTrips& y) { return x.time < y.time; });
         }
-        std::vector<const Round*> chosen;
+        std::vector<const HomeTrips*> chosen;
         if (!choose(all, chosen)) return;
-        for (const Round* each : chosen) homes_.push_back(each->home);
+        for (const HomeTrips* each : chosen) homes_.push_back(each->home);
         if (!find_first_steps()) return;
         for (std::size_t r = 0; r < robots(); ++r)
             for (std::size_t s = r + 1; s < robots(); ++s)
@@ -195,16 +195,16 @@ class Excursions : public Decider {
     }
 
     // Chooses a home for each further robot, depth first.
-    bool choose(const std::vector<std::vector<Round>>& all, std::vector<const Round*>& chosen) {
+    bool choose(const std::vector<std::vector<HomeTrips>>& all, std::vector<const HomeTrips*>& chosen) {
         const std::size_t r = chosen.size();
         if (r == all.size()) return true;
         if (++choices_ > MOST_CHOICES) return false;
-        for (const Round& round : all[r]) {
+        for (const HomeTrips& trips : all[r]) {
             bool fits = true;
             for (std::size_t s = 0; s < r && fits; ++s)
-                fits = !cross(r, {round.home}, s, chosen[s]->locations) && !cross(s, {chosen[s]->home}, r, round.locations);
+                fits = !cross(r, {trips.home}, s, chosen[s]->locations) && !cross(s, {chosen[s]->home}, r, trips.locations);
             if (!fits) continue;
-            chosen.push_back(&round);
+            chosen.push_back(&trips);
             if (choose(all, chosen)) return true;
             chosen.pop_back();
         }
@@ -235,19 +235,19 @@ class Excursions : public Decider {
     }
 
     // Looks at all trips of a robot from its home and back. False: there is one that it cannot make.
-    bool takes(std::size_t r, Round& round) {
+    bool takes(std::size_t r, HomeTrips& trips) {
         duties_.look(start_, robot(r));
-        const std::int64_t first = duties_.cost(duties_.at_location(robot(r), round.home));
+        const std::int64_t first = duties_.cost(duties_.at_location(robot(r), trips.home));
         if (first == Duties::NEVER) return false;
-        round.time = first % Duties::DETOUR;
-        std::set<int> met{round.home};
-        std::vector<int> open{round.home};
+        trips.time = first % Duties::DETOUR;
+        std::set<int> met{trips.home};
+        std::vector<int> open{trips.home};
         while (!open.empty()) {
             const int from = open.back();
             open.pop_back();
             for (const int a : duties_.watching()) {
                 if (!tasks_.is_for(r, a)) continue;
-                const int end = trip(r, a, from, round);
+                const int end = trip(r, a, from, trips);
                 if (end < 0) return false;
                 if (guess_.trips == Trips::several && met.insert(end).second) open.push_back(end);
             }
@@ -256,7 +256,7 @@ class Excursions : public Decider {
     }
 
     // A trip for the duty of automaton a, and home; where the duty ends, -1: it cannot be made.
-    int trip(std::size_t r, int a, int from, Round& round) {
+    int trip(std::size_t r, int a, int from, HomeTrips& trips) {
         Discrete d = opened(duties_.placed(start_, robot(r), from), a);
         std::vector<int> enabled;
         for (int step = 0; step < STEPS_AHEAD && duties_.is_open(d, a); ++step) {
@@ -264,18 +264,18 @@ class Excursions : public Decider {
             joints_.enabled(d, enabled);
             const int next = begins(d, enabled, robot(r), duties_.done(a), way);
             if (step == 0 && duties_.cost(duties_.done(a)) == Duties::NEVER) return -1;
-            round.locations.insert(way.begin(), way.end());
-            if (step == 0) round.time += duties_.cost(duties_.done(a)) % Duties::DETOUR;
+            trips.locations.insert(way.begin(), way.end());
+            if (step == 0) trips.time += duties_.cost(duties_.done(a)) % Duties::DETOUR;
             if (next < 0) break;  // what somebody else ends comes first
             d = ended(joints_[next].target(d), robot(r));
         }
         const int end = d[robot(r)];
         duties_.look(d, robot(r));
-        const int back = duties_.at_location(robot(r), round.home);
+        const int back = duties_.at_location(robot(r), trips.home);
         if (duties_.cost(back) == Duties::NEVER) return -1;
         const std::set<int> way = duties_.way(back, robot(r));
-        round.locations.insert(way.begin(), way.end());
-        round.time += duties_.cost(back) % Duties::DETOUR;
+        trips.locations.insert(way.begin(), way.end());
+        trips.time += duties_.cost(back) % Duties::DETOUR;
         return end;
     }
 
@@ -306,7 +306,7 @@ class Excursions : public Decider {
         return std::find(robots.begin(), robots.end(), a) != robots.end();
     }
 
-    static constexpr int MOST_CHOICES = 10'000;  // of homes
+    static constexpr int MOST_CHOICES = 10000;  // of homes, and states on the way there
 
     const Discrete start_;
     int choices_ = 0;

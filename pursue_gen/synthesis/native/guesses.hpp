@@ -56,7 +56,7 @@ inline constexpr std::size_t FEW_FOLLOWED = 1000;  // states at clocks: what a p
 
 // Whether a policy is the same as another that is tried, or of no use.
 template <class Z>
-bool is_idle(const Forward<Z>& forward, const Guess& guess, const Duties& duties) {
+bool is_needless(const Forward<Z>& forward, const Guess& guess, const Duties& duties) {
     const Tasks& tasks = forward.tasks();
     if (!guess.shared_out && (forward.robots() < 2 || (guess.next == Next::in_turn && !tasks.has_choice()))) return true;
     if ((guess.needs_several() && !tasks.has_several()) || (guess.relieved && !tasks.has_guards())) return true;
@@ -86,7 +86,7 @@ std::unique_ptr<Forward<Z>> winning_guess(const Game& game, LimitMonitor& monito
                     if (charging != Charging::in_turn) each.zones = ZONES_OF_CALLS;
                     auto forward = std::make_unique<Forward<Z>>(game, monitor, joints, duties, each);
                     const std::size_t limit = each.trips == Trips::none ? most : ALL;
-                    if (!is_idle(*forward, each, duties) && forward->wins(limit)) return forward;
+                    if (!is_needless(*forward, each, duties) && forward->wins(limit)) return forward;
                     if (forward->followed() <= limit) lost.insert(number);
                 }
     }
