@@ -444,6 +444,33 @@ def test_who_waits_until_a_patrol_is_due_does_not_stand_in_the_way() -> None:
     assert verify(network, objective, strategy, DEFAULT.reaction, closed=True).ok
 
 
+WELL = """
+poi "barn"
+poi "well"
+poi "house"
+connect barn and well distance 70
+connect well and house distance 80
+event "thirsty" location house
+event "pump" location well duration 120
+event "water" location house duration 60
+rule "bucket": pump before water
+agent "farmer" location house can_do thirsty
+agent "cart" controllable mobile 1 location well can_do pump, water
+assume: farmer waits 900 between thirsty
+objective: if thirsty then water within 360
+objective: patrol barn every 1800 by cart
+"""
+
+
+def test_who_waits_for_a_patrol_does_first_what_has_to_come_before_an_answer() -> None:
+    """Who is called at the barn has no time to pump."""
+    network, objective = game_of(WELL)
+    for put_off, wins in ((frozenset(), False), (patrols(network), True)):
+        strategy, _ = guess(network, objective, DEFAULT.reaction, late=put_off)
+        assert (strategy is not None) is wins
+    assert strategy is not None and verify(network, objective, strategy, DEFAULT.reaction, closed=True).ok
+
+
 @settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
 @given(started((Kind.SAFETY,)), st.sampled_from((Fraction(0), Fraction(1))))
 def test_what_a_policy_wins_in_a_random_game_wins_it(drawn: Tuple[Network, Objective], reaction: Fraction) -> None:

@@ -29,8 +29,8 @@ class Dispatch : public Decider {
         const std::vector<int> last = memory;
         for (std::size_t r = 0; r < memory.size(); ++r) {
             int& duty = memory[r];
-            const bool begins = joint.controllable && joint.owner == duties_.robots()[r] && !goes_to_charger(d, r);
-            if (is_waiting(duty) && begins) duty -= count_;
+            const bool begins = joint.controllable && joint.owner == duties_.robots()[r];
+            if (is_waiting(duty) && begins && !goes_to_charger(d, r) && !prepares_first(d, r)) duty -= count_;
             if (duty >= 0 && duties_.touches(d, joint, duty % count_)) duty = -1;
         }
         remember(joint.target(d), memory, last);
@@ -44,8 +44,9 @@ class Dispatch : public Decider {
         for (std::size_t r = 0; r < robots.size(); ++r) {
             const bool charges =
                 goes_to_charger(d, r) || (duties_.has_less(d, robots[r], 100) && duties_.is_at_charger(d, robots[r]));
-            waits.push_back(is_waiting(memory[r]) && !charges);
-            const int duty = is_waiting(memory[r]) && charges ? -1 : memory[r];  // it charges while it waits there
+            const bool busy = is_waiting(memory[r]) && (charges || prepares_first(d, r));  // it charges while it waits there
+            waits.push_back(is_waiting(memory[r]) && !busy);
+            const int duty = busy ? -1 : memory[r];
             wanted.push_back(wants(d, enabled, r, duty, ways.emplace_back()));
         }
         std::vector<int> commands = wanted;
@@ -173,6 +174,15 @@ class Dispatch : public Decider {
         const int battery = duties_.chargers().battery_of(duties_.robots()[r]);
         const bool when_idle = guess_.charging == Charging::when_idle && battery >= 0;
         return when_idle && duties_.is_open(d, battery) && !is_charging(battery, d[battery]);
+    }
+
+    // Whether a robot that waits for a patrol does first what has to come before what it will be asked for.
+    bool prepares_first(const Discrete& d, std::size_t r) {
+        if (guess_.idle != Idle::prepares) return false;
+        std::vector<int> enabled;
+        std::set<int> way;
+        joints_.enabled(d, enabled);
+        return prepares(d, enabled, r, way) >= 0;
     }
 
     // Whether somebody else than a robot asks for what robot r can do and nobody goes for.
