@@ -47,9 +47,9 @@ def simulate(
     """Missions with the generated code in a simulated world, each judged; the same for the same seeds on all machines.
 
     `seed`: the number of the first mission. `opponent`: "random", "worst", "still" or "mixed"; `faults`: as for
-    `pursue-gen sim`; `until`: when a mission is over (time units; None: 1000 with a goal, else 200); `jobs`: so many
-    processes; `scheduler`: the address of a Dask scheduler instead. `progress`: called with how many are done.
-    Raises PursueError.
+    `pursue-gen sim`; `until`: when a mission is over (time units; None: 1000 with a goal, or twice the
+    time to it if that is more; else 200); `jobs`: so many processes; `scheduler`: the address of a Dask scheduler
+    instead. `progress`: called with how many are done. Raises PursueError.
 
     >>> summary = simulate(solve(read("scenarios/thesis/scenario_1.pur")), runs=20)
     >>> summary.missions, summary.failed, [row.end for row in summary.rows]

@@ -38,7 +38,7 @@ def sim(
     ),
     opponent: str = OPPONENT,
     until: Optional[float] = typer.Option(
-        None, metavar="UNITS", help="When a mission is over, in time units; 1000 with a goal, else 200."
+        None, metavar="UNITS", help="When a mission is over; 1000 with a goal, or twice the time to it; else 200."
     ),
     jobs: int = typer.Option(1, metavar="N", min=1, help="So many processes; the outcome is the same."),
     scheduler: Optional[str] = typer.Option(

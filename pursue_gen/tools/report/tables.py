@@ -13,13 +13,11 @@ from pursue_gen.solving.solution import Solution
 from pursue_gen.tools.report.commands import CommandsTable, Game, cells_of, commands_table
 from pursue_gen.tools.report.html import Section, rendered, table
 from pursue_gen.tools.report.thesis_figures import ThesisTable, thesis_table
+from pursue_gen.tools.simulation.make import usual_end
 from pursue_gen.tools.simulation.outcome import Settings
 from pursue_gen.tools.simulation.outcome_table import END_TEXTS, driven_words
 from pursue_gen.tools.simulation.runs import Case, Summary, case_of, simulate
 from pursue_gen.workspace import Options
-
-_UNTIL = {True: 1000.0, False: 200.0}
-"""How long a simulated mission may last, in time units: with a goal, and without one."""
 
 FIRST = 1
 """The number of the first mission that is simulated."""
@@ -50,7 +48,7 @@ def command_tables(
 def case_for(scenario: Scenario, won: Solution, reach_obj: str, shape: str = DISTRIBUTED) -> Case:
     """What is simulated with controllers of that shape."""
     options = Options(shape, reach_obj, won.reaction, won.rules.ends, won.rules.slack)
-    return case_of(scenario, won, options, Settings("mixed", (), _UNTIL[won.objective.reaches]))[0]
+    return case_of(scenario, won, options, Settings("mixed", (), usual_end(won)))[0]
 
 
 def measured(

@@ -14,7 +14,19 @@ from pursue_gen.workspace.make import options_for
 
 _LONG, _SHORT = 1000.0, 200.0
 """The default time after which a mission is over, in time units: with a goal, and without one. Not measured."""
+
+_SPARE = 2
+"""With a goal it is at least so many times as long as the strategy takes at worst. Not measured."""
+
 _LONGEST = 1e6
+
+
+def usual_end(won: Solution) -> float:
+    """When a mission is over if nobody says so, in time units."""
+    if not won.objective.reaches:
+        return _SHORT
+    worst = None if won.guarantee is None else won.guarantee.worst
+    return max(_LONG, float(_SPARE * (worst or 0)))
 
 
 def check_until(until: Optional[float]) -> None:
@@ -38,6 +50,6 @@ def make_case(
     """
     check_until(until)
     goal = won.objective.reaches
-    settings = Settings(opponent, faults, until or (_LONG if goal else _SHORT))
+    settings = Settings(opponent, faults, until or usual_end(won))
     case, knows = case_of(scenario, won, options_for(request, won), settings)
     return case, knows or not goal or opponent not in ("worst", "mixed")

@@ -47,6 +47,17 @@ def test_a_table_and_what_is_guaranteed() -> None:
     assert f"next: pursue-gen ws {shlex.quote(str(THIEF))}" in done.stderr
 
 
+def test_a_mission_is_not_over_before_the_goal_can_be_reached(tmp_path: Path) -> None:
+    slow = tmp_path / "slow.pur"
+    slow.write_text(
+        'poi "room"\nevent "mop" location room duration 1200\n'
+        'agent "bot" controllable location room can_do mop\nreach_objective: do mop\n'
+    )
+    done = called(slow, "--runs", 2)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[2].split()[:4] == ["goal", "reached", "2", "100.0"]
+
+
 def test_how_often_objectives_were_called_upon_is_told() -> None:
     carts = SCENARIOS / "airport" / "two_carts.pur"
     words = (carts, "--until", 60, "--runs", 8)
