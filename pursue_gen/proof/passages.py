@@ -11,7 +11,6 @@ at worst is the longest way through the events.
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import replace
 from typing import AbstractSet, Deque, Dict, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
 from pursue_gen.proof.course import Course, Event, Stay, Value
@@ -19,7 +18,7 @@ from pursue_gen.proof.independence import why_it_matters
 from pursue_gen.proof.relaxed_reachability import commanded, is_controllers, live
 from pursue_gen.synthesis.limits import LimitMonitor
 from pursue_gen.synthesis.strategy import Block, Command, Strategy
-from pursue_gen.tga.network import Clause, Edge, Kind, Network, Objective
+from pursue_gen.tga.network import Clause, Edge, Network, Objective
 from pursue_gen.tga.part import part_of
 
 _MOST = 20_000
@@ -67,8 +66,7 @@ def played(network: Network, objective: Objective, strategy: Strategy, monitor: 
         raise Fault("it has stages, shares, clocks that it leaves out, or a start in the middle")
     alive, extent = live(network, commanded(strategy.blocks))
     bad = tuple((name, place) for name, place in objective.bad if place in extent.places[name])
-    reaches = Kind.REACH_WHILE_SAFE if bad else Kind.REACH
-    wanted = replace(objective, bad=bad, kind=reaches if objective.reaches else Kind.SAFETY)
+    wanted = Objective.of(objective.goal if objective.reaches else (), bad)
     part = _part(alive, wanted, strategy, [name for name, _ in objective.bad if alive.automaton(name).stays])
     why = why_it_matters(alive, wanted, part, extent.places)
     if why:

@@ -1,11 +1,12 @@
 """A strategy in shares, taken apart: each share is a game of its own, and all are played at the same time.
 
-A share is to avoid some of what is to be avoided. Its blocks name what matters to that, and its commands are for agents
-whom no other share commands. In its game the commands of the others are moves of the environment, which may come at any
-time but need not come: so it wins whatever the others do. Only what they command at all can happen (see
-`relaxed_reachability`): who is never sent to a place is not there. Whom a share does not name may be anywhere, and do
-at any time what he can do to those whom it names (see `tga.hidden`), but must not stop time (see `independence`); that
-those whom another share names do not is shown there. Then each play of the network shows each share one of its plays.
+A share is to avoid some of what is to be avoided; one of them is also to reach the goal, where there is one. Its blocks
+name what matters to that, and its commands are for agents whom no other share commands. In its game the commands of the
+others are moves of the environment, which may come at any time but need not come: so it wins whatever the others do.
+Only what they command at all can happen (see `relaxed_reachability`): who is never sent to a place is not there. Whom a
+share does not name may be anywhere, and do at any time what he can do to those whom it names (see `tga.hidden`), but
+must not stop time (see `independence`); that those whom another share names do not is shown there. Then each play of
+the network shows each share one of its plays.
 
 What a share is to avoid and its blocks do not name is looked at apart, in a game for each of these (see `apart`).
 """
@@ -23,7 +24,7 @@ from pursue_gen.proof.stages import StagePart
 from pursue_gen.proof.watched import why_it_may_miss
 from pursue_gen.synthesis.strategy import Block, Place, Strategy
 from pursue_gen.tga.hidden import HIDDEN, has_hidden, with_hidden
-from pursue_gen.tga.network import Automaton, Kind, Network, Objective, with_controllability
+from pursue_gen.tga.network import Automaton, Network, Objective, with_controllability
 from pursue_gen.tga.part import part_of, without_unnamed_clocks
 from pursue_gen.tga.tours import Tour
 from pursue_gen.tga.watchers import Watcher
@@ -57,6 +58,7 @@ def _taken_apart(network: Network, objective: Objective, strategy: Strategy) -> 
     alive, extent = live(network, commanded(strategy.blocks))
     fault = fault or _misnamed(network, shares)
     apart = [] if fault else [kept_apart(strategy, k) for k in range(len(shares))]
+    fault = fault or _goal_apart(objective, apart)
     named = [blocks[0].state.names[0].union(some) for blocks, some in zip(shares, apart)]
     watchers = [_watchers_of(strategy, k, some) for k, some in enumerate(named)]
     watched = {watcher.objective for some in watchers for watcher in some}
@@ -72,7 +74,8 @@ def _taken_apart(network: Network, objective: Objective, strategy: Strategy) -> 
         part = with_clocks_of(without_unnamed_clocks(part_of(game, automata, variables)), network, own)
         own = replace(own, left_out_clocks=tuple(clock for clock in strategy.left_out_clocks if clock in part.clocks))
         known = (*objective.bad, *map(_place_of, watchers[k]), *map(_place_of, strategy.tours))
-        wanted = Objective(Kind.SAFETY, bad=tuple(place for place in known if place[0] in automata))
+        goal = objective.goal if _goal(objective).intersection(strategy.shares[k]) else ()
+        wanted = Objective.of(goal, [place for place in known if place[0] in automata])
         stays = {name: set() if name in others else places for name, places in extent.places.items()}
         fault = why_it_matters(game, wanted, part, stays, hiding=True)
         for watcher in watchers[k]:
@@ -117,15 +120,20 @@ def _place_of(own: Union[Watcher, Tour]) -> Place:
     return own.name, LOSE
 
 
+def _goal(objective: Objective) -> Set[Place]:
+    return set(objective.goal) if objective.reaches else set()
+
+
 def _misplaced(network: Network, objective: Objective, strategy: Strategy) -> str:
     """Why these shares cannot be those of a strategy for the objective; "" if they may."""
     if any(automaton.name.startswith(HIDDEN) for automaton in network.automata):
         return f"a name begins with {HIDDEN}"
-    if objective.reaches:
-        return "an objective with a goal has no shares"
     if strategy.stages:
         return "a strategy has stages or shares, not both"
-    known = {*objective.bad, *map(_place_of, strategy.watchers), *map(_place_of, strategy.tours)}
+    goal = _goal(objective)
+    if goal and [goal] != [some for some in (goal.intersection(places) for places in strategy.shares) if some]:
+        return "no share reaches the goal, or several do"
+    known = {*goal, *objective.bad, *map(_place_of, strategy.watchers), *map(_place_of, strategy.tours)}
     unknown = [place for avoided in strategy.shares for place in avoided if place not in known]
     if unknown:
         return f"{'.'.join(unknown[0])} is not to be avoided"
@@ -135,6 +143,12 @@ def _misplaced(network: Network, objective: Objective, strategy: Strategy) -> st
         state = strategy.blocks[strategy.parts.index(None)].state
         return f"the block for {', '.join(map('.'.join, state.locations))} belongs to no share"
     return ""
+
+
+def _goal_apart(objective: Objective, apart: Sequence[Sequence[str]]) -> str:
+    """Why the share of the goal does not know when that is reached; "" if it does."""
+    unnamed = {name for some in apart for name in some}.intersection(dict(_goal(objective)))
+    return f"the share of the goal does not name {min(unnamed)}" if unnamed else ""
 
 
 def _misnamed(network: Network, shares: Sequence[Sequence[Block]]) -> str:

@@ -21,7 +21,7 @@ from pursue_gen.proof.stage_entry import Known, State, after_part, at_start, mov
 from pursue_gen.synthesis.strategy import Block, DiscreteState, Place, Strategy, with_edges
 from pursue_gen.tga.begin import BEGIN, BEGUN, beginning_in
 from pursue_gen.tga.ending import REACHED, ending_at, is_value, owner_of
-from pursue_gen.tga.network import Edge, Kind, Network, Objective
+from pursue_gen.tga.network import Edge, Network, Objective
 from pursue_gen.tga.part import part_of
 from pursue_gen.tga.scale import common_denominator
 
@@ -93,7 +93,7 @@ def stage_objective(objective: Objective, goal: Place, extent: Extent) -> Object
     if not (objective.reaches and objective.avoids):
         return replace(objective, goal=(goal,))
     bad = tuple((name, location) for name, location in objective.bad if location in extent.places[name])
-    return Objective(Kind.REACH_WHILE_SAFE if bad else Kind.REACH, (goal,), bad)
+    return Objective.of((goal,), bad)
 
 
 def is_sure(known: Known, milestone: Place) -> bool:

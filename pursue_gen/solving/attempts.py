@@ -23,7 +23,7 @@ from pursue_gen.tga.network import Network, Objective
 
 
 @dataclass(frozen=True)
-class _Attempt:
+class Attempt:
     """What one round of attempts tries, and with how much work; 0, False or () leaves a method out.
 
     `shares`: efforts of the search for shares. `alone`: promises that are lost alone, or because somebody stays at a
@@ -41,18 +41,21 @@ class _Attempt:
 
 
 _SHARED = (
-    _Attempt(EFFORTS[:1], alone=True),
-    _Attempt(EFFORTS[1:2], one_robot=(40_000_000, 2_500_000)),
-    _Attempt(EFFORTS[2:4], one_robot=(60_000_000, 20_000_000), pinned=(60_000_000, 40_000_000)),
-    _Attempt(policy=450_000),
-    _Attempt(EFFORTS[4:7], one_robot=(200_000_000, 100_000_000), lost=True),
-    _Attempt(EFFORTS[7:], policy=500_000),
+    Attempt(EFFORTS[:1], alone=True),
+    Attempt(EFFORTS[1:2], one_robot=(40_000_000, 2_500_000)),
+    Attempt(EFFORTS[2:4], one_robot=(60_000_000, 20_000_000), pinned=(60_000_000, 40_000_000)),
+    Attempt(policy=450_000),
+    Attempt(EFFORTS[4:7], one_robot=(200_000_000, 100_000_000), lost=True),
+    Attempt(EFFORTS[7:], policy=500_000),
 )
 """For promises that several robots may keep. Measured on 200 lab scenarios: what one robot cannot keep took 16 million
 units of work at most, and policies of all robots together win none."""
 
-_ONE = (_Attempt(alone=True), _Attempt(policy=5_000_000, lost=True))
+_ONE = (Attempt(alone=True), Attempt(policy=5_000_000, lost=True))
 """For those of one robot."""
+
+BESIDE_A_GOAL = (Attempt(EFFORTS[1:2], lost=True), Attempt(EFFORTS[2:3]))
+"""For those that are to be kept until a goal is reached."""
 
 _CLOCKS = 11
 """With more clocks a policy gets less work, as a zone costs more then, by the square. Measured on the ninth large lab,
@@ -60,12 +63,17 @@ where policies took 14 of 30 s in vain."""
 
 
 def decided_by_attempts(
-    network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
+    network: Network,
+    objective: Objective,
+    reaction: Fraction,
+    options: SolveOptions,
+    attempts: Sequence[Attempt] = (),
 ) -> Union[Found, Tuple[Objective, ...]]:
-    """A proven strategy, or parts of the objective that are lost; () where no attempt finds either."""
+    """A proven strategy, or parts of the objective that are lost; () where no attempt finds either. `attempts`: those
+    that are made; (): of promises alone, as many robots may keep them."""
     start, known, shared = options.limits.now(), Known(), can_be_shared(network, objective)
     dear = max(1.0, ((len(network.clocks) + 1) / (_CLOCKS + 1)) ** 2) if shared else 1.0
-    for each in _SHARED if shared else _ONE:
+    for each in attempts or (_SHARED if shared else _ONE):
         found: Optional[Found] = None
         lost: Tuple[Objective, ...] = ()
         if each.shares:

@@ -21,7 +21,7 @@ from pursue_gen.synthesis.budget import Budget
 from pursue_gen.synthesis.limits import Limits, Listener
 from pursue_gen.tga.apart import without_pauses
 from pursue_gen.tga.ends import is_agent
-from pursue_gen.tga.network import Kind, Network, Objective
+from pursue_gen.tga.network import Network, Objective
 from pursue_gen.tga.objectives import stated
 from pursue_gen.tga.part import part_of
 from pursue_gen.tga.pauses import acting_at_most
@@ -46,13 +46,14 @@ _QUICK, _QUICK_GAME, _FEW_STATES = 6_000_000, 1_000_000, 4000
 def promises(objective: Objective) -> Tuple[Objective, ...]:
     """What the objective asks for, each alone: a place to be avoided, or one to be reached, in its own time."""
     if not objective.reaches:
-        return tuple(Objective(Kind.SAFETY, bad=(place,)) for place in objective.bad)
-    return tuple(_together([goal], [late for late in objective.bad if late[0] == goal[0]]) for goal in objective.goal)
+        return tuple(Objective.of((), [place]) for place in objective.bad)
+    late = {goal: [place for place in objective.bad if place[0] == goal[0]] for goal in objective.goal}
+    return tuple(Objective.of([goal], bad) for goal, bad in late.items())
 
 
-def _together(goal: Sequence[Tuple[str, str]], bad: Sequence[Tuple[str, str]]) -> Objective:
-    kind = Kind.SAFETY if not goal else Kind.REACH_WHILE_SAFE if bad else Kind.REACH
-    return Objective(kind, tuple(goal), tuple(bad))
+def has_promises(objective: Objective) -> bool:
+    """True for a goal beside promises that are to be kept until it is reached."""
+    return objective.reaches and not {name for name, _ in objective.bad} <= dict(objective.goal).keys()
 
 
 def lost_alone(
@@ -71,14 +72,16 @@ def lost_alone(
 def lost_promises(
     network: Network, objective: Objective, reaction: Fraction, options: SolveOptions
 ) -> Tuple[Objective, ...]:
-    """The promises that are lost alone; where there are none, two that are lost together; () where little work finds
-    neither."""
+    """The promises that are lost alone; where there are none, two that are lost together, or one beside the goal; ()
+    where little work finds none of these."""
     budget = Budget(replace(options.limits, work=WORK, states=_STATES), options.progress, options.engine)
     single, some = promises(objective), budget.split(_ALONE)
     alone = tuple(wanted for wanted in single if _is_lost(network, objective, wanted, reaction, some))
-    if alone or len(single) < 3:
+    if alone or (len(single) < 3 and not has_promises(objective)):
         return alone
-    pairs = (_together((*a.goal, *b.goal), (*a.bad, *b.bad)) for a, b in combinations(single, 2))
+    pairs = [Objective.of((*a.goal, *b.goal), (*a.bad, *b.bad)) for a, b in combinations(single, 2)]
+    beside = [place for place in objective.bad if objective.goal and place[0] not in dict(objective.goal)]
+    pairs += [Objective.of(wanted.goal, (*wanted.bad, place)) for wanted in single for place in beside]
     lost = (wanted for wanted in pairs if _is_lost(network, objective, wanted, reaction, budget))
     return tuple(islice(lost, 1))
 

@@ -72,7 +72,7 @@ def _ways(now: Sequence[Group], search: SharesSearch, objective: Objective) -> I
     units: List[Tuple[Tuple[Place, ...], List[Team]]] = []
     for group in now:
         size = len(group.team)
-        for bad in [group.bad] if size > 1 else [(place,) for place in group.bad]:
+        for bad in [group.places] if size > 1 else [(place,) for place in group.places]:
             able = [frozenset(search.able(place)) for place in bad]
             robots = sorted(frozenset().union(*able))
             teams = [team for team in map(frozenset, combinations(robots, size)) if all(team & who for who in able)]
@@ -84,7 +84,7 @@ def _ways(now: Sequence[Group], search: SharesSearch, objective: Objective) -> I
         for team, (bad, _) in zip(chosen, units):
             met = [group for group in groups if group.team & team]
             groups = [group for group in groups if group not in met]
-            places = {*bad, *(place for group in met for place in group.bad)}
+            places = {*bad, *(place for group in met for place in group.places)}
             groups.append(Group(team.union(*(g.team for g in met)), tuple(p for p in objective.bad if p in places)))
         yield tuple(groups)
 
@@ -101,11 +101,11 @@ class _StillCosts:
 
     def of(self, groups: Iterable[Group]) -> Tuple[float, float]:
         """Of all these groups together; and how much else there is to do for those who drive."""
-        costs = [(self._of_group(group), len(group.bad)) for group in groups]
+        costs = [(self._of_group(group), len(group.places)) for group in groups]
         return sum(cost for cost, _ in costs), sum(cost * promises for cost, promises in costs)
 
     def _of_group(self, group: Group) -> float:
-        visits = [self._duties[name] for name, _ in group.bad if name in self._duties]
+        visits = [self._duties[name] for name, _ in group.places if name in self._duties]
         able = [sorted(group.team.intersection(duty.visits)) for duty in visits]
         best = inf
         for who in product(*able):

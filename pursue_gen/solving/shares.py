@@ -33,7 +33,8 @@ from pursue_gen.solving.group_games import (
     Group,
     GroupGames,
     avoided,
-    kept,
+    each_once,
+    have,
     without_hidden,
 )
 from pursue_gen.solving.options import SolveOptions
@@ -122,8 +123,12 @@ class SharesSearch:
         limits = replace(options.limits, work=effort.work, states=effort.states)
         self._known = Known() if known is None else known
         self.budget = Budget(limits, options.progress, options.engine, whole=True, large=self._known.large)
-        self._robots = commanded_agents(network)
+        names, commands = dict(objective.goal), commanded_agents(network)
+        self._robots = tuple(name for name in commands if name not in names)
+        self._unlocking = NOBODY.union(commands).difference(self._robots)
         visited = patrols(network)
+        self._places = (*objective.bad, *objective.goal)
+        self._goal = tuple(place for place in self._places if place[0] in names)
         self._visits = frozenset(place for place in objective.bad if place[0] in visited)
         self._games = GroupGames(network, objective)
         self._tried: Set[_Game] = set()
@@ -134,8 +139,10 @@ class SharesSearch:
     def found(self, having: Tuple[Group, ...] = ()) -> Optional[Strategy]:
         """The first strategy that is found, by groups of which these have some of the promises; raises LimitHit where
         the budget is used up."""
-        had = {place for group in having for place in group.bad}
-        able = {place: self.able(place) for place in self._objective.bad if place not in had}
+        had = {*self._goal[1:], *(place for group in having for place in group.places)}
+        able = {place: self.able(place) for place in self._places if place not in had}
+        if self._objective.reaches and (self._effort.few or self._effort.turns):
+            return None
         if self._effort.few:
             return self._by_few(able)
         if self._effort.turns:
@@ -143,7 +150,7 @@ class SharesSearch:
         order = sorted(able, key=lambda place: len(able[place]))
         turns = range(len(order) + 1) if self._effort.varied else (len(order),)
         ways = chain.from_iterable(self._ways(order, able, having, most) for most in turns)
-        for groups in islice(_each_once(ways), _WAYS):
+        for groups in islice(each_once(ways), _WAYS):
             strategy = self.won_by(groups)
             if strategy is not None:
                 return strategy
@@ -175,7 +182,7 @@ class SharesSearch:
     def able(self, place: Place) -> Tuple[str, ...]:
         """The robots that can do something about what is to be avoided there."""
         if place not in self._known.able:
-            game = self._games.game(Group(frozenset(self._robots), (place,)), frozenset())
+            game = self._games.game(self._having(frozenset(self._robots), place), frozenset())
             names = {automaton.name for automaton in game.automata}
             self._known.able[place] = tuple(name for name in self._robots if name in names)
         return self._known.able[place]
@@ -203,33 +210,39 @@ class SharesSearch:
         """Who may keep the promise: nobody, if that is an effort's way; one robot, those with least to do first, of
         these the nearest; two where no one can alone, or where an effort lets two."""
         timed = any(place.invariant for place in self._network.automaton(promise[0]).locations)
-        if self._effort.nobody and not timed and self._is_won(Group(NOBODY, (promise,))):
+        if self._effort.nobody and not timed and self._is_won(self._having(NOBODY, promise)):
             yield NOBODY
-        own = {name: [place for group in groups if name in group.team for place in group.bad] for name in able}
+        own = {name: [place for group in groups if name in group.team for place in group.places] for name in able}
         rounds = {name: sum(place in self._visits for place in own[name]) * (promise in self._visits) for name in able}
         nearest = sorted(
             able, key=lambda name: (rounds[name], len(own[name]), time_to_help(self._network, name, promise))
         )
         alone = [frozenset([name]) for name in nearest]
         yield from alone or [NOBODY]
-        if (self._effort.pairs and not timed) or not any(self._is_won(Group(team, (promise,))) for team in alone):
+        if (self._effort.pairs and not timed) or not any(self._is_won(self._having(team, promise)) for team in alone):
             yield from (frozenset(two) for two in combinations(able, 2))
 
     def _grown(self, groups: Sequence[Group], team: FrozenSet[str], promise: Place) -> Tuple[Group, ...]:
         """The groups, those of this team joined, with one promise more; that group is the last."""
         met = [group for group in groups if group.team & team]
-        return (*(group for group in groups if group not in met), self._joined([*met, Group(team, (promise,))]))
+        return (*(group for group in groups if group not in met), self._joined([*met, self._having(team, promise)]))
+
+    def _having(self, team: FrozenSet[str], promise: Place) -> Group:
+        """A group with this promise alone, or that comes to the goal: whoever sees to a part of that, sees to all."""
+        if promise in self._goal:
+            return Group(team | self._unlocking, self._goal)
+        return Group(team, (promise,))
 
     def _joined(self, groups: Sequence[Group]) -> Group:
-        bad = {place for group in groups for place in group.bad}
+        some = {place for group in groups for place in group.places}
         team = NOBODY.union(*(group.team for group in groups))
-        return Group(team, tuple(place for place in self._objective.bad if place in bad))
+        return Group(team, tuple(place for place in self._places if place in some))
 
     def _is_won(self, group: Group) -> bool:
         """True if the group wins its game while the others stand still."""
         if group not in self._alone:
             lost = (other for other, won in self._alone.items() if not won and other.team == group.team)
-            hopeless = any(set(other.bad) <= set(group.bad) for other in lost)
+            hopeless = any(set(other.places) <= set(group.places) for other in lost)
             self._alone[group] = not hopeless and self._strategy(group, frozenset()) is not None
         return self._alone[group]
 
@@ -265,7 +278,7 @@ class SharesSearch:
         return None
 
     def _are_known_to_clash(self, groups: Sequence[Group]) -> bool:
-        return any(_have(groups, clash) for clash in self._clashes)
+        return any(have(groups, clash) for clash in self._clashes)
 
     def _joined_with_some(
         self, group: Group, groups: Mapping[Group, Strategy], theirs: Commanded
@@ -308,7 +321,7 @@ class SharesSearch:
         strategy = Strategy(
             blocks,
             left_out_clocks=left_out,
-            shares=tuple(avoided(group.bad, strategy.watchers) for group, strategy in won.items()),
+            shares=tuple(avoided(group.places, strategy.watchers) for group, strategy in won.items()),
             watchers=watchers,
         )
         limits = self._options.limits
@@ -322,10 +335,10 @@ class SharesSearch:
         ways += [(shown, ()) for shown in (PLACES, ALL)[: 1 + self._effort.thorough]]
         for shown, some in ways:
             game = self._games.game(group, theirs, shown, some)
-            key = game, group.bad, some, self._effort.free and bool(pauses(game))
+            key = game, group.places, some, self._effort.free and bool(pauses(game))
             if key not in self._known.won and key not in self._known.lost and key not in self._tried:
                 self._tried.add(key)
-                strategy = self._solved(key, Objective(Kind.SAFETY, bad=kept(group.bad, some)))
+                strategy = self._solved(key, self._games.wanted(group, some))
                 if strategy is not None:
                     self._known.won[key] = replace(strategy, watchers=some)
             if key in self._known.won:
@@ -336,13 +349,13 @@ class SharesSearch:
         """What the group may follow in place of promises that other robots can keep, too."""
         if group not in self._watched:
             team = tuple(name for name in self._robots if name in group.team)
-            watchers = (Watcher(name, team) for name, _ in group.bad)
+            watchers = (Watcher(name, team) for name, _ in group.places)
             self._watched[group] = tuple(w for w in watchers if watched_by(self._network, w) is not None)
         return self._watched[group]
 
     def _solved(self, key: _Game, wanted: Objective) -> Optional[Strategy]:
         game, *_, free = key
-        single = len(wanted.bad) == 1
+        single = len(wanted.bad) == 1 or wanted.reaches
         guessed = None if single else self._guessed(game, wanted, free)
         if guessed is not None or len(game.clocks) > self._effort.clocks:
             return guessed
@@ -358,7 +371,7 @@ class SharesSearch:
         except (NotProven, LimitHit):
             if self.budget.used_up:
                 raise
-            return self._guessed(game, wanted, free) if single else None
+            return self._guessed(game, wanted, free) if single and not wanted.reaches else None
 
     def _guessed(self, game: Network, wanted: Objective, free: bool) -> Optional[Strategy]:
         """A guess that is proven."""
@@ -384,16 +397,3 @@ class SharesSearch:
         strategy, stats = found
         self._known.stats.append(stats)
         return strategy
-
-
-def _each_once(ways: Iterable[Tuple[Group, ...]]) -> Iterator[Tuple[Group, ...]]:
-    known: Set[Tuple[Group, ...]] = set()
-    for groups in ways:
-        if groups not in known:
-            known.add(groups)
-            yield groups
-
-
-def _have(groups: Iterable[Group], some: Iterable[Group]) -> bool:
-    """True if these groups have the same teams, with the same promises and perhaps more."""
-    return all(any(g.team == each.team and set(each.bad) <= set(g.bad) for g in groups) for each in some)

@@ -11,13 +11,14 @@ from pursue_gen.language.scenario import Scenario
 from pursue_gen.outcomes import Lost, NotProven
 from pursue_gen.proof.independence import named_part
 from pursue_gen.proof.worst_case import worst_case
-from pursue_gen.solving.attempts import decided_by_attempts
+from pursue_gen.solving.attempts import BESIDE_A_GOAL, decided_by_attempts
 from pursue_gen.solving.cut_off import lost_to_a_stay
 from pursue_gen.solving.decomposition import has_parts, little_work, won_by_some, works_in_parallel
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.least_time import Guarantee, bounds
 from pursue_gen.solving.lost_promises import (
     cannot_be_promised,
+    has_promises,
     lost_promises,
     lost_to_one_walk,
     only_promises,
@@ -221,7 +222,10 @@ def _with_little_work(
         verdict = verdict_with(game, objective, reaction, work, options.since(start))
     if verdict is not None:
         return verdict
-    return won_by_some(game, objective, reaction, options.since(start))
+    some = won_by_some(game, objective, reaction, options.since(start))
+    if some is None and has_promises(objective):
+        return decided_by_attempts(game, objective, reaction, options.since(start), BESIDE_A_GOAL) or None
+    return some
 
 
 def check_goal(objective: Objective, option: str) -> None:

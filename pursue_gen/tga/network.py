@@ -358,6 +358,12 @@ class Objective:
     goal: Tuple[Tuple[str, str], ...] = ()
     bad: Tuple[Tuple[str, str], ...] = ()
 
+    @staticmethod
+    def of(goal: Sequence[Tuple[str, str]], bad: Sequence[Tuple[str, str]]) -> Objective:
+        """To reach the goal, if there is one, and to avoid what is bad, if there is anything."""
+        kind = Kind.SAFETY if not goal else Kind.REACH_WHILE_SAFE if bad else Kind.REACH
+        return Objective(kind, tuple(goal), tuple(bad))
+
     @property
     def reaches(self) -> bool:
         """True if there is a goal to reach; else what is bad is to be kept from for ever."""

@@ -27,7 +27,7 @@ from pursue_gen.outcomes import Invalid
 from pursue_gen.tga.agents import Surroundings
 from pursue_gen.tga.apart import pause_automaton
 from pursue_gen.tga.endurance import endurance_automaton
-from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Kind, Location, Objective, Sync, Test
+from pursue_gen.tga.network import Automaton, Clause, ClockBound, Edge, Guard, Location, Objective, Sync, Test
 from pursue_gen.tga.patrols import patrol_automaton
 from pursue_gen.tga.requests import request_automaton
 from pursue_gen.tga.responses import respond_automaton
@@ -44,10 +44,8 @@ def scenario_objective(scenario: Scenario) -> Objective:
     bad = [(names.safety_objective(k), names.LOSE) for k, _ in enumerate(scenario.safety)]
     bounded = (k for k, reach in enumerate(scenario.reach) if reach.within is not None)
     bad += [(names.reach_objective(k), names.LATE) for k in bounded]
-    if goal:
-        return Objective(Kind.REACH_WHILE_SAFE if bad else Kind.REACH, goal, tuple(bad))
-    if bad:
-        return Objective(Kind.SAFETY, bad=tuple(bad))
+    if goal or bad:
+        return Objective.of(goal, bad)
     message = f"{scenario.name} has no objective"
     raise Invalid([error("TGA012", message, hint="add a line 'objective: …' or 'reach_objective: …'")])
 

@@ -16,6 +16,7 @@ from pursue_gen.diagnostics import PursueError
 from pursue_gen.language import parse
 from pursue_gen.language.scenario import Scenario
 from pursue_gen.proof.checker import LIMIT, ProofReport, verify
+from pursue_gen.proof.worst_case import worst_case
 from pursue_gen.solving.options import SolveOptions
 from pursue_gen.solving.request import SolveRequest
 from pursue_gen.solving.rules import Rules, played
@@ -30,7 +31,7 @@ from pursue_gen.tga.network import Automaton, ClockBound, Guard, Network, Object
 from pursue_gen.tga.watchers import Watcher, with_watchers
 from pursue_gen.tools.simulation.make import make_case
 from pursue_gen.tools.simulation.mission import simulate_mission
-from pursue_gen.tools.simulation.outcome import SAFE, Settings
+from pursue_gen.tools.simulation.outcome import GOAL, SAFE, Settings
 from pursue_gen.tools.simulation.runs import MissionRunner
 from tests.choices import member_of
 from tests.oracle.checker import natively
@@ -124,6 +125,27 @@ objective: patrol room1 every 30 by bot2
 objective: patrol hall every 30 by bot2
 """
 """bot1 visits both rooms; where bot2 comes by on its way, it need not, but need not rely on it either."""
+
+
+WARD = """
+poi "hall"
+poi "ward_a"
+poi "ward_b"
+poi "laundry"
+connect hall and ward_a distance 12
+connect hall and ward_b distance 15
+connect hall and laundry distance 25
+event "call"
+event "help" location ward_a duration 20
+event "bring" location ward_b duration 300
+agent "nurse" location ward_a can_do call
+agent "bot1" controllable mobile 1 location hall can_do help
+agent "bot2" controllable mobile 1 location laundry can_do bring, help
+objective: if call then help within 90
+objective: patrol ward_a every 100 by bot1
+reach_objective: do bring
+"""
+"""Who brings something has no time for the nurse meanwhile."""
 
 
 def game_of(scenario: Scenario) -> Tuple[Network, Objective]:
@@ -231,6 +253,34 @@ def test_a_deadline_is_not_kept_by_what_others_may_do_but_need_not() -> None:
     assert won_in_shares(network, objective, LATE, SolveOptions(Limits(work=WORK))) is None
 
 
+def test_who_comes_to_the_goal_has_a_share_with_it_and_the_others_keep_their_promises_until_then() -> None:
+    network, objective, strategy = in_shares(WARD)
+    assert strategy.shares == ((("reachObj", "win"),), (("obj", "lose"), ("obj2", "lose")))
+    assert [strategy.commanded_by(k) for k in range(2)] == [{"bot2", "reachObj"}, {"bot1"}]
+    assert reason(network, objective, strategy) == ""
+    assert read_plan(write_plan(strategy, network, objective), network, "plan.txt") == strategy
+    worst = worst_case(network, objective, strategy, LATE)
+    assert worst is not None and 340 < worst < 350  # 40 on the way, 300 at work, rests and delays
+
+
+def test_a_goal_that_no_share_or_each_share_comes_to_is_refused() -> None:
+    network, objective, strategy = in_shares(WARD)
+    (goal,), (calls, visits) = strategy.shares
+    fault = "no share reaches the goal, or several do"
+    assert fault in reason(network, objective, replace(strategy, shares=((calls, visits), (("bot2", "hall"),))))
+    assert fault in reason(network, objective, replace(strategy, shares=((calls, visits, goal), (goal,))))
+    blocks = tuple(strategy.blocks[n] for n in strategy.numbers_of(1, calls))
+    unseen = replace(strategy, blocks=blocks, shares=((calls, visits, goal),))
+    assert "the share of the goal does not name reachObj" in reason(network, objective, unseen)
+
+
+def test_a_robot_that_waits_for_ever_beside_its_promises_does_not_come_to_the_goal() -> None:
+    network, objective, strategy = in_shares(WARD)
+    goal = strategy.numbers_of(0, ("reachObj", "win"))
+    lazy = [replace(b, wait=((),), commands=()) if n in goal else b for n, b in enumerate(strategy.blocks)]
+    assert "waits for ever" in reason(network, objective, replace(strategy, blocks=tuple(lazy)))
+
+
 @st.composite
 def damaged(draw: st.DrawFn, strategy: Strategy) -> Strategy:
     """The strategy with wrong claims: another block's waits or commands, a block less, names less, other shares."""
@@ -295,6 +345,9 @@ def _without(block: Block, name: str) -> Block:
 def lab(seed: int) -> Optional[Tuple[str, Scenario]]:
     text = lab_scenario(seed, SIZES[seed % len(SIZES)])
     scenario = parse(text, "lab.pur", "lab")
+    done = [event.name for agent in scenario.agents if agent.is_robot for event in agent.can_do]
+    if seed % 3 == 0 and done:
+        return text, parse(f"{text}reach_objective: do {done[seed % len(done)]}\n", "lab.pur", "lab")
     return (text, scenario) if can_be_shared(*game_of(scenario)) else None
 
 
@@ -371,11 +424,13 @@ def ends(seed: int) -> List[str]:
     network = with_watchers(network, strategy.watchers)
     won = Solution(network, objective, strategy, Rules().reaction, rules=Rules())
     stage = MissionRunner(make_case(scenario, won, SolveRequest(), "random", (), None)[0]).stage
-    return [simulate_mission(stage, Settings("random", until=150.0), number).end for number in range(4)]
+    until = 1000.0 if objective.reaches else 150.0
+    return [simulate_mission(stage, Settings("random", until=until), number).end for number in range(4)]
 
 
 @settings(RANDOM, max_examples=8)
 @example(seed=67)  # two shares name a robot, and what matters to the one that does not command it changes
 @given(seed=SEEDS)
 def test_missions_stay_safe_by_commands_that_the_strategy_holds(seed: int) -> None:
-    assert ends(seed) == [SAFE] * 4
+    goal = found_for(seed, Rules().reaction)[2].reaches
+    assert ends(seed) == [GOAL if goal else SAFE] * 4

@@ -10,7 +10,7 @@ from benchmarks.lab_scenarios import lab_scenario
 from benchmarks.ordinary_families import warehouse
 from pursue_gen.language import parse
 from pursue_gen.proof.checker import verify
-from pursue_gen.solving.attempts import decided_by_attempts
+from pursue_gen.solving.attempts import BESIDE_A_GOAL, decided_by_attempts
 from pursue_gen.solving.efforts import EFFORTS
 from pursue_gen.solving.found import Found
 from pursue_gen.solving.options import SolveOptions
@@ -203,3 +203,54 @@ def test_what_has_a_short_limit_is_done_between_what_has_long_ones() -> None:
     found = won_by_policy(network, objective, REACTION, 5_000_000, SolveOptions())
     assert found is not None
     assert verify(network, objective, found.strategy, REACTION).ok
+
+
+SCHOOL = """
+unit 1 s
+poi "gate"
+poi "yard"
+poi "room1"
+poi "room2"
+poi "gym"
+poi "store"
+connect gate and yard distance 10
+connect yard and room1 distance 14
+connect yard and room2 distance 14
+connect yard and gym distance 30
+connect yard and store distance 8
+event "ring" location gate
+event "open" location gate duration 10
+event "mop1" location room1 duration 5 min
+event "mop2" location room2 duration 5 min
+event "mop3" location gym duration 10 min
+agent "guard" mobile 1 location yard
+agent "visitor" location gate can_do ring
+agent "porter" controllable mobile 1 location gate can_do open
+agent "mopper" controllable mobile 1 location store can_do mop1, mop2, mop3
+assume: guard leaves yard within 30
+assume: visitor waits 3 min between ring
+objective: if ring then open within 1 min
+objective: patrol store every 20 min by any robot
+objective: avoid mopper doing mop3 and guard at gym
+reach_objective: do mop1
+reach_objective: do mop2 within 30 min
+reach_objective: do mop3
+"""
+
+
+def test_who_comes_to_the_goal_leaves_promises_to_others() -> None:
+    """A porter answers the gate for the twenty minutes that the rooms take: too many plays for one game."""
+    network, objective = game(f"{SCHOOL}assume: guard never at gym")
+    found = decided_by_attempts(network, objective, REACTION, SolveOptions(), BESIDE_A_GOAL)
+    assert isinstance(found, Found)
+    shares = [(found.strategy.commanded_by(k), dict(places)) for k, places in enumerate(found.strategy.shares)]
+    assert any("mopper" in who and {"reachObj", "reachObj2", "reachObj3"} <= kept.keys() for who, kept in shares)
+    assert any(who == {"porter"} and {"obj", "obj2"} <= kept.keys() for who, kept in shares)
+    assert verify(network, objective, found.strategy, REACTION).ok
+
+
+def test_a_goal_that_a_promise_excludes_is_named_with_it() -> None:
+    network, objective = game(SCHOOL)  # the guard may come to the gym while it is mopped
+    found = decided_by_attempts(network, objective, REACTION, SolveOptions(), BESIDE_A_GOAL)
+    assert isinstance(found, tuple)
+    assert [(part.goal, part.bad) for part in found] == [((("reachObj3", "win"),), (("obj3", "lose"),))]
