@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Mapping, Optional, Sequence, Tuple
+from typing import Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, counted, error
 from pursue_gen.language.assumptions.base import AboutOne, Setting
@@ -11,7 +11,7 @@ from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 MOST_TIMES = 100
 """The most times that an assumption may allow: each is a value of a variable of its own."""
@@ -25,15 +25,13 @@ class AtMost(AboutOne):
     event: Ref
     times: int
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=guest} does {event=call} at_most {times:count=2} times")
-    own_words: ClassVar[Tuple[Word, ...]] = (Word("does", "The event that the assumption is about.", True),)
-    forms: ClassVar[Tuple[Form, ...]] = (Form("how often somebody does something", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {
-        "at_most": lambda _, times: f"It begins {counted(times, 'time')} at most in the whole mission.",
-    }
-    number: ClassVar[str] = "times"
-    nearest: ClassVar[int] = MOST_TIMES
-    counts: ClassVar[bool] = True
+    template = Template("{agent=guest} does {event=call} at_most {times:count=2} times")
+    own_words = (Word("does", "The event that the assumption is about.", True),)
+    forms = (Form("how often somebody does something", template.to_fill_in),)
+    numbers = {"at_most": lambda _, times: f"It begins {counted(times, 'time')} at most in the whole mission."}
+    number = "times"
+    nearest = MOST_TIMES
+    counts = True
 
     @property
     def clause(self) -> str:

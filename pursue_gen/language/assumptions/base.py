@@ -202,8 +202,8 @@ class AboutOne(Assumption):
 class Departure(AboutOne):
     """An assumption about when an agent sets off, counted from when it came to a place or from the start."""
 
-    sets_off: ClassVar[bool] = True
-    in_rests: ClassVar[bool] = True
+    sets_off = True
+    in_rests = True
 
     @property
     def only_at(self) -> str:
@@ -269,9 +269,9 @@ class Between(AboutOne):
 
     least: Number
     most: Number
-    number: ClassVar[str] = "most"
-    nearest: ClassVar[int] = SHORTEST_STAY
-    in_rests: ClassVar[bool] = True
+    number = "most"
+    nearest = SHORTEST_STAY
+    in_rests = True
 
     @property
     def subject(self) -> str:
@@ -303,8 +303,8 @@ class NotSooner(AboutOne):
 
     event: Ref
     time: Number
-    number: ClassVar[str] = "time"
-    nearest: ClassVar[int] = 1
+    number = "time"
+    nearest = 1
 
     def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
         if self.time <= 0:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Optional, Tuple
+from typing import Optional
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import Assumption, Between, Setting
@@ -13,7 +13,7 @@ from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.statements.event import Event
 from pursue_gen.language.template import Template
 from pursue_gen.language.times import like, time_units
-from pursue_gen.language.word import Form, Numbers
+from pursue_gen.language.word import Form
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,9 @@ class Every(Between):
     least: Number
     most: Number
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=belt} does {event=bring} every {least:time=20} to {most:time=30}")
-    forms: ClassVar[Tuple[Form, ...]] = (Form("how often something happens", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {
+    template = Template("{agent=belt} does {event=bring} every {least:time=20} to {most:time=30}")
+    forms = (Form("how often something happens", template.to_fill_in),)
+    numbers = {
         "every": "It happens {} after the start, or after the last time, or later.".format,
         "to": "It has happened {} after the start, or after the last time.".format,
     }

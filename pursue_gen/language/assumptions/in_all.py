@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, Mapping, Sequence, Tuple
+from typing import Iterator, Mapping, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed
 from pursue_gen.language.assumptions.at_most import MOST_TIMES, AtMost
@@ -12,7 +12,7 @@ from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref, twice
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
-from pursue_gen.language.word import Form, Numbers
+from pursue_gen.language.word import Form
 
 
 @dataclass(frozen=True)
@@ -23,12 +23,12 @@ class InAll(Assumption):
     times: int
     events: Tuple[Ref, ...]
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("at_most {times:count=5} of {events:events=call1, call2} in all")
-    forms: ClassVar[Tuple[Form, ...]] = (Form("how often several events happen in all", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = AtMost.numbers
-    number: ClassVar[str] = "times"
-    nearest: ClassVar[int] = MOST_TIMES
-    counts: ClassVar[bool] = True
+    template = Template("at_most {times:count=5} of {events:events=call1, call2} in all")
+    forms = (Form("how often several events happen in all", template.to_fill_in),)
+    numbers = AtMost.numbers
+    number = "times"
+    nearest = MOST_TIMES
+    counts = True
 
     @property
     def clause(self) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil
-from typing import ClassVar, Optional, Sequence, Tuple
+from typing import Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
 from pursue_gen.language.assumptions.base import SHORTEST_STAY, Departure, Setting
@@ -13,7 +13,7 @@ from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
 from pursue_gen.language.times import like, time_units, written_time
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -24,12 +24,12 @@ class Leaves(Departure):
     place: Ref
     time: Number
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=visitor} leaves {place:POI=hall} within {time:time=30}")
-    own_words: ClassVar[Tuple[Word, ...]] = (Word("leaves", "The place that it leaves in time.", True),)
-    forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody stays", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {"within": "It has set off {} after it came, or after the start.".format}
-    number: ClassVar[str] = "time"
-    nearest: ClassVar[int] = SHORTEST_STAY
+    template = Template("{agent=visitor} leaves {place:POI=hall} within {time:time=30}")
+    own_words = (Word("leaves", "The place that it leaves in time.", True),)
+    forms = (Form("how long somebody stays", template.to_fill_in),)
+    numbers = {"within": "It has set off {} after it came, or after the start.".format}
+    number = "time"
+    nearest = SHORTEST_STAY
 
     @property
     def clause(self) -> str:

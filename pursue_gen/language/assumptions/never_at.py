@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Iterator, Optional, Sequence, Tuple
+from typing import Iterator, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import AboutOne, Assumption, Setting
@@ -22,9 +22,9 @@ class NeverAt(AboutOne):
     agent: Ref
     place: Ref
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=visitor} never at {place:POI=store}")
-    own_words: ClassVar[Tuple[Word, ...]] = (Word("never", "It never sets off to that place.", True),)
-    forms: ClassVar[Tuple[Form, ...]] = (Form("where somebody never goes", template.to_fill_in),)
+    template = Template("{agent=visitor} never at {place:POI=store}")
+    own_words = (Word("never", "It never sets off to that place.", True),)
+    forms = (Form("where somebody never goes", template.to_fill_in),)
 
     @property
     def clause(self) -> str:

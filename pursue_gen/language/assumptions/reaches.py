@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil
-from typing import ClassVar, Dict, Iterator, Mapping, Optional, Sequence, Tuple
+from typing import Dict, Iterator, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units, warning
 from pursue_gen.language.assumptions.base import SHORTEST_STAY, AboutOne, Assumption, Setting, latest_to, visited
@@ -13,7 +13,7 @@ from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
 from pursue_gen.language.times import like, written_time
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -26,17 +26,15 @@ class Reaches(AboutOne):
     time: Number
     event: Ref
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template(
-        "{agent=mechanic} reaches {place:POI=m1} within {time:time=180} after {event=call1}"
-    )
-    own_words: ClassVar[Tuple[Word, ...]] = (Word("reaches", "The place to which it comes in time.", True),)
-    forms: ClassVar[Tuple[Form, ...]] = (Form("how soon somebody comes when called", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {"within": "It has been there {} after the event.".format}
-    number: ClassVar[str] = "time"
-    nearest: ClassVar[int] = SHORTEST_STAY
-    in_rests: ClassVar[bool] = True
-    counts: ClassVar[bool] = True
-    sets_off: ClassVar[bool] = True
+    template = Template("{agent=mechanic} reaches {place:POI=m1} within {time:time=180} after {event=call1}")
+    own_words = (Word("reaches", "The place to which it comes in time.", True),)
+    forms = (Form("how soon somebody comes when called", template.to_fill_in),)
+    numbers = {"within": "It has been there {} after the event.".format}
+    number = "time"
+    nearest = SHORTEST_STAY
+    in_rests = True
+    counts = True
+    sets_off = True
 
     @property
     def subject(self) -> str:

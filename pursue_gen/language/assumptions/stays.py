@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Optional, Tuple
+from typing import Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import Between, Departure, Setting, visited
@@ -13,7 +13,7 @@ from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
 from pursue_gen.language.times import like, time_units, written_time
-from pursue_gen.language.word import Form, Numbers, Word
+from pursue_gen.language.word import Form, Word
 
 
 @dataclass(frozen=True)
@@ -25,10 +25,10 @@ class Stays(Between, Departure):
     least: Number
     most: Number
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=visitor} stays {least:time=5} to {most:time=20} at each place")
-    own_words: ClassVar[Tuple[Word, ...]] = (Word("stays", "How long it stays at each place.", True),)
-    forms: ClassVar[Tuple[Form, ...]] = (Form("how long somebody stays at each place", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {
+    template = Template("{agent=visitor} stays {least:time=5} to {most:time=20} at each place")
+    own_words = (Word("stays", "How long it stays at each place.", True),)
+    forms = (Form("how long somebody stays at each place", template.to_fill_in),)
+    numbers = {
         "stays": "It sets off {} after it came, or after the start, or later.".format,
         "to": "It has set off {} after it came, or after the start.".format,
     }

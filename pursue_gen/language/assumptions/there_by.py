@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Dict, Mapping, Optional, Tuple
+from typing import Dict, Mapping, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units, warning
 from pursue_gen.language.assumptions.base import AboutOne, Departure, Setting, latest_to
@@ -12,7 +12,7 @@ from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
 from pursue_gen.language.template import Template
 from pursue_gen.language.times import like, written_time
-from pursue_gen.language.word import Form, Numbers
+from pursue_gen.language.word import Form
 
 
 @dataclass(frozen=True)
@@ -23,12 +23,12 @@ class ThereBy(AboutOne):
     place: Ref
     time: Number
     span: Span = NOWHERE
-    template: ClassVar[Template] = Template("{agent=visitor} at {place:POI=exit} by {time:time=300}")
-    forms: ClassVar[Tuple[Form, ...]] = (Form("by when somebody has gone", template.to_fill_in),)
-    numbers: ClassVar[Numbers] = {"by": "It is there {} after the start, and stays there.".format}
-    number: ClassVar[str] = "time"
-    nearest: ClassVar[int] = 1
-    sets_off: ClassVar[bool] = True
+    template = Template("{agent=visitor} at {place:POI=exit} by {time:time=300}")
+    forms = (Form("by when somebody has gone", template.to_fill_in),)
+    numbers = {"by": "It is there {} after the start, and stays there.".format}
+    number = "time"
+    nearest = 1
+    sets_off = True
 
     @property
     def subject(self) -> str:

@@ -143,7 +143,7 @@ class Labelled(StatementKind):
 
     name: str
     label: Optional[str]
-    labelled: ClassVar[bool] = True
+    labelled = True
 
     @property
     def shown(self) -> str:

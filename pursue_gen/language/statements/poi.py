@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, ClassVar, Iterator, Optional, Tuple
+from typing import Any, Callable, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span
 from pursue_gen.language.poses import Pose, Spot, pose_text, read_poses
@@ -43,29 +43,29 @@ class Poi(Labelled, ForSome):
     only_for: Tuple[Ref, ...] = ()
     not_for: Tuple[Ref, ...] = ()
 
-    listed_in: ClassVar[str] = "pois"
-    symbol: ClassVar[str] = "Constant"
-    own_words: ClassVar[Tuple[Word, ...]] = (
+    listed_in = "pois"
+    symbol = "Constant"
+    own_words = (
         Word("poi", "A place where something can happen, or where ways meet."),
         Word("label", "What people read in place of the name: any text without double quotes.", True),
     )
-    template: ClassVar[Template] = Template(
+    template = Template(
         'poi {name="a"} [label {label:name}] ' + ForSome.for_whom + " [{pose,spots:poses}]",
         poses=POSES,
     )
-    note: ClassVar[str] = (
+    note = (
         'or with what people read: poi "a" label "security door"; for agv, cart or except gerda behind it: '
         "only these, or all but these, may be there"
     )
-    forms: ClassVar[Tuple[Form, ...]] = (
+    forms = (
         Form("a place", 'poi "{=room}"'),
         Form("a place where somebody never is", 'poi "{=room}" except {agent}'),
     )
-    declares: ClassVar[str] = "POI"
-    described: ClassVar[str] = "a place"
-    aside: ClassVar[Tuple[str, ...]] = ("pose", "spots")
-    shortest: ClassVar[str] = 'poi "{name}"'
-    parts: ClassVar[Tuple[str, ...]] = template.begins
+    declares = "POI"
+    described = "a place"
+    aside = ("pose", "spots")
+    shortest = 'poi "{name}"'
+    parts = template.begins
 
     def names(self) -> Iterator[Tuple[str, Ref]]:
         return (("agent", ref) for ref in (*self.only_for, *self.not_for, *(spot.robot for spot in self.spots)))
