@@ -11,7 +11,7 @@ from pursue_gen.diagnostics import Diagnostic, Severity, Span, error, in_order, 
 from pursue_gen.language.assumption_checks import check_assumptions
 from pursue_gen.language.batteries import check_batteries
 from pursue_gen.language.behaviour import check_events, check_rules, components
-from pursue_gen.language.condition_checks import check_conditions
+from pursue_gen.language.condition_checks import check_conditions, check_unknown
 from pursue_gen.language.doors import check_doors
 from pursue_gen.language.labels import check_labels
 from pursue_gen.language.lifts import check_lifts, is_said
@@ -24,7 +24,6 @@ from pursue_gen.language.scenario import Agent, Connection, Scenario
 from pursue_gen.language.syntax import MOST_FINDINGS, too_many
 from pursue_gen.language.times import in_units, written_time
 from pursue_gen.language.tokens import shown
-from pursue_gen.language.unknown_checks import check_unknown
 
 _OF_THE_WHOLE = frozenset(("PML105", "PML130", "PML131", "PML132", "PML171", "PML190"))
 """Codes of findings that need a scenario that was read as a whole."""

@@ -12,9 +12,7 @@ from pathlib import Path
 from typing import Any, Callable, Dict, Optional
 
 from pursue_gen.tools.draw.fields import refused
-from pursue_gen.tools.draw.play_work import play
-from pursue_gen.tools.draw.solve_work import UNDECIDED, Work, solve
-from pursue_gen.tools.draw.survey_work import SurveyWork, survey
+from pursue_gen.tools.draw.work import UNDECIDED, SurveyWork, Work, play, solve, survey
 from pursue_gen.workspace.robot_size import NOTHING_TOLD, Told
 
 RUNNING, ENDED, CANCELLED, NONE = "running", "ended", "cancelled", "none"
