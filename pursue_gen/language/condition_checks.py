@@ -4,13 +4,12 @@ find out."""
 from __future__ import annotations
 
 from math import comb
-from typing import AbstractSet, Collection, Iterator, Optional, Tuple
+from typing import AbstractSet, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import Diagnostic, Span, error, warning
 from pursue_gen.language.clauses import MOST_CLAUSES, Domains, TooMany, clauses_of, holds_at_start
 from pursue_gen.language.conditions import (
     At,
-    AtMostOf,
     Atom,
     Condition,
     Doing,
@@ -84,7 +83,8 @@ def _room(scenario: Scenario, safety: Room, domains: Domains) -> Iterator[Diagno
     rooms = [(room, domains.counted(room)) for room in safety.rooms]
     said = is_said(scenario, safety)
     if said and not safety.in_one:
-        impossible = [each for room, counted in rooms for each in _nobody(scenario, domains, room, counted, safety)]
+        named = (atom for room, counted in rooms for atom in room.parts if isinstance(atom, At) or not counted)
+        impossible = [found for atom in named for found in _impossible(scenario, domains, atom, safety.span)]
         if impossible:
             yield from impossible
             return
@@ -104,15 +104,6 @@ def _room(scenario: Scenario, safety: Room, domains: Domains) -> Iterator[Diagno
             yield from _lost_at_start(scenario, safety.span, Not(room), domains)
 
 
-def _nobody(
-    scenario: Scenario, domains: Domains, room: AtMostOf, counted: Collection[str], safety: Safety
-) -> Iterator[Diagnostic]:
-    """Who is named and never there; of several places together some are not connected."""
-    for atom in room.parts:
-        if isinstance(atom, At) or not counted:
-            yield from _impossible(scenario, domains, atom, safety.span)
-
-
 def _lost_at_start(
     scenario: Scenario, span: Span, broken: Optional[Condition], domains: Domains
 ) -> Iterator[Diagnostic]:
@@ -128,34 +119,29 @@ def _impossible(scenario: Scenario, domains: Domains, atom: Atom, span: Span) ->
     if isinstance(atom, Holds) or domains.literals(atom):
         return
     who, kind = atom.who.agent, "robot" if atom.who.robots else "agent"
-    nobody = f"no {kind}" if who is None else who.name
+    is_never = f"no {kind} is ever" if who is None else f"{who.name} is never"
     if isinstance(atom, At):
-        message = f"{nobody} {'is ever' if who is None else 'is never'} at {atom.place.name}"
         hint = "connect the place with where it starts, make it mobile, or name another place"
-        yield error("PML230", message, atom.place.span, hint)
+        yield error("PML230", f"{is_never} at {atom.place.name}", atom.place.span, hint)
     elif isinstance(atom, Has):
-        message = f"{nobody} {'ever has' if who is None else 'never has'} {atom.thing.name}"
+        message = f"no {kind} ever has {atom.thing.name}" if who is None else f"{who.name} never has {atom.thing.name}"
         hint = "let it do an event that takes or mounts it, or name another thing"
         yield error("PML231", message, atom.thing.span, hint)
     elif isinstance(atom, Doing):
         event = next(event for event in scenario.events if event.name == atom.event.name)
-        name = event.name
+        message, hint = f"{is_never} doing {event.name}", f"give it to the agent: can_do {event.name}"
+        hint += f", or reacts_to {event.name}" if event.is_shared else ""
         if event.duration is None:
-            message = f"{name} takes no time: no agent is ever doing it"
-            hint = f"give it a duration, or let {name} make a state true and name the state"
-        else:
-            message = f"{nobody} {'is ever' if who is None else 'is never'} doing {name}"
-            hint = f"give it to the agent: can_do {name}" + (f", or reacts_to {name}" if event.is_shared else "")
+            message = f"{event.name} takes no time: no agent is ever doing it"
+            hint = f"give it a duration, or let {event.name} make a state true and name the state"
         yield error("PML231", message, atom.event.span, hint)
     elif atom.ends:
-        a, b = (ref.name for ref in atom.ends)
-        message = f"{nobody} {'is ever' if who is None else 'is never'} {predicate_words(atom)}"
-        hint = f"connect {a} with {b}, make it mobile, or name another way"
-        yield error("PML230", message, atom.ends[0].span, hint)
+        hint = "connect {} with {}, make it mobile, or name another way".format(*(ref.name for ref in atom.ends))
+        yield error("PML230", f"{is_never} {predicate_words(atom)}", atom.ends[0].span, hint)
     else:
+        hint = "make it mobile (mobile 1), or delete this part of the condition"
         place = span if who is None else who.span
-        message = f"{nobody} {'is ever' if who is None else 'is never'} on its way: nothing there is mobile"
-        yield error("PML230", message, place, "make it mobile (mobile 1), or delete this part of the condition")
+        yield error("PML230", f"{is_never} on its way: nothing there is mobile", place, hint)
 
 
 def _without_sense(condition: Condition, span: Span, domains: Domains) -> Iterator[Diagnostic]:

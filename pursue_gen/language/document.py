@@ -15,14 +15,7 @@ from pursue_gen.diagnostics import Span
 from pursue_gen.language.chunks import COMMENTS
 from pursue_gen.language.kinds import STATEMENTS
 from pursue_gen.language.lines import Lines
-from pursue_gen.language.syntax import (
-    Statement,
-    Syntax,
-    statements_of,
-    syntax_of,
-    tokens_of,
-    too_large,
-)
+from pursue_gen.language.syntax import Statement, Syntax, statements_of, syntax_of, tokens_of, too_large
 from pursue_gen.language.tokens import end_of, start_of
 
 Block = Tuple[Token, ...]

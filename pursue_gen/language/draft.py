@@ -45,7 +45,7 @@ class Draft(Document):
     @cached_property
     def reading(self) -> Reading:
         """What the parser makes of it."""
-        return read_document(self, self._name)
+        return read_document(self, PurePosixPath(self.file).stem if self.named else "untitled")
 
     @cached_property
     def findings(self) -> Tuple[Diagnostic, ...]:
@@ -63,10 +63,6 @@ class Draft(Document):
             if occurrence.start <= offset <= occurrence.end:
                 return occurrence
         return None
-
-    @property
-    def _name(self) -> Optional[str]:
-        return PurePosixPath(self.file).stem if self.named else "untitled"
 
 
 def definition(document: Draft, offset: int) -> Tuple[Occurrence, ...]:

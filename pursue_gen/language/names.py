@@ -39,7 +39,11 @@ def declared(scenario: Scenario, kind: str) -> Dict[str, Span]:
 
 def check_names(scenario: Scenario) -> Iterator[Diagnostic]:
     """Findings about declared names: their form, names declared twice, names that collide with generated ones."""
-    yield from _file_name(scenario)
+    if not well_formed(scenario.name):
+        package = shown(scenario.name, 60) + "_bringup"
+        message = f"the file's name gives the package {package}, which is no name for a ROS package"
+        hint = f"rename the file to {fitting(scenario.name)}.pur: letters, digits and _, a letter first"
+        yield error("PML106", message, None, hint)
     seen: Dict[str, Tuple[str, Span]] = {}
     sound = True
     taken = _taken(scenario)
@@ -137,14 +141,6 @@ def _uses(scenario: Scenario) -> Iterator[Tuple[str, Ref]]:
         yield from objective.names()
     for condition, _ in scenario.conditions():
         yield from names_in(condition)
-
-
-def _file_name(scenario: Scenario) -> Iterator[Diagnostic]:
-    if not well_formed(scenario.name):
-        package = shown(scenario.name, 60) + "_bringup"
-        message = f"the file's name gives the package {package}, which is no name for a ROS package"
-        hint = f"rename the file to {fitting(scenario.name)}.pur: letters, digits and _, a letter first"
-        yield error("PML106", message, None, hint)
 
 
 def _unfit(kind: str, name: str, span: Span, taken: Container[str]) -> Optional[Diagnostic]:

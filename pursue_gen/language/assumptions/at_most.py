@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Mapping, Optional, Sequence, Tuple
+from typing import ClassVar, Mapping, Optional, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, counted, error
-from pursue_gen.language.assumptions.base import AboutOne, Setting
+from pursue_gen.language.assumptions.base import AboutOne, Assumption, Setting
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.agent import Agent
@@ -17,8 +17,38 @@ MOST_TIMES = 100
 """The most times that an assumption may allow: each is a value of a variable of its own."""
 
 
+class Counted(Assumption):
+    """An assumption that agents begin events so many times at most, where `counts_what` says which."""
+
+    times: int
+    numbers = {"at_most": lambda _, times: f"It begins {counted(times, 'time')} at most in the whole mission."}
+    number = "times"
+    nearest = MOST_TIMES
+    counts = True
+    counts_what: ClassVar[str]
+    fewer: ClassVar[str] = "write a smaller number"
+    """What to do where the number is too large."""
+
+    @property
+    def too_large(self) -> Optional[Diagnostic]:
+        """An error where so many times cannot be counted."""
+        message = f"at_most {self.times}: expected {MOST_TIMES} or less, as each time is counted"
+        return error("PML251", message, self.span, self.fewer) if self.times > MOST_TIMES else None
+
+    def allows(self, event: str, within: Number) -> bool:
+        return self.times > 1 or super().allows(event, within)
+
+    @property
+    def counted(self) -> Tuple[str, Mapping[str, str]]:
+        done = {str(times): f"{times} of {self.times} times" for times in range(self.times + 1)}
+        return (self.told(self.counts_what), done) if self.times else ("", {})
+
+    def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
+        return range(self.times - 1, 0, -1)
+
+
 @dataclass(frozen=True)
-class AtMost(AboutOne):
+class AtMost(Counted, AboutOne):
     """`assume: agent does event at_most times times`: it begins the event no more often."""
 
     agent: Ref
@@ -28,10 +58,8 @@ class AtMost(AboutOne):
     template = Template("{agent=guest} does {event=call} at_most {times:count=2} times")
     own_words = (Word("does", "The event that the assumption is about.", True),)
     forms = (Form("how often somebody does something", template.to_fill_in),)
-    numbers = {"at_most": lambda _, times: f"It begins {counted(times, 'time')} at most in the whole mission."}
-    number = "times"
-    nearest = MOST_TIMES
-    counts = True
+    counts_what = "{event} by {agent}"
+    fewer = "write a smaller number, or how long it waits: waits 5 between"
 
     @property
     def clause(self) -> str:
@@ -40,24 +68,9 @@ class AtMost(AboutOne):
             return f"{name} never does {event}"
         return f"{name} does {event} at most {'once' if self.times == 1 else f'{self.times} times'}"
 
-    def allows(self, event: str, within: Number) -> bool:
-        return self.times > 1 or super().allows(event, within)
-
     def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
-        if self.times > MOST_TIMES:
-            message = f"at_most {self.times}: expected {MOST_TIMES} or less, as each time is counted"
-            hint = "write a smaller number, or how long it waits: waits 5 between"
-            return error("PML251", message, self.span, hint)
-        return self.never_does(agent, self.event)
+        return self.too_large or self.never_does(agent, self.event)
 
     @property
     def excluded(self) -> Tuple[str, ...]:
         return () if self.times else (self.agent.name, self.event.name)
-
-    @property
-    def counted(self) -> Tuple[str, Mapping[str, str]]:
-        done = {str(times): f"{times} of {self.times} times" for times in range(self.times + 1)}
-        return (f"{self.event.shown} by {self.agent.shown}", done) if self.times else ("", {})
-
-    def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
-        return range(self.times - 1, 0, -1)

@@ -72,6 +72,10 @@ class Assumption(Written):
     """A variable counts for it how often something has happened."""
     sets_off: ClassVar[bool] = False
     """Its agent has to set off in time, so nothing may keep it from that."""
+    says: ClassVar[str] = ""
+    """What is assumed, in words, as `Written.told` has them."""
+    counts_since: ClassVar[str] = ""
+    """The moment since which its clock counts, likewise; "": it has no clock."""
 
     @property
     def text(self) -> str:
@@ -86,7 +90,12 @@ class Assumption(Written):
     @property
     def clause(self) -> str:
         """What is assumed, in words, as in `visitor is never at lab`."""
-        raise NotImplementedError
+        return self.told(self.says)
+
+    @property
+    def since(self) -> str:
+        """The moment since which its clock counts; "": it has no clock."""
+        return self.told(self.counts_since)
 
     def is_about(self, agent: str) -> bool:
         """True if it names the agent, be it in a condition."""
@@ -111,11 +120,6 @@ class Assumption(Written):
     def check_in(self, setting: Setting) -> Iterator[Diagnostic]:
         """What is wrong with it in its scenario; its names are declared."""
         raise NotImplementedError
-
-    @property
-    def since(self) -> str:
-        """The moment since which its clock counts; "": it has no clock."""
-        return ""
 
     @property
     def excluded(self) -> Tuple[str, ...]:

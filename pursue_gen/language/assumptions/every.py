@@ -35,14 +35,8 @@ class Every(Between):
         "every": "It happens {} after the start, or after the last time, or later.".format,
         "to": "It has happened {} after the start, or after the last time.".format,
     }
-
-    @property
-    def clause(self) -> str:
-        return f"{self.agent.shown} does {self.event.shown} every {self.least_to_most}"
-
-    @property
-    def since(self) -> str:
-        return f"{self.agent.shown}'s last {self.event.shown}"
+    says = "{agent} does {event} every {least_to_most}"
+    counts_since = "{agent}'s last {event}"
 
     def allows(self, event: str, within: Number) -> bool:
         return self.event.name != event or self.least < within
@@ -61,12 +55,14 @@ class Every(Between):
 
     def _hindered(self, agent: Agent, event: Event, setting: Setting) -> str:
         """Why the agent may be unable to do the event in time; "": it never is."""
+        only = event.location
+        is_there = only is None or (agent.mobile is None and all(ref.name == only.name for ref in agent.starts))
         reasons = (
             (all(ref.name != event.name for ref in agent.can_do), f"it cannot do {event.name}"),
             (bool(agent.reacts_to), "it takes part in what others do"),
             (event.duration is not None, f"{event.name} has a duration"),
             (event.collaborative, f"{event.name} takes two"),
-            (not self._is_where(agent, event), f"it is not always where {event.name} happens"),
+            (not is_there, f"it is not always where {event.name} happens"),
             (bool(event.only_if or event.at_most), f"{event.name} is not always allowed"),
             (event.name in setting.ruled, f"{event.name} is not always allowed"),
             (any((event.takes, event.gives, event.mounts, event.needs)), f"{event.name} is about a thing"),
@@ -75,12 +71,6 @@ class Every(Between):
         found = [reason for holds, reason in reasons if holds]
         found += [f"{other.span.in_words} assumes something of that, too" for other in others]
         return found[0] if found else ""
-
-    @staticmethod
-    def _is_where(agent: Agent, event: Event) -> bool:
-        """True if the agent is always at a place at which it can do the event."""
-        only = event.location
-        return only is None or (agent.mobile is None and all(ref.name == only.name for ref in agent.starts))
 
     def _is_touched_by(self, other: Assumption, setting: Setting) -> bool:
         """True if the other one is about the same agent or event, or about a state that the event sets."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import ceil
 from typing import Optional, Sequence, Tuple
 
-from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, units
+from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import SHORTEST_STAY, Departure, Setting
 from pursue_gen.language.numbers import Number, whole_below
 from pursue_gen.language.refs import Ref
@@ -30,10 +30,8 @@ class Leaves(Departure):
     numbers = {"within": "It has set off {} after it came, or after the start.".format}
     number = "time"
     nearest = SHORTEST_STAY
-
-    @property
-    def clause(self) -> str:
-        return f"{self.agent.shown} leaves {self.place.shown} within {units(self.time)}"
+    says = "{agent} leaves {place} within {time}"
+    counts_since = "{agent}'s arrival at {place}"
 
     @property
     def only_at(self) -> str:
@@ -50,10 +48,6 @@ class Leaves(Departure):
             enough = written_time(like(setting.shortest_stay, self.time))
             return error("PML251", message, self.span, f"write within {enough} or more")
         return self.never_comes(agent, self.place, setting) or self.never_away(agent, [self.place.name], setting)
-
-    @property
-    def since(self) -> str:
-        return f"{self.agent.shown}'s arrival at {self.place.shown}"
 
     def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
         return whole_below(self.time, max(1, ceil(shortest_stay)))

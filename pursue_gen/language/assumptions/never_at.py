@@ -25,10 +25,7 @@ class NeverAt(AboutOne):
     template = Template("{agent=visitor} never at {place:POI=store}")
     own_words = (Word("never", "It never sets off to that place.", True),)
     forms = (Form("where somebody never goes", template.to_fill_in),)
-
-    @property
-    def clause(self) -> str:
-        return f"{self.agent.shown} is never at {self.place.shown}"
+    says = "{agent} is never at {place}"
 
     def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
         place = self.place.name

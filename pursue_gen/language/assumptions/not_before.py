@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pursue_gen.diagnostics import NOWHERE, Span, units
+from pursue_gen.diagnostics import NOWHERE, Span
 from pursue_gen.language.assumptions.base import NotSooner
 from pursue_gen.language.numbers import Number
 from pursue_gen.language.refs import Ref
@@ -23,14 +23,8 @@ class NotBefore(NotSooner):
     template = Template("{agent=guest} does {event=call} after {time:time=60}")
     forms = (Form("from when on somebody does something", template.to_fill_in),)
     numbers = {"after": "It begins that later than {} after the start.".format}
-
-    @property
-    def clause(self) -> str:
-        return f"{self.agent.shown} does {self.event.shown} only later than {units(self.time)} after the start"
+    says = "{agent} does {event} only later than {time} after the start"
+    counts_since = "the start"
 
     def allows(self, event: str, within: Number) -> bool:
         return True
-
-    @property
-    def since(self) -> str:
-        return "the start"

@@ -35,21 +35,11 @@ class Reaches(AboutOne):
     in_rests = True
     counts = True
     sets_off = True
-
-    @property
-    def subject(self) -> str:
-        return f"assume: {self.template.written(self, time='…')}"
-
-    @property
-    def clause(self) -> str:
-        return f"{self.agent.shown} reaches {self.place.shown} within {units(self.time)} after {self.event.shown}"
+    says = "{agent} reaches {place} within {time} after {event}"
+    counts_since = "the first {event} that {agent} has not followed"
 
     def allows(self, event: str, within: Number) -> bool:
         return True
-
-    @property
-    def since(self) -> str:
-        return f"the first {self.event.shown} that {self.agent.shown} has not followed"
 
     @property
     def counted(self) -> Tuple[str, Mapping[str, str]]:

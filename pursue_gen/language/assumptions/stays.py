@@ -32,10 +32,8 @@ class Stays(Between, Departure):
         "stays": "It sets off {} after it came, or after the start, or later.".format,
         "to": "It has set off {} after it came, or after the start.".format,
     }
-
-    @property
-    def clause(self) -> str:
-        return f"{self.agent.shown} stays {self.least_to_most} at each place"
+    says = "{agent} stays {least_to_most} at each place"
+    counts_since = "{agent}'s arrival"
 
     @property
     def window(self) -> Tuple[Number, Number]:
@@ -52,7 +50,3 @@ class Stays(Between, Departure):
                 message = f"{agent.name} stays {least} or longer, and is assumed to leave {each.place.name} sooner"
                 return error("PML264", message, self.span, "assume one of the two")
         return self.never_away(agent, visited(agent, setting), setting)
-
-    @property
-    def since(self) -> str:
-        return f"{self.agent.shown}'s arrival"

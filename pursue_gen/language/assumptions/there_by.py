@@ -29,18 +29,12 @@ class ThereBy(AboutOne):
     number = "time"
     nearest = 1
     sets_off = True
+    says = "{agent} is at {place} {time} after the start, and from then on"
+    counts_since = "the start"
 
     @property
     def subject(self) -> str:
         return f"assume: {self.template.written(self, place='…', time='…')}"
-
-    @property
-    def clause(self) -> str:
-        return f"{self.agent.shown} is at {self.place.shown} {units(self.time)} after the start, and from then on"
-
-    @property
-    def since(self) -> str:
-        return "the start"
 
     def latest(self, ways: Mapping[Tuple[str, str], Number], stay: Number) -> Dict[str, Number]:
         """When it sets off at the latest from each other place, as `latest_to`."""

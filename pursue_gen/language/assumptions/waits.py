@@ -30,6 +30,7 @@ class Waits(NotSooner):
     forms = (Form("how long somebody waits in between", template.to_fill_in),)
     numbers = {"waits": "The next one begins {} after the end of the last, or later.".format}
     counts = True  # whether it has happened: the first time is free
+    counts_since = "{agent}'s last {event}"
 
     @property
     def following(self) -> Ref:
@@ -48,10 +49,6 @@ class Waits(NotSooner):
 
     def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
         return super().wrong(agent, setting) or self.never_does(agent, self.following)
-
-    @property
-    def since(self) -> str:
-        return f"{self.agent.shown}'s last {self.event.shown}"
 
     @classmethod
     def missing(cls, setting: Setting, longest: Number) -> Iterator[Tuple[Assumption, Sequence[int]]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import Any, Callable, ClassVar, Iterator, Sequence, Tuple, cast
+from typing import Any, Callable, ClassVar, Iterable, Iterator, Sequence, Tuple, cast
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error, listed
 from pursue_gen.language.conditions import AllOf, At, AtMostOf, Atom, Not, OnWay, Who, some_text
@@ -157,6 +157,9 @@ class LiftHolds(Holds):
     def there(self, who: Who) -> Sequence[Atom]:
         return [OnWay(who, a, b, True) for a, b in self.building]
 
+    def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref, str]]) -> LiftHolds:
+        return replace(self, building=_each_once((a, b) for a, b, lift in ways if lift == self.lift.name))
+
     def about(self, kind: str, name: str, shown: Callable[[str], str]) -> Iterator[str]:
         if (kind, name) == ("lift", self.lift.name):
             yield f"holds {some_text(self.most, self.who)}"
@@ -201,7 +204,7 @@ class EveryPlaceHolds(EveryHolds):
     forms = (Form("what every place holds", "every place holds {=1} robot"),)
     in_one = "at one place"
 
-    def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref]]) -> EveryPlaceHolds:
+    def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref, str]]) -> EveryPlaceHolds:
         return replace(self, building=tuple(places))
 
     def atoms(self) -> Iterator[Sequence[Atom]]:
@@ -231,11 +234,16 @@ class EveryWayHolds(EveryHolds):
     forms = (Form("what every way holds", "every way holds {=1} robot"),)
     in_one = "on one way"
 
-    def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref]]) -> EveryWayHolds:
-        return replace(self, building=tuple({frozenset((a.name, b.name)): (a, b) for a, b in ways}.values()))
+    def in_building(self, places: Sequence[Ref], ways: Sequence[Tuple[Ref, Ref, str]]) -> EveryWayHolds:
+        return replace(self, building=_each_once((a, b) for a, b, _ in ways))
 
     def atoms(self) -> Iterator[Sequence[Atom]]:
         return ([OnWay(who, a, b, True) for who in self.who] for a, b in self.building)
+
+
+def _each_once(ways: Iterable[Tuple[Ref, Ref]]) -> Tuple[Tuple[Ref, Ref], ...]:
+    """The ways, one for both directions."""
+    return tuple({frozenset((a.name, b.name)): (a, b) for a, b in ways}.values())
 
 
 def rooms_in(objectives: Sequence[StatedObjective]) -> Iterator[Holds]:

@@ -23,6 +23,9 @@ MOST_TIMES = 100
 MOST_EVENT_PARTS = 20
 """Parts of an event at most: how many are done multiplies the states of the game."""
 
+_OF_WORK = "collaborative together location duration may_stop parts takes gives mounts needs only_if".split()
+"""What an event has that somebody does, and no order."""
+
 
 def _read_counted(reader: TreeReader, tree: Any) -> Tuple[Ref, int]:
     number, name = tree.children
@@ -206,20 +209,8 @@ class Event(Labelled):
 
     def _check_order(self) -> Iterator[Diagnostic]:
         """Whatever an order cannot have: it is said, and takes no time and no place."""
-        wrong = {
-            "collaborative": self.collaborative,
-            "together": self.together,
-            "location": self.location,
-            "duration": self.duration,
-            "may_stop": self.may_stop,
-            "parts": self.split,
-            "takes": self.takes,
-            "gives": self.gives,
-            "mounts": self.mounts,
-            "needs": self.needs,
-            "only_if": self.only_if,
-        }
-        named = [word for word, value in wrong.items() if value not in (None, False)]
+        fields = ((word, "split" if word == "parts" else word) for word in _OF_WORK)
+        named = [word for word, field in fields if getattr(self, field) not in (None, False)]
         if self.on_order and named:
             message = f"{self.name} is ordered by people: it has no {', no '.join(named)}"
             hint = f"keep on_order alone; what robots do then is another event: if {self.name} then … within 600"

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, Iterator, Optional, Tuple
+from typing import Callable, Iterator, Optional, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span
 from pursue_gen.language.poses import Pose, Spot, pose_text, read_poses
 from pursue_gen.language.refs import Ref
 from pursue_gen.language.statements.base import ForSome, Labelled
 from pursue_gen.language.template import Filling, Template
-from pursue_gen.language.tree_reader import TreeReader
 from pursue_gen.language.word import Form, Word
 
 
@@ -19,11 +18,7 @@ def _poses_text(pose: Optional[Pose], spots: Tuple[Spot, ...]) -> str:
     return f"//{own}" + "".join(f" {spot.robot.name} {pose_text(spot.pose)}" for spot in spots)
 
 
-def _read_poses(reader: TreeReader, comment: Any) -> Tuple[Optional[Pose], Tuple[Spot, ...]]:
-    return read_poses(str(comment), reader.at(comment), reader.findings)
-
-
-POSES = Filling("POSE", _read_poses, _poses_text)
+POSES = Filling("POSE", lambda reader, it: read_poses(str(it), reader.at(it), reader.findings), _poses_text)
 """The pose of a place in a comment behind it, and those behind names."""
 
 

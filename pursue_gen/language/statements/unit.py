@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Iterator, Optional, Tuple
+from typing import Iterator, Optional, Tuple
 
 from lark import Token
 
@@ -58,10 +58,6 @@ class Unit(StatementKind):
         Form("what one unit of time is", "unit second"),
         Form("what one unit of time is, by its length", "unit {=10} s"),
     )
-
-    @classmethod
-    def read(cls, reader: TreeReader, *children: Any, **at: Any) -> Unit:
-        return cls(**cls.template.read(reader, children), **at)
 
     def check(self) -> Iterator[Diagnostic]:
         if not _LEAST <= self.seconds <= _MOST:

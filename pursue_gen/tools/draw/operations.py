@@ -24,17 +24,9 @@ from pursue_gen.language.usable import reserved
 from pursue_gen.language.word import HOLE, Form
 from pursue_gen.tools.draw import fields
 from pursue_gen.tools.draw.fields import Values, refused
+from pursue_gen.tools.draw.made import check_place, names, not_there
 from pursue_gen.tools.draw.places import with_all_positions, with_position, with_spot
-from pursue_gen.tools.draw.statement_edits import (
-    added,
-    check_place,
-    names,
-    not_there,
-    restated,
-    with_part,
-    without,
-    without_remark,
-)
+from pursue_gen.tools.draw.statement_edits import added, restated, with_part, without, without_remark
 from pursue_gen.tools.draw.ways import connect, second_way
 
 ANYBODY = ("any robot", "no robot", "any agent", "no agent")

@@ -23,8 +23,9 @@ from pursue_gen.language.times import unit_name
 from pursue_gen.language.tokens import bare
 from pursue_gen.language.word import HOLE
 from pursue_gen.solving.inputs import findings_of
+from pursue_gen.tools.draw.made import names, number_at
 from pursue_gen.tools.draw.places import heading, positions
-from pursue_gen.tools.draw.statement_edits import names, names_behind, number_at, words_behind
+from pursue_gen.tools.draw.statement_edits import names_behind, words_behind
 from pursue_gen.workspace.levels import Level
 from pursue_gen.workspace.map_check import but_for_ways, check_spots
 from pursue_gen.workspace.robot_size import NOTHING_TOLD, Told, sizes_of

@@ -11,17 +11,9 @@ from pursue_gen.language.syntax import Statement
 from pursue_gen.language.times import written_time
 from pursue_gen.tools.draw import fields
 from pursue_gen.tools.draw.fields import Values, refused
+from pursue_gen.tools.draw.made import check_place, names, not_there, number_at
 from pursue_gen.tools.draw.places import lengths_per_metre, metres, positions
-from pursue_gen.tools.draw.statement_edits import (
-    added,
-    check_place,
-    names,
-    names_behind,
-    not_there,
-    number_at,
-    with_part,
-    words_behind,
-)
+from pursue_gen.tools.draw.statement_edits import added, names_behind, with_part, words_behind
 
 
 def connect(document: Draft, values: Values) -> Tuple[Draft, Optional[int]]:

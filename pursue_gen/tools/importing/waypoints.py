@@ -22,7 +22,7 @@ from pursue_gen.files import compose_yaml, read_text, span_of
 from pursue_gen.language.formatter import format_text
 from pursue_gen.language.kinds import RESERVED
 from pursue_gen.language.usable import proposal
-from pursue_gen.tools.importing.scenario_text import one_line, told_apart
+from pursue_gen.tools.importing.scenario_text import label_text, one_line, told_apart
 from pursue_runtime.bounded import DATA, BadText, node_value
 
 _HINT = "write each as name: [x, y, yaw], in metres and radians; docs/import.md has other shapes"
@@ -335,9 +335,9 @@ def waypoints_text(
         [f"// Places from {one_line(title)}. Metres and seconds. Ways: {how}.",
          "// Say what is wanted below (docs/language.md)."],
         ["unit second"],
-        [f'poi "{names[k]}"{_label(shown[k], names[k])} //[{_pose(each)}]' for k, each in enumerate(places)],
+        [f'poi "{names[k]}"{label_text(shown[k], names[k])} //[{_pose(each)}]' for k, each in enumerate(places)],
         [f"connect {names[a]} and {names[b]} distance {_metres(places[a], places[b]):g}" for a, b in ways],
-        [f'agent "{agents[k]}"{_label(name, agents[k])} controllable speed {speed:g} location {names[k]}'
+        [f'agent "{agents[k]}"{label_text(name, agents[k])} controllable speed {speed:g} location {names[k]}'
          for k, (name, speed) in enumerate(speeds.items())],
         [*(f"objective: every {room} holds 1 robot" for room in ("place", "way") if traffic and len(agents) > 1),
          f"objective: patrol {', '.join(names)} by {agents[0] if len(agents) == 1 else 'any robot'}"],
@@ -366,10 +366,6 @@ def _named(titles: Sequence[str], taken: Set[str]) -> List[str]:
 def _called(place: Waypoint) -> str:
     """What people call it, as a label can hold it."""
     return one_line(place.name)[:_LONGEST].strip()
-
-
-def _label(title: str, name: str) -> str:
-    return f' label "{one_line(title)}"' if title != name else ""
 
 
 def _pose(place: Waypoint) -> str:
