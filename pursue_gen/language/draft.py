@@ -59,10 +59,7 @@ class Draft(Document):
 
     def occurrence_at(self, offset: int) -> Optional[Occurrence]:
         """The name that an offset is in, or right behind of."""
-        for occurrence in self.occurrences:
-            if occurrence.start <= offset <= occurrence.end:
-                return occurrence
-        return None
+        return next((one for one in self.occurrences if one.start <= offset <= one.end), None)
 
 
 def definition(document: Draft, offset: int) -> Tuple[Occurrence, ...]:

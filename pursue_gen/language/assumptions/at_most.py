@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Mapping, Optional, Sequence, Tuple
+from typing import ClassVar, Iterator, Mapping, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, counted, error
 from pursue_gen.language.assumptions.base import AboutOne, Assumption, Setting
@@ -29,11 +29,11 @@ class Counted(Assumption):
     fewer: ClassVar[str] = "write a smaller number"
     """What to do where the number is too large."""
 
-    @property
-    def too_large(self) -> Optional[Diagnostic]:
+    def too_often(self) -> Iterator[Diagnostic]:
         """An error where so many times cannot be counted."""
-        message = f"at_most {self.times}: expected {MOST_TIMES} or less, as each time is counted"
-        return error("PML251", message, self.span, self.fewer) if self.times > MOST_TIMES else None
+        if self.times > MOST_TIMES:
+            message = f"at_most {self.times}: expected {MOST_TIMES} or less, as each time is counted"
+            yield error("PML251", message, self.span, self.fewer)
 
     def allows(self, event: str, within: Number) -> bool:
         return self.times > 1 or super().allows(event, within)
@@ -68,8 +68,9 @@ class AtMost(Counted, AboutOne):
             return f"{name} never does {event}"
         return f"{name} does {event} at most {'once' if self.times == 1 else f'{self.times} times'}"
 
-    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
-        return self.too_large or self.never_does(agent, self.event)
+    def wrong(self, agent: Agent, setting: Setting) -> Iterator[Diagnostic]:
+        yield from self.too_often()
+        yield from self.never_does(agent, self.event)
 
     @property
     def excluded(self) -> Tuple[str, ...]:

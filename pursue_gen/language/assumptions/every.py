@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from typing import Iterator
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import Assumption, Between, Setting
@@ -41,17 +41,14 @@ class Every(Between):
     def allows(self, event: str, within: Number) -> bool:
         return self.event.name != event or self.least < within
 
-    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+    def wrong(self, agent: Agent, setting: Setting) -> Iterator[Diagnostic]:
         rest = time_units(like(setting.rest, self.most))
-        found = self.ill_timed("every", f"agents rest for {rest} between two steps", setting)
-        if found is not None:
-            return found
+        yield from self.ill_timed("every", f"agents rest for {rest} between two steps", setting)
         event = next(each for each in setting.events if each.name == self.event.name)
         why = self._hindered(agent, event, setting)
         if why:
             message = f"{agent.name} may be kept from {event.name}, and is assumed to do it in time: {why}"
-            return error("PML442", message, self.span, "assume waits, or leave out what keeps it from that")
-        return None
+            yield error("PML442", message, self.span, "assume waits, or leave out what keeps it from that")
 
     def _hindered(self, agent: Agent, event: Event, setting: Setting) -> str:
         """Why the agent may be unable to do the event in time; "": it never is."""

@@ -40,7 +40,7 @@ class InAll(Counted):
         return not agent.controllable and any(ref.name in done for ref in agent.can_do)
 
     def check_in(self, setting: Setting) -> Iterator[Diagnostic]:
-        yield from () if self.too_large is None else (self.too_large,)
+        yield from self.too_often()
         for ref in twice(self.events):
             yield error("PML253", f"{ref.name} stands twice behind of", ref.span, "delete one of the two")
         for ref in dict.fromkeys(self.events):

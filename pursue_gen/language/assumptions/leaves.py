@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil
-from typing import Optional, Sequence, Tuple
+from typing import Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import SHORTEST_STAY, Departure, Setting
@@ -41,13 +41,14 @@ class Leaves(Departure):
     def window(self) -> Tuple[Number, Number]:
         return 0, self.time
 
-    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+    def wrong(self, agent: Agent, setting: Setting) -> Iterator[Diagnostic]:
         if self.time < setting.shortest_stay:
             message = f"within {written_time(self.time)} is too short"
             message += f": whoever arrives rests for {time_units(like(setting.rest, self.time))} before it can set off"
             enough = written_time(like(setting.shortest_stay, self.time))
-            return error("PML251", message, self.span, f"write within {enough} or more")
-        return self.never_comes(agent, self.place, setting) or self.never_away(agent, [self.place.name], setting)
+            yield error("PML251", message, self.span, f"write within {enough} or more")
+        yield from self.never_comes(agent, self.place, setting)
+        yield from self.never_away(agent, [self.place.name], setting)
 
     def stronger(self, longest: Number, shortest_stay: Number) -> Sequence[int]:
         return whole_below(self.time, max(1, ceil(shortest_stay)))

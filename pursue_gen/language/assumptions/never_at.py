@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Iterator, Optional, Sequence, Tuple
+from typing import Iterator, Sequence, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import AboutOne, Assumption, Setting
@@ -27,14 +27,14 @@ class NeverAt(AboutOne):
     forms = (Form("where somebody never goes", template.to_fill_in),)
     says = "{agent} is never at {place}"
 
-    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+    def wrong(self, agent: Agent, setting: Setting) -> Iterator[Diagnostic]:
         place = self.place.name
-        if all(ref.name != place for ref in agent.starts):
-            return self.never_comes(agent, self.place, setting)
-        stays = f"{agent.name} is not mobile: it stays in {place}"
-        starts = "may start" if agent.is_somewhere else "starts"
-        message = stays if agent.mobile is None else f"{agent.name} {starts} in {place}"
-        return error("PML252", message, self.span, "let it start somewhere else")
+        if any(ref.name == place for ref in agent.starts):
+            starts = "may start" if agent.is_somewhere else "starts"
+            stays = f"{agent.name} is not mobile: it stays in {place}"
+            message = stays if agent.mobile is None else f"{agent.name} {starts} in {place}"
+            yield error("PML252", message, self.span, "let it start somewhere else")
+        yield from self.never_comes(agent, self.place, setting)
 
     @property
     def shunned(self) -> Tuple[str, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional, Tuple
+from typing import Iterator, Tuple
 
 from pursue_gen.diagnostics import NOWHERE, Diagnostic, Span, error
 from pursue_gen.language.assumptions.base import Between, Departure, Setting, visited
@@ -39,14 +39,12 @@ class Stays(Between, Departure):
     def window(self) -> Tuple[Number, Number]:
         return self.least, self.most
 
-    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
+    def wrong(self, agent: Agent, setting: Setting) -> Iterator[Diagnostic]:
         why = f"whoever arrives rests for {time_units(like(setting.rest, self.most))} before it can set off"
-        found = self.ill_timed("stays", why, setting)
-        if found is not None:
-            return found
+        yield from self.ill_timed("stays", why, setting)
         for each in setting.assumptions:
             if isinstance(each, Leaves) and each.binds(agent) and each.time < self.least:
                 least = written_time(self.least)
                 message = f"{agent.name} stays {least} or longer, and is assumed to leave {each.place.name} sooner"
-                return error("PML264", message, self.span, "assume one of the two")
-        return self.never_away(agent, visited(agent, setting), setting)
+                yield error("PML264", message, self.span, "assume one of the two")
+        yield from self.never_away(agent, visited(agent, setting), setting)

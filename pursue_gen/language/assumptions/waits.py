@@ -47,8 +47,9 @@ class Waits(NotSooner):
     def allows(self, event: str, within: Number) -> bool:
         return self.following.name != event or self.time < within
 
-    def wrong(self, agent: Agent, setting: Setting) -> Optional[Diagnostic]:
-        return super().wrong(agent, setting) or self.never_does(agent, self.following)
+    def wrong(self, agent: Agent, setting: Setting) -> Iterator[Diagnostic]:
+        yield from super().wrong(agent, setting)
+        yield from self.never_does(agent, self.following)
 
     @classmethod
     def missing(cls, setting: Setting, longest: Number) -> Iterator[Tuple[Assumption, Sequence[int]]]:
